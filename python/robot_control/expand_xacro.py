@@ -4,10 +4,17 @@ A comment after it, `xacro macros: …`, names the macros that were called, beca
 
 PyPI's xacro resolves `$(find PACKAGE)` by ROS 2's package index, through the module `ament_index_python.packages`. This
 module replaces it: rospkg answers first, then the folders above the file.
+
+A .xacro file is a program: xacro evaluates what stands in `${…}` and `$(eval …)` as Python. Only expressions of values
+are admitted here. The process reads files and writes its output. As far as the kernel permits that, it has no network,
+changes no file and starts no program.
 """
 
+import ast
+import ctypes
 import io
 import resource
+import struct
 import sys
 import xml.parsers.expat  # noqa: F401  (xacro 2.1 uses it without importing it)
 from collections.abc import Sequence
@@ -21,6 +28,18 @@ from robot_control.common.files import check_input
 MAX_INCLUDED = 64 << 20  # bytes
 NOT_INSTALLED = 69  # EX_UNAVAILABLE of sysexits.h
 MAX_MEMORY = 2 << 30  # bytes; macros that call each other without end reach it
+ADMITTED = (
+    *(ast.Expression, ast.Constant, ast.Name, ast.Load, ast.Store, ast.Attribute, ast.Subscript, ast.Slice),
+    *(ast.Call, ast.keyword, ast.BinOp, ast.UnaryOp, ast.BoolOp, ast.Compare, ast.IfExp, ast.List, ast.Tuple, ast.Dict),
+    *(ast.ListComp, ast.comprehension, ast.JoinedStr, ast.FormattedValue),
+    *(ast.operator, ast.unaryop, ast.boolop, ast.cmpop),
+)
+"""Parts of an expression of values"""
+LEADS_FURTHER = {"type", "vars", "mro", "format", "format_map"}
+"""Names that lead from a value to its class, and from there to everything"""
+NEW_USERS, NEW_NETWORK = 0x10000000, 0x40000000  # CLONE_NEWUSER, CLONE_NEWNET of unshare(2)
+CREATE_RULESET, RESTRICT_SELF, NO_NEW_PRIVILEGES = 444, 446, 38  # landlock(7), prctl(2)
+CHANGES = (0x7FF3, 0x3FF3, 0x1FF3)  # all accesses but READ_FILE and READ_DIR, of landlock's versions 3, 2 and 1
 LFS_POINTER = b"version https://git-lfs.github.com/spec/"
 
 
@@ -63,6 +82,45 @@ def note_macros(called: set[str]) -> None:
         return resolve(name, *tables)
 
     xacro.resolve_macro = resolved
+
+
+def require_values(expression: str) -> None:
+    """Refuses an expression that could do anything but compute values.
+
+    Raises:
+        ValueError: it names the part.
+    """
+    for node in ast.walk(ast.parse(expression.strip(), mode="eval")):
+        name = node.attr if isinstance(node, ast.Attribute) else node.id if isinstance(node, ast.Name) else ""
+        hidden = name.startswith("_" if isinstance(node, ast.Attribute) else "__")
+        if not isinstance(node, ADMITTED) or hidden or name in LEADS_FURTHER:
+            what = name or type(node).__name__
+            raise ValueError(f"{what} is refused in an expression: a description computes values alone")
+
+
+def admit_values_alone() -> None:
+    """Lets xacro evaluate only what `require_values` admits. An expression in `$(eval …)` can call no function."""
+    import xacro
+
+    evaluate = xacro.safe_eval
+
+    def checked(expression: str, *tables: object) -> object:
+        require_values(expression)
+        return evaluate(expression, *tables)
+
+    xacro.safe_eval = checked
+
+
+def confine() -> None:
+    """Gives up network, changes of files and starts of programs, as far as the kernel permits that."""
+    kernel = ctypes.CDLL(None, use_errno=True)
+    if kernel.unshare(NEW_NETWORK) != 0:
+        kernel.unshare(NEW_USERS | NEW_NETWORK)
+    kernel.prctl(NO_NEW_PRIVILEGES, 1, 0, 0, 0)
+    for changes in CHANGES:  # a kernel refuses what it does not know
+        rules = kernel.syscall(CREATE_RULESET, struct.pack("Q", changes), 8, 0)
+        if rules >= 0 and kernel.syscall(RESTRICT_SELF, rules, 0) == 0:
+            break
 
 
 def open_text(name: str, mode: str = "r") -> IO[str]:
@@ -129,6 +187,8 @@ def main() -> None:
         import xacro
     except ImportError:
         sys.exit(NOT_INSTALLED)
+    admit_values_alone()
+    confine()
     answer_find(Path(sys.argv[1]))
     xacro.open = open_text
     called: set[str] = set()

@@ -4,13 +4,15 @@ import contextlib
 import json
 import random
 import stat
+from dataclasses import dataclass
 
 import pytest
 from robot_control.console.addresses import AddressError, origins_of, require_protection
 from robot_control.console.authority import Role
 from robot_control.console.calls import check_call
 from robot_control.console.messages import BURST, MAX_SIZE, RATE, MessageError, Rate, parse
-from robot_control.console.sessions import LIFE, PERIOD, TRIES_OF_USER, Sessions, Tries
+from robot_control.console.room import gives_way
+from robot_control.console.sessions import LIFE, MAX_SESSIONS, PERIOD, TRIES_OF_USER, Sessions, Tries
 from robot_control.console.users import LINK_LIFE, Users, UsersError
 
 DRIVE = {"type": "drive", "number": 1, "sent": 2.5, "held": True, "linear": 1.0, "angular": -0.5, "lateral": 0.5}
@@ -35,6 +37,7 @@ def test_a_message_of_the_schema_is_read():
         {"sent": -1},
         {"topic": "/cmd_vel"},
         {"sent": 10**400},
+        {"type": "pong", "name": "\ud800"},
     ],
 )
 def test_what_the_schema_does_not_name_is_refused(change):
@@ -166,13 +169,15 @@ def test_a_session_ends_by_time_and_by_logout():
     assert not sessions.lives(session, 1.0)
 
 
-def test_a_session_outlives_the_process_and_its_cookie_is_not_written():
+def test_two_hundred_logins_of_one_user_end_sessions_of_that_user_alone_and_never_the_one_that_drives():
     sessions = Sessions()
-    cookie = sessions.begin("anna", Role.OPERATE, 0.0)
-    saved = sessions.save()
-    assert cookie not in saved
-    assert Sessions(saved).of(cookie, 1.0).role is Role.OPERATE
-    assert Sessions(saved).token == sessions.token
+    other, driving = (sessions.begin(name, Role.OPERATE, 0.0) for name in ("berta", "anna"))
+    kept = sessions.of(driving, 1.0)
+    cookies = [sessions.begin(name, Role.WATCH, 1.0, kept) for name in ("anna", "wanda") for _ in range(200)]
+    assert sessions.of(other, 1.0)
+    assert sessions.lives(kept, 1.0)
+    assert sum(sessions.of(cookie, 1.0) is not None for cookie in cookies) == 2 * MAX_SESSIONS
+    assert sessions.of(cookies[-1], 1.0)
 
 
 def test_a_changed_role_ends_the_session():
@@ -186,14 +191,40 @@ def test_a_changed_role_ends_the_session():
 def test_failed_logins_are_limited_per_user_and_per_address():
     tries = Tries()
     for at in range(TRIES_OF_USER):
-        assert tries.wait("anna", f"10.0.0.{at}", float(at)) == 0.0
-        tries.fail("anna", f"10.0.0.{at}", float(at))
-    assert tries.wait("anna", "10.0.0.99", 10.0) == pytest.approx(PERIOD - 10.0)
-    assert tries.wait("berta", "10.0.0.99", 10.0) == 0.0
-    assert tries.wait("anna", "10.0.0.99", PERIOD + 5.0) == 0.0
+        assert tries.admit("anna", f"10.0.0.{at}", float(at)) == 0.0
+    assert tries.admit("anna", "10.0.0.99", 10.0) == pytest.approx(PERIOD - 10.0)
+    assert tries.admit("berta", "10.0.0.99", 10.0) == 0.0
+    assert tries.admit("anna", "10.0.0.99", PERIOD + 5.0) == 0.0
     for number in range(20):
-        tries.fail(f"user {number}", "10.0.0.7", 1000.0)
-    assert tries.wait("carla", "10.0.0.7", 1001.0) > 0.0
+        tries.admit(f"user {number}", "10.0.0.7", 1000.0)
+    assert tries.admit("carla", "10.0.0.7", 1001.0) > 0.0
+
+
+def test_of_ninety_guesses_at_once_no_more_are_admitted_than_one_after_another():
+    tries = Tries()
+    assert sum(tries.admit("anna", "10.0.0.7", 0.0) == 0.0 for _ in range(90)) == TRIES_OF_USER
+
+
+def test_logins_that_succeed_are_never_limited():
+    tries = Tries()
+    for at in range(100):
+        assert tries.admit("anna", "10.0.0.7", float(at)) == 0.0
+        tries.succeed("anna", "10.0.0.7", float(at))
+    assert not any(tries._times.values())
+
+
+@dataclass
+class Place:
+    user: str
+    role: Role
+
+
+def test_twenty_pages_of_one_watcher_keep_nobody_out_and_cost_that_watcher_alone():
+    anna, *wandas = [Place("anna", Role.MAINTAIN), *(Place("wanda", Role.WATCH) for _ in range(19))]
+    for newcomer in (("wanda", Role.WATCH), ("berta", Role.WATCH), ("carla", Role.MAINTAIN), ("dora", Role.OPERATE)):
+        assert gives_way([anna, *wandas], *newcomer) is wandas[0]
+    assert gives_way([anna], "wanda", Role.WATCH) is None
+    assert gives_way([anna], "carla", Role.MAINTAIN) is None
 
 
 def test_only_own_names_and_origins_count():

@@ -11,33 +11,44 @@ import socket
 import time
 import urllib.error
 import urllib.request
-from collections.abc import AsyncIterator, Awaitable, Callable
+from collections.abc import Awaitable, Callable
 from typing import Any
 
 import rospy
 import rostest
-from geometry_msgs.msg import TwistStamped
-from system_support import Program, RobotTestCase, wait_for
+from console_pages import DrivingPage, NoRedirect, answer, driving_page, socket_of
+from geometry_msgs.msg import PoseArray, TwistStamped
+from nav_msgs.msg import OccupancyGrid, Path
+from robot_control.msg import FollowPathActionFeedback, LegState, RobotKind
+from sensor_msgs.msg import LaserScan
+from system_support import Program, RobotTestCase, again_after_a_stall, truncated_messages, wait_for
 
 from bench.console.process import Console
 
 DRIVE = {"type": "drive", "number": 1, "sent": 1.0, "held": True, "linear": 1.0, "angular": 0.0, "lateral": 0.0}
+SHOWN = {
+    "map": OccupancyGrid,
+    "costmap": OccupancyGrid,
+    "scan": LaserScan,
+    "particlecloud": PoseArray,
+    "path_wanted": Path,
+    "leg_state": LegState,
+    "robot_kind": RobotKind,
+    "follow_path/feedback": FollowPathActionFeedback,
+}
+"""Topics of the page to which this test may publish beside the robot"""
+PASSWORD, SPEED = "long enough", 0.3
 TAKE = {"type": "take", "force": False}
 
 
-def status(answer: urllib.request.Request | str, data: bytes | None = None, **headers: str) -> int:
+def status(address: str, data: bytes | None = None, **headers: str) -> int:
     """The HTTP status of a request."""
-    request = urllib.request.Request(answer, data=data, headers={k.replace("_", "-"): v for k, v in headers.items()})
+    request = urllib.request.Request(address, data=data, headers={k.replace("_", "-"): v for k, v in headers.items()})
     try:
         with urllib.request.build_opener(NoRedirect).open(request, timeout=10) as found:
             return int(found.status)
     except urllib.error.HTTPError as error:
         return int(error.code)
-
-
-class NoRedirect(urllib.request.HTTPRedirectHandler):
-    def redirect_request(self, *_: Any) -> None:
-        return None
 
 
 class ConsoleAttackTest(RobotTestCase):
@@ -78,15 +89,8 @@ class ConsoleAttackTest(RobotTestCase):
         self.assertEqual(status(f"{console.origin}/login"), 200)
         self.assertEqual(self.moved, 0)
 
-    @contextlib.asynccontextmanager
-    async def page(self, cookie: str = "", console: Console | None = None, **headers: str) -> AsyncIterator[Any]:
-        from aiohttp import ClientSession
-
-        console = console or self.console
-        given = {"Origin": console.origin, "Cookie": cookie or self.cookie, **headers}
-        address = f"{console.origin}/ws"
-        async with ClientSession() as session, session.ws_connect(address, headers=given, max_msg_size=0) as page:
-            yield page
+    def page(self, cookie: str = "", console: Console | None = None) -> contextlib.AbstractAsyncContextManager[Any]:
+        return socket_of(console or self.console, cookie or self.cookie)
 
     def run_page(
         self, play: Callable[[Any], Awaitable[None]], cookie: str = "", console: Console | None = None
@@ -164,8 +168,8 @@ class ConsoleAttackTest(RobotTestCase):
         self.alive()
 
     def test_cookies_are_out_of_reach_of_scripts_and_of_other_sites(self) -> None:
-        with urllib.request.build_opener(NoRedirect).open(f"{self.console.origin}/login") as answer:
-            policy = answer.headers["Content-Security-Policy"]
+        with urllib.request.build_opener(NoRedirect).open(f"{self.console.origin}/login") as found:
+            policy = found.headers["Content-Security-Policy"]
         self.assertIn("default-src 'none'; script-src 'self'; style-src 'self'", policy)
         with self.assertRaises(urllib.error.HTTPError) as redirect:
             urllib.request.build_opener(NoRedirect).open(self.console.address)
@@ -261,6 +265,22 @@ class ConsoleAttackTest(RobotTestCase):
         self.run_page(play)
         self.assertEqual(status(f"{self.console.origin}/login"), 200)
 
+    def test_truncated_messages_on_what_is_shown_end_nothing(self) -> None:
+        async def play(page: Any) -> None:
+            await self.until(page, "fast")
+            with contextlib.ExitStack() as stack:
+                await asyncio.to_thread(stack.enter_context, truncated_messages(SHOWN))
+                self.assertEqual((await self.until(page, "slow"))["safety"]["state"], "READY")
+                await self.until(page, "fast")
+                _, said, _ = await asyncio.to_thread(answer, self.console, "/api/e_stop", {}, self.cookie)
+                self.assertTrue(said["confirmed"], said)
+                await self.until(page, "slow", '"state": "STOPPED"')
+
+        self.run_page(play)
+        self.robot.release()
+        self.assertIn("an input is dropped", self.console.output)
+        self.alive()
+
     # connections
 
     def test_a_thousand_idle_connections_and_slow_ones_keep_nobody_out(self) -> None:
@@ -282,16 +302,15 @@ class ConsoleAttackTest(RobotTestCase):
         self.robot.release()
         self.alive()
 
-    def test_a_page_beyond_the_twentieth_is_refused(self) -> None:
-        from aiohttp import WSServerHandshakeError
-
+    def test_a_page_beyond_the_twentieth_ends_the_oldest_of_its_user(self) -> None:
         async def whole() -> None:
             async with contextlib.AsyncExitStack() as stack:
-                for _ in range(20):
-                    await stack.enter_async_context(self.page())
-                with self.assertRaises(WSServerHandshakeError) as refused:
-                    await stack.enter_async_context(self.page())
-                self.assertEqual(refused.exception.status, 503)
+                pages = [await stack.enter_async_context(self.page()) for _ in range(21)]
+                last = await pages[0].receive()
+                while last.type.name != "CLOSE":
+                    last = await pages[0].receive()
+                self.assertEqual(last.data, 4409)
+                self.assertTrue(await self.until(pages[20], "authority"))
 
         asyncio.run(whole())
         self.alive()
@@ -312,6 +331,74 @@ class ConsoleAttackTest(RobotTestCase):
 
     # users
 
+    def users(self, **roles: str) -> tuple[Console, dict[str, str]]:
+        """A console with these users, who all have the same password, and their cookies."""
+        console = Console("__name:=console_with_users", users=roles)
+        self.addCleanup(console.end)
+        logins = {name: {"link": link, "password": PASSWORD} for name, link in console.links.items()}
+        return console, {name: answer(console, "/api/login", login)[2] for name, login in logins.items()}
+
+    @again_after_a_stall
+    def test_the_page_that_drives_is_not_disturbed_by_what_a_watcher_does(self) -> None:
+        console, cookies = self.users(olga="operate", wanda="watch", max="maintain")
+
+        async def attack(page: DrivingPage) -> None:
+            await asyncio.to_thread(asyncio.run, self.half_connections(console, cookies["wanda"], 6500))
+            logins = [{"name": "wanda", "password": PASSWORD}] * 200
+            for login in logins:
+                code, _, cookie = await asyncio.to_thread(answer, console, "/api/login", login)
+                self.assertEqual(code, 200)
+            async with contextlib.AsyncExitStack() as stack:
+                for _ in range(20):
+                    await stack.enter_async_context(socket_of(console, cookie))
+                other = await stack.enter_async_context(socket_of(console, cookies["max"]))
+                pages = (await self.until(other, "authority"))["pages"]
+                self.assertIn("max", [each["name"] for each in pages])
+                self.assertLessEqual(len(pages), 21)
+            self.assertEqual((page.ended, page.authority["commander"]), (0, page.authority["you"]))
+            print(f"gaps of the link that drives: {page.authority['link']['gaps']}")
+            await page.drive(SPEED)
+            code, said, _ = await asyncio.to_thread(answer, console, "/api/e_stop", {}, cookie)
+            self.assertTrue(said["confirmed"], said)
+
+        async def whole() -> None:
+            async with driving_page(console, cookies["olga"], SPEED) as page:
+                await attack(page)
+
+        asyncio.run(whole())
+        self.robot.release()
+
+    async def half_connections(self, console: Console, cookie: str, count: int) -> None:
+        """Requests of a WebSocket without its headers; none of them leaves a page."""
+        from aiohttp import ClientSession
+
+        own = {"Origin": console.origin, "Cookie": cookie}
+        async with ClientSession() as session:
+            for _ in range(count // 50):
+                requests = [session.get(f"{console.origin}/ws", headers=own) for _ in range(50)]
+                codes = [each.status for each in await asyncio.gather(*requests)]
+                self.assertEqual(set(codes), {400})
+            async with socket_of(console, cookie) as page:
+                self.assertLessEqual(len((await self.until(page, "authority"))["pages"]), 2)
+
+    def test_of_ninety_guesses_at_once_five_are_evaluated(self) -> None:
+        from aiohttp import ClientSession
+
+        console, _ = self.users(wanda="watch")
+
+        async def guess(session: Any, number: int) -> int:
+            login = {"name": "wanda", "password": f"guess number {number}"}
+            async with session.post(f"{console.origin}/api/login", json=login, headers=own) as found:
+                return int(found.status)
+
+        async def whole() -> list[int]:
+            async with ClientSession() as session:
+                return await asyncio.gather(*(guess(session, number) for number in range(90)))
+
+        own = {"Origin": console.origin}
+        codes = asyncio.run(whole())
+        self.assertEqual((codes.count(403), codes.count(429)), (5, 85))
+
     def test_watchers_watch_and_links_and_logouts_end(self) -> None:
         console = Console("__name:=console_with_users", users={"wanda": "watch"})
         link = console.links["wanda"]
@@ -325,13 +412,7 @@ class ConsoleAttackTest(RobotTestCase):
         self.assertEqual(status(f"{origin}/?token=guess"), 302)
         self.assertEqual(post("login", {"link": "wrong", "password": "long enough"}), 403)
         self.assertEqual(post("login", {"link": link, "password": "short"}), 403)
-        request = urllib.request.Request(
-            f"{origin}/api/login",
-            json.dumps({"link": link, "password": "long enough"}).encode(),
-            {"Origin": origin, "Content-Type": "application/json"},
-        )
-        with urllib.request.urlopen(request) as answer:
-            cookie = answer.headers["Set-Cookie"].split(";")[0]
+        cookie = answer(console, "/api/login", {"link": link, "password": PASSWORD})[2]
         self.assertEqual(post("login", {"link": link, "password": "another one"}), 403, "a link is good once")
 
         async def watch(page: Any) -> None:
@@ -355,7 +436,7 @@ class ConsoleAttackTest(RobotTestCase):
         self.assertEqual(status(f"{origin}/api/runs", Cookie=cookie), 401)
         tries = [post("login", {"name": "wanda", "password": f"guess number {n}"}) for n in range(6)]
         self.assertEqual(tries, [403] * 5 + [429])
-        self.assertEqual(post("login", {"name": "wanda", "password": "long enough"}), 429)
+        self.assertEqual(post("login", {"name": "wanda", "password": PASSWORD}), 429)
         wait_for("the journal", lambda: "has logged out" in console.journal)
         self.assertIn("too many tries", console.journal)
         self.alive(console)

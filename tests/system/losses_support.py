@@ -36,14 +36,17 @@ class Master:
         self.uri = f"http://{address}:{free_port(address)}"
         os.environ.update(ROS_MASTER_URI=self.uri, ROS_IP=address)
         os.environ.pop("ROS_HOSTNAME", None)
+        self.start()
+        atexit.register(self.kill)
+
+    def start(self) -> None:
+        """Starts it, after `kill` as another master at the same address, which knows no node."""
         self._process = subprocess.Popen(
             ["rosmaster", "--core", "-p", self.uri.rpartition(":")[2]],
             stdin=subprocess.DEVNULL,
             stdout=subprocess.DEVNULL,
             stderr=subprocess.DEVNULL,
         )
-
-        atexit.register(self.kill)
 
     def kill(self) -> None:
         """Kills with -9 and waits for the end; a second call does nothing."""

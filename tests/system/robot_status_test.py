@@ -6,8 +6,17 @@ import unittest
 
 import rospy
 import rostest
-from robot_control.msg import RobotKind, RobotStatus, SafetyStatus
-from system_support import CONTROLLER, ESTIMATOR, STALL_CAUSES, Program, Robot, init_test_node, wait_for
+from robot_control.msg import LegState, RobotKind, RobotStatus, SafetyStatus
+from system_support import (
+    CONTROLLER,
+    ESTIMATOR,
+    STALL_CAUSES,
+    Program,
+    Robot,
+    init_test_node,
+    truncated_messages,
+    wait_for,
+)
 
 WHEELED = ("differential_drive", CONTROLLER)
 
@@ -45,6 +54,11 @@ class RobotStatusTest(unittest.TestCase):
         wait_for("the kind of the robot", lambda: bool(kinds))
         self.assertEqual((kinds[0].kind, dict(zip(kinds[0].roles, kinds[0].nodes, strict=True))["controller"]), WHEELED)
         self.assertIn("left_encoder", kinds[0].fault_components)
+
+        with truncated_messages({"leg_state": LegState, "robot_kind": RobotKind}):
+            count = len(self.reports)
+            wait_for("messages after truncated ones", lambda: len(self.reports) >= count + 2)
+            self.assertEqual(self.reports[-1].mode, "idle")
 
         self.robot.drive_until("0.5 m/s", self.robot.driving)
         self.robot.drive_until("who commands", lambda: self.reports[-1].mode == "automatic")

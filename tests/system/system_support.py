@@ -203,6 +203,27 @@ class NoBool(Bool):
         buff.write(b"")
 
 
+def truncated(kind: type) -> type:
+    """The type, whose messages end after three bytes, as a publisher with a fault sends them."""
+    return type(kind.__name__, (kind,), {"__slots__": [], "serialize": lambda _, buff: buff.write(b"\x01\x00\x00")})
+
+
+@contextlib.contextmanager
+def truncated_messages(topics: Mapping[str, type]) -> Iterator[None]:
+    """A block before which each of these topics has brought truncated messages of its type."""
+    publishers = {topic: rospy.Publisher(topic, truncated(kind), queue_size=1) for topic, kind in topics.items()}
+    for topic, publisher in publishers.items():
+        wait_for(f"a subscriber of {topic}", lambda: publisher.get_num_connections() > 0)  # noqa: B023 (called at once)
+        for _ in range(3):
+            publisher.publish(publisher.data_class())
+            time.sleep(0.1)
+    try:
+        yield
+    finally:
+        for publisher in publishers.values():
+            publisher.unregister()
+
+
 class Report(NamedTuple):
     """A node's newest status on /diagnostics."""
 

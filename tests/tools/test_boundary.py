@@ -3,20 +3,32 @@
 from __future__ import annotations
 
 import contextlib
-import io
 import math
+import time
+from types import SimpleNamespace
 
 import pytest
+import rospy
 from mutants import mutants
-from nav_msgs.msg import Odometry
-from robot_control.common.boundary import Boundary, UnfitError, _sealed, opened, unsealed
+from nav_msgs.msg import OccupancyGrid, Odometry
+from robot_control.common.boundary import (
+    MAX_BYTES,
+    MAX_LONG_BYTES,
+    Boundary,
+    Latest,
+    UnfitError,
+    _sealed,
+    next_message,
+    opened,
+    unsealed,
+)
+from robot_control.common.boundary import boundary as boundary_of_this_process
+from robot_control.msg import LegState, SafetyStatus
+from robot_control.safety.interruptions import SURPRISE
+from robot_control.safety.watch import SafetyWatch
+from robot_control.why.recent import MAX_NAMES, MAX_SENDERS, Recent
 from sensor_msgs.msg import BatteryState
-
-
-def wire(message: object) -> bytes:
-    buffer = io.BytesIO()
-    message.serialize(buffer)
-    return buffer.getvalue()
+from topics import Topics, wire
 
 
 def sealed(kind: type, data: bytes) -> object:
@@ -124,3 +136,65 @@ def test_the_end_of_the_program_passes(boundary: Boundary) -> None:
     for end in (KeyboardInterrupt, SystemExit):
         with pytest.raises(end), boundary.crossing("odom"):
             raise end
+
+
+def test_a_polled_topic_shows_the_newest_message_that_passed_and_its_age(monkeypatch: pytest.MonkeyPatch) -> None:
+    topics = Topics(monkeypatch)
+    latest = Latest("odom", Odometry)
+    assert (latest.message, latest.age(0.0)) == (None, None)
+    message = Odometry(child_frame_id="base_link")
+    topics.send("odom", message)
+    received = latest.received_at
+    topics.send_bytes("odom", wire(message)[:40])
+    assert latest.message.child_frame_id == "base_link"
+    assert latest.received_at == received
+    assert latest.fresh(received + 0.5, 1.0) is latest.message
+    assert latest.fresh(received + 1.5, 1.0) is None
+    assert latest.message._connection_header["callerid"] == "/node"
+
+
+def test_a_message_that_is_waited_for_is_none_where_none_comes_or_it_is_truncated(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(rospy, "Subscriber", lambda *_, **__: SimpleNamespace(unregister=lambda: None))
+    assert next_message("odom", Odometry, 0.05) is None
+
+
+@pytest.mark.parametrize(("kind", "size"), [(Odometry, MAX_BYTES), (OccupancyGrid, MAX_LONG_BYTES)])
+def test_a_message_that_is_too_long_for_its_type_is_refused_before_it_is_read(kind: type, size: int) -> None:
+    with pytest.raises(UnfitError, match=f"has {size + 1} bytes, more than {size}"):
+        opened(sealed(kind, bytes(size + 1)))
+
+
+def test_a_text_with_a_zero_byte_is_refused() -> None:
+    with pytest.raises(UnfitError, match="child_frame_id must have no zero byte"):
+        opened(sealed(Odometry, wire(Odometry(child_frame_id="a\0b"))))
+
+
+def test_a_limit_that_is_none_and_a_load_that_is_not_measured_pass() -> None:
+    assert math.isinf(opened(sealed(SafetyStatus, wire(SafetyStatus(speed_limit=math.inf)))).speed_limit)
+    assert math.isnan(opened(sealed(LegState, wire(LegState(load=[math.nan])))).load[0])
+
+
+def test_a_surprise_ends_what_was_requested_before_it(monkeypatch: pytest.MonkeyPatch) -> None:
+    Topics(monkeypatch)
+    watch, requested = SafetyWatch(), time.monotonic()
+    assert watch.revoked(requested, waited=True) == ""
+    with boundary_of_this_process.crossing("a page"):
+        raise ZeroDivisionError
+    assert watch.revoked(requested, waited=True) == SURPRISE
+    assert watch.interruptions() == (1, SURPRISE)
+
+
+def test_a_hundred_thousand_names_of_one_sender_are_few_expire_and_displace_no_other_sender() -> None:
+    table = Recent[int](life=3.0)
+    table.put("/safety_monitor", "safety_monitor", 1, 0.0)
+    for number in range(130_000):
+        table.put("/flood", f"name {number}", number, 1.0)
+    assert len(table.items(2.0)) == MAX_NAMES + 1
+    assert table.items(2.0)["safety_monitor"] == (0.0, 1)
+    assert table.items(3.5) == {f"name {n}": (1.0, n) for n in range(130_000 - MAX_NAMES, 130_000)}
+    for number in range(1000):
+        table.put(f"/sender_{number}", "name", number, 4.0)
+    assert len(table._senders) == MAX_SENDERS
+    assert table.items(4.0)["name"] == (4.0, 999)

@@ -2,17 +2,17 @@
 
 import re
 from pathlib import Path
-from types import SimpleNamespace
 
 import pytest
 import rosgraph
-import rospy
+from dynamic_reconfigure.msg import Config, DoubleParameter
 from robot_control.common import robot_kind, running_robot
 from robot_control.common.live_parameters import LiveParameters
 from robot_control.common.roles import LEGGED, LOOP, WHEELED, Kind, WheelsOnlyError
 from robot_control.console.calls import CALLS, service_of
 from robot_control.msg import RobotKind
 from robot_control.teleop.speed_limits import SpeedLimits
+from topics import Topics
 
 LEGS = RobotKind(
     robot="quadbot",
@@ -28,16 +28,8 @@ LEGS = RobotKind(
 
 @pytest.fixture
 def subscribed(monkeypatch):
-    """Callbacks by topic of what subscribes during the test."""
-    callbacks = {}
-
-    def subscribe(topic, _, callback, **__):
-        callbacks[topic] = callback
-        return SimpleNamespace(unregister=lambda: callbacks.pop(topic))
-
-    monkeypatch.setattr(rospy, "Subscriber", subscribe)
     robot_kind.forget()
-    yield callbacks
+    yield Topics(monkeypatch)
     robot_kind.forget()
 
 
@@ -65,33 +57,28 @@ def test_a_role_that_is_not_known_or_without_a_node_changes_nothing():
 def test_live_parameters_follow_the_controller_of_the_kind(subscribed):
     parameters = LiveParameters()
     assert "diff_drive_controller/parameter_updates" in subscribed
-    subscribed["robot_kind"](LEGS)
+    subscribed.send("robot_kind", LEGS)
     assert parameters.command_timeout == 0.0
     assert "diff_drive_controller/parameter_updates" not in subscribed
-    subscribed["leg_controller/parameter_updates"](
-        SimpleNamespace(doubles=[SimpleNamespace(name="cmd_vel_timeout", value=0.25)])
-    )
+    timeout = Config(doubles=[DoubleParameter("cmd_vel_timeout", 0.25)])
+    subscribed.send("leg_controller/parameter_updates", timeout)
     assert parameters.command_timeout == 0.25
 
 
 def test_a_kind_whose_block_is_not_in_the_file_has_the_limits_that_it_reports(subscribed):
     limits = SpeedLimits()
-    subscribed["robot_kind"](RobotKind(kind="boat", roles=["controller"], nodes=["rudder"]))
+    subscribed.send("robot_kind", RobotKind(kind="boat", roles=["controller"], nodes=["rudder"]))
     assert limits.newest().linear == 0.0
-    subscribed["rudder/parameter_updates"](
-        SimpleNamespace(doubles=[SimpleNamespace(name="max_linear_speed", value=0.2)])
-    )
+    subscribed.send("rudder/parameter_updates", Config(doubles=[DoubleParameter("max_linear_speed", 0.2)]))
     assert limits.newest().linear == 0.2
 
 
 def test_a_tool_for_wheels_refuses_a_running_robot_on_legs_alone(monkeypatch):
     def received(name, _, timeout):
         assert (name, timeout) == ("robot_kind", robot_kind.PATIENCE)
-        if message is None:
-            raise rospy.ROSException("timeout exceeded")
         return message
 
-    monkeypatch.setattr(rospy, "wait_for_message", received)
+    monkeypatch.setattr(robot_kind, "next_message", received)
     for message in (None, RobotKind(kind=WHEELED), RobotKind(kind="boat")):  # noqa: B007 (received reads it)
         robot_kind.refuse_running_legs("calibrate.py")
     message = LEGS
@@ -100,7 +87,7 @@ def test_a_tool_for_wheels_refuses_a_running_robot_on_legs_alone(monkeypatch):
 
 
 def test_a_tool_for_wheels_asks_for_the_kind(monkeypatch):
-    monkeypatch.setattr(rospy, "wait_for_message", lambda *_: LEGS)
+    monkeypatch.setattr(robot_kind, "next_message", lambda *_: LEGS)
     monkeypatch.setattr(rosgraph, "is_master_online", lambda: True)
     monkeypatch.setattr(running_robot, "begin_node", lambda *_, **__: None)
     with pytest.raises(WheelsOnlyError, match=r"calibrate\.py works on wheels only"):

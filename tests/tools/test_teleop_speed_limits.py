@@ -1,34 +1,28 @@
 """The robot's limits of speed, as teleop.py takes them."""
 
+from functools import partial
 from pathlib import Path
-from types import SimpleNamespace
 
 import pytest
-import rospy
 import yaml
+from dynamic_reconfigure.msg import Config, DoubleParameter
 from robot_control.common import robot_kind
 from robot_control.installed_files import share_file
 from robot_control.msg import RobotKind
 from robot_control.teleop.operator import Limits
 from robot_control.teleop.speed_limits import SpeedLimits
+from topics import Topics
 
 
 @pytest.fixture
 def subscribed(monkeypatch):
-    callbacks = {}
-
-    def subscribe(topic, _, callback, **__):
-        callbacks[topic] = callback
-        return SimpleNamespace(unregister=lambda: None)
-
-    monkeypatch.setattr(rospy, "Subscriber", subscribe)
     robot_kind.forget()
-    yield callbacks
+    yield Topics(monkeypatch)
     robot_kind.forget()
 
 
 def config(**values):
-    return SimpleNamespace(doubles=[SimpleNamespace(name=name, value=value) for name, value in values.items()])
+    return Config(doubles=[DoubleParameter(name, value) for name, value in values.items()])
 
 
 def test_until_the_controller_reports_its_limits_those_of_the_file_hold(subscribed):
@@ -39,7 +33,7 @@ def test_until_the_controller_reports_its_limits_those_of_the_file_hold(subscrib
 
 def test_what_the_controller_reports_holds(subscribed):
     limits = SpeedLimits()
-    receive = subscribed["diff_drive_controller/parameter_updates"]
+    receive = partial(subscribed.send, "diff_drive_controller/parameter_updates")
     receive(config(pid_kp=9.0, max_linear_speed=0.3, max_angular_speed=0.7))
     assert limits.newest() == Limits(0.3, 0.7, reverse=0.3)
     receive(config(max_linear_speed=0.4))
@@ -49,14 +43,14 @@ def test_what_the_controller_reports_holds(subscribed):
 def test_a_robot_on_legs_has_a_limit_sideways(subscribed):
     limits = SpeedLimits()
     assert limits.newest().lateral == 0.0
-    subscribed["robot_kind"](RobotKind(kind="quadruped", roles=["controller"], nodes=["leg_controller"]))
+    subscribed.send("robot_kind", RobotKind(kind="quadruped", roles=["controller"], nodes=["leg_controller"]))
     file = yaml.safe_load(Path(share_file("config/robot_params.yaml")).read_text())["leg_controller"]
     assert limits.newest().lateral == file["max_lateral_speed"] > 0
 
 
 def test_a_slower_reverse_is_a_limit_of_its_own_and_never_above_the_forward_one(subscribed):
     limits = SpeedLimits()
-    receive = subscribed["diff_drive_controller/parameter_updates"]
+    receive = partial(subscribed.send, "diff_drive_controller/parameter_updates")
     receive(config(max_linear_speed=0.8, max_angular_speed=0.7, min_linear_speed=-0.2))
     assert limits.newest() == Limits(0.8, 0.7, reverse=0.2)
     receive(config(max_linear_speed=0.1))

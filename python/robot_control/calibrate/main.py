@@ -24,18 +24,10 @@ from robot_control.calibrate.evaluation import (
     space,
     wheels_of,
 )
-from robot_control.calibrate.law import (
-    FloatArray,
-    NotCalibratedError,
-    Square,
-    Straight,
-    Truth,
-    Wheels,
-    of_axle,
-    replay,
-)
+from robot_control.calibrate.law import FloatArray, NotCalibratedError, Square, Straight, Truth, Wheels, of_axle, replay
 from robot_control.calibrate.moves import Move, Pilot, square, straight
 from robot_control.calibrate.robot import CalibratedRobot
+from robot_control.calibrate.terminal_dialog import NoAnswerError, Questions
 from robot_control.common.file_errors import in_words
 from robot_control.common.files import fit_for_message, printable, write_text
 from robot_control.common.output_files import check_outputs
@@ -43,7 +35,6 @@ from robot_control.common.pose import Pose
 from robot_control.common.roles import CONTROLLER, ESTIMATOR
 from robot_control.common.running_robot import RefusedError, await_all, master_state, other_senders, running_settings
 from robot_control.common.settings import Settings
-from robot_control.common.terminal_dialog import NoAnswerError, Questions
 from robot_control.common.topic_sender import Signals, ended_by_signals
 from robot_control.identify.excitation_watch import hindrance, ignored, moves, unattended
 

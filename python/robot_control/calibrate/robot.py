@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import numpy as np
-import rospy
 from nav_msgs.msg import Odometry
 
 from robot_control.calibrate.law import FloatArray
+from robot_control.common.boundary import Latest, subscribe
 from robot_control.common.pose import Pose, pose_of
 from robot_control.identify.robot import RunningRobot
 
@@ -18,11 +18,8 @@ class CalibratedRobot(RunningRobot):
         super().__init__(sends=sends)
         self.received = 0  # messages on wheel_odom
         self._path: list[tuple[float, float, float]] = []
-        self._truth: Pose | None = None
-        self._subscribers += [
-            rospy.Subscriber("wheel_odom", Odometry, self._receive_wheels, queue_size=100, tcp_nodelay=True),
-            rospy.Subscriber("ground_truth/odom", Odometry, self._receive_truth, queue_size=1, tcp_nodelay=True),
-        ]
+        self._truth = Latest("ground_truth/odom", Odometry)
+        subscribe("wheel_odom", Odometry, self._receive_wheels, queue_size=100, tcp_nodelay=True)
 
     def begin(self) -> None:
         """Begins a new path."""
@@ -40,12 +37,9 @@ class CalibratedRobot(RunningRobot):
     @property
     def truth(self) -> Pose | None:
         """The true pose in simulation; None if it is not published."""
-        return self._truth
+        return None if self._truth.message is None else pose_of(self._truth.message)
 
     def _receive_wheels(self, message: Odometry) -> None:
         pose = pose_of(message)
         self._path.append((pose.x, pose.y, pose.yaw))
         self.received += 1
-
-    def _receive_truth(self, message: Odometry) -> None:
-        self._truth = pose_of(message)

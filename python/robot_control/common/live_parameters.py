@@ -5,7 +5,11 @@ from __future__ import annotations
 import rospy
 from dynamic_reconfigure.msg import Config
 
+from robot_control.common.boundary import subscribe
 from robot_control.common.robot_kind import running_kind
+
+MAX_VALUES = 1000
+"""far more than a controller has"""
 
 
 class LiveParameters:
@@ -41,7 +45,8 @@ class LiveParameters:
         if self._subscriber is not None:
             self._subscriber.unregister()
         self._of, self._values = controller, {}
-        self._subscriber = rospy.Subscriber(f"{controller}/parameter_updates", Config, self._receive, queue_size=1)
+        self._subscriber = subscribe(f"{controller}/parameter_updates", Config, self._receive, queue_size=1)
 
     def _receive(self, message: Config) -> None:
-        self._values = self._values | {parameter.name: float(parameter.value) for parameter in message.doubles}
+        values = self._values | {parameter.name: float(parameter.value) for parameter in message.doubles}
+        self._values = dict(list(values.items())[:MAX_VALUES])

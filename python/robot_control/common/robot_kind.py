@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from functools import cache
 
-import rospy
-
+from robot_control.common.boundary import Latest, next_message
 from robot_control.common.roles import Kind, refuse_legs
 from robot_control.msg import RobotKind
 
@@ -25,19 +24,10 @@ def kind_of(message: RobotKind) -> Kind:
     )
 
 
-class _Topic:
-    def __init__(self) -> None:
-        self.newest = Kind()
-        rospy.Subscriber("robot_kind", RobotKind, self._receive, queue_size=1)
-
-    def _receive(self, message: RobotKind) -> None:
-        self.newest = kind_of(message)
-
-
 @cache
-def _topic() -> _Topic:
+def _topic() -> Latest:
     """One subscription for all parts of a process."""
-    return _Topic()
+    return Latest("robot_kind", RobotKind)
 
 
 forget = _topic.cache_clear
@@ -52,13 +42,12 @@ def refuse_running_legs(tool: str) -> None:
     Raises:
         WheelsOnlyError: it is one.
     """
-    try:
-        message = rospy.wait_for_message("robot_kind", RobotKind, PATIENCE)
-    except rospy.ROSException:
-        return
-    refuse_legs(kind_of(message), tool)
+    message = next_message("robot_kind", RobotKind, PATIENCE)
+    if message is not None:
+        refuse_legs(kind_of(message), tool)
 
 
 def running_kind() -> Kind:
     """The kind that was received last; before, one without a name."""
-    return _topic().newest
+    message = _topic().message
+    return Kind() if message is None else kind_of(message)

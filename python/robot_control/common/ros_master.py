@@ -7,6 +7,7 @@ from collections.abc import Iterable, Sequence
 from typing import Any
 
 import rosgraph
+import rospy
 
 TIMEOUT = 1.0
 """s for an answer of the master, which may hang"""
@@ -57,6 +58,23 @@ class Master:
             return None
         code, _, state = answer
         return state if code == 1 else None
+
+    def register_again(self) -> bool:
+        """Registers this node with a master that was started again; its living connections stay. True if it is done.
+
+        The node itself knows its topics and takes their publishers as from the master (Slave API of ROS).
+        """
+        uri = rospy.get_node_uri()
+        itself: Any = xmlrpc.client.ServerProxy(uri, transport=_Transport())
+        try:
+            for topic, kind in itself.getPublications(self._own)[2]:
+                self._proxy.registerPublisher(self._own, topic, kind, uri)
+            for topic, kind in itself.getSubscriptions(self._own)[2]:
+                answer: Any = self._proxy.registerSubscriber(self._own, topic, kind, uri)
+                itself.publisherUpdate("/master", topic, answer[2])
+        except (OSError, xmlrpc.client.Error, http.client.HTTPException, ValueError):
+            return False
+        return True
 
 
 def senders_of(published: Sequence[tuple[str, Sequence[str]]], topics: Iterable[str], own: str) -> tuple[str, ...]:

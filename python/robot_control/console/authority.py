@@ -46,7 +46,7 @@ class Page:
     """One connected page."""
 
     number: int
-    name: str  # of the user
+    user: str  # its name
     role: Role
     dead_man: DeadMan
     chosen: Command = CHOSEN
@@ -54,7 +54,7 @@ class Page:
     cap: float = 0.0  # m/s, of its link
 
     def __str__(self) -> str:
-        return f"{self.name} (page {self.number})"
+        return f"{self.user} (page {self.number})"
 
 
 class Authority:
@@ -67,10 +67,10 @@ class Authority:
         self._last_number = 0
         self._zeros_until = -math.inf
 
-    def join(self, name: str, role: Role) -> Page:
+    def join(self, user: str, role: Role) -> Page:
         """Adds a page."""
         self._last_number += 1
-        page = Page(self._last_number, name, role, DeadMan(self._settings))
+        page = Page(self._last_number, user, role, DeadMan(self._settings))
         self.pages[page.number] = page
         return page
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import asyncio
+import math
 import threading
 import time
 from typing import Any
@@ -9,6 +11,7 @@ from typing import Any
 import rospy
 from std_msgs.msg import Empty
 
+from robot_control.common.boundary import boundary
 from robot_control.common.command import Pace
 from robot_control.common.command_topic import CommandTopic
 from robot_control.common.robot_kind import running_kind
@@ -17,7 +20,7 @@ from robot_control.console.calls import CALLS, Calls, against
 from robot_control.console.settings import Settings
 from robot_control.console.view import View, finite
 from robot_control.safety.watch import SafetyWatch
-from robot_control.teleop.services import Services, in_words
+from robot_control.teleop.services import AGAIN, E_STOP, Answer, Services, in_words
 from robot_control.teleop.speed_limits import SpeedLimits
 from robot_control.why.listener import MASTER_PERIOD, Listener
 from robot_control.why.state import SILENCE
@@ -25,6 +28,9 @@ from robot_control.why.state import SILENCE
 SOURCE = "console_vel"
 HEARTBEAT_PERIOD = 0.1
 """s"""
+E_STOP_LIMIT, E_STOP_LOOK = 3.0, 0.02
+"""s within which an emergency stop is answered, whatever the robot does; s between two looks for the answer"""
+NOT_ANSWERED = Answer(E_STOP, accepted=False, text="the console could not send it. Use the button on the robot")
 
 
 class Backend:
@@ -35,8 +41,10 @@ class Backend:
         self.listener, self.view = Listener(), View()
         self.calls = Calls(self.view.pose, self.view.navigation.frame)
         self.said: list[str] = []  # for all pages, and taken by the server
-        self.available: set[str] = set()  # services of the robot
-        self._watch, self._services, self._limits = SafetyWatch(), Services(), SpeedLimits()
+        self.available: set[str] | None = set()  # services of the robot; None: the master does not know the robot
+        self._watch, self._limits = SafetyWatch(), SpeedLimits()
+        self._services = Services(self._watch)
+        self._e_stop, self._e_stop_at = NOT_ANSWERED, -math.inf  # the last answer, and when it came, s
         self._topic, self._age = CommandTopic(SOURCE), 0.0
         self._heartbeat = rospy.Publisher("heartbeat", Empty, queue_size=1, tcp_nodelay=True)
         self._pace = Pace(lambda command: self._topic.send(command, rospy.Time.now() - rospy.Duration(self._age)))
@@ -46,6 +54,10 @@ class Backend:
     def step(self) -> None:
         """One pass: receives what the robot reports, and sends the command."""
         now = time.monotonic()
+        answers = self._services.poll()
+        for answer in answers:
+            if answer.service == E_STOP:
+                self._e_stop, self._e_stop_at = answer, now
         count, why = self._watch.interruptions()
         if count != self._interruptions:
             self._interruptions = count
@@ -60,14 +72,21 @@ class Backend:
         if beats and now - self._beat_at >= HEARTBEAT_PERIOD:
             self._beat_at = now
             self._heartbeat.publish(Empty())
-        self.said += [in_words(answer, self.listener.facts()) for answer in self._services.poll()]
+        self.said += [in_words(answer, self.listener.facts()) for answer in answers]
 
-    def e_stop(self) -> None:
-        """Requests the emergency stop."""
+    async def e_stop(self) -> Answer:
+        """Requests the emergency stop; whether the robot has confirmed it, or why not."""
+        pressed = time.monotonic()
         self._services.e_stop()
+        while self._e_stop_at < pressed - AGAIN:
+            if time.monotonic() > pressed + E_STOP_LIMIT:
+                return NOT_ANSWERED
+            await asyncio.sleep(E_STOP_LOOK)
+        return self._e_stop
 
     def reset(self) -> None:
         """Requests the reset; the answer comes in `said`."""
+        self._e_stop_at = -math.inf
         self._services.reset()
 
     def fast(self) -> dict[str, Any]:
@@ -80,12 +99,8 @@ class Backend:
 
     def authority_of(self, page: Page) -> dict[str, Any]:
         """The values that this page shows of itself and of the others."""
-        now, commander, dead_man, limits = (
-            time.monotonic(),
-            self.authority.commander,
-            page.dead_man,
-            self._limits.newest(),
-        )
+        now, commander = time.monotonic(), self.authority.commander
+        dead_man, limits = page.dead_man, self._limits.newest()
         return finite(
             {
                 "type": "authority",
@@ -93,7 +108,7 @@ class Backend:
                 "role": str(page.role),
                 "commander": None if commander is None else commander.number,
                 "pages": [
-                    {"number": p.number, "name": p.name, "role": str(p.role)} for p in self.authority.pages.values()
+                    {"number": p.number, "name": p.user, "role": str(p.role)} for p in self.authority.pages.values()
                 ],
                 "against": {
                     name: against(name, page, self.authority, self.available, running_kind()) for name in CALLS
@@ -115,6 +130,8 @@ class Backend:
 
     def _query_master(self) -> None:
         while True:
-            self.listener.query_master()
-            self.available = self.listener.services()
+            with boundary.crossing("the master"):
+                self.listener.query_master()
+                forgotten = self.listener.facts().forgotten
+                self.available = None if forgotten else self.listener.services()
             time.sleep(MASTER_PERIOD)

@@ -90,15 +90,19 @@ def check_call(name: str, arguments: Mapping[str, Any]) -> None:
     check_fields(name, arguments, CALLS[name].fields)
 
 
-def against(name: str, page: Page, authority: Authority, services: set[str], kind: Kind) -> str:
-    """Why this page cannot make the call now; empty if it can. `services`: those of the robot, by relative name."""
+def against(name: str, page: Page, authority: Authority, services: set[str] | None, kind: Kind) -> str:
+    """Why this page cannot make the call now; empty if it can. `services`: those of the robot, by relative name; None
+    if the master does not know a robot that runs.
+    """
     call = CALLS[name]
     service = service_of(call, kind)
     if page.role < call.role:
         return f"needs the role {call.role}"
     if authority.commander is not page:
         return "take the command first"
-    if service and service not in services:
+    if service and services is None:
+        return "the ROS master was restarted and does not know the robot: start the robot's nodes again"
+    if service and services is not None and service not in services:
         node = {NAVIGATE: "navigate", LOCALIZATION: "localization"}.get(service, service.rpartition("/")[0])
         if call.kind in {SetPosture, SetGait}:
             return "the robot has no legs, or its controller does not run"

@@ -7,7 +7,6 @@ import asyncio
 import contextlib
 import logging
 import logging.handlers
-import os
 import resource
 import socket
 import ssl
@@ -19,6 +18,7 @@ from pathlib import Path
 import rospy
 from aiohttp import web
 
+from robot_control.common.boundary import boundary
 from robot_control.common.file_errors import in_words
 from robot_control.common.files import fit_for_message, given_path
 from robot_control.common.ros_node import running_node
@@ -41,8 +41,6 @@ HANDSHAKE, KEPT = 10.0, 15.0
 """s that a TLS handshake may take; s for which an idle connection stays open"""
 JOURNAL, JOURNAL_SIZE, JOURNALS_KEPT = "console.log", 1_000_000, 5
 """Name of the file, its size in bytes, and the number of older ones that are kept"""
-STATE = "ROBOT_CONTROL_CONSOLE_STATE"
-"""Environment variable in which a console that replaces itself passes token and logins on."""
 
 
 @dataclass(frozen=True)
@@ -106,11 +104,10 @@ def open_journal(path: Path) -> None:
     journal.propagate = False
 
 
-async def serve(given: argparse.Namespace, setup: Setup, signals: Signals) -> bool:
-    """Serves until a signal arrives. True if this program has to begin again because another master was started."""
+async def serve(given: argparse.Namespace, setup: Setup, signals: Signals) -> None:
+    """Serves until a signal arrives."""
     backend = Backend(setup.settings)
-    runs, saved = given.runs, os.environ.pop(STATE, "")
-    server = Server(backend, setup.origins, setup.users, runs, saved, port=given.port, read_only=given.read_only)
+    server = Server(backend, setup.origins, setup.users, given.runs, port=given.port, read_only=given.read_only)
     runner = web.AppRunner(server.app, access_log=None, keepalive_timeout=KEPT, handle_signals=False)
     await runner.setup()
     handler = runner.server
@@ -126,31 +123,27 @@ async def serve(given: argparse.Namespace, setup: Setup, signals: Signals) -> bo
     secret = "" if setup.users else f"?token={server.sessions.token}"
     print(f"open {'https' if setup.context else 'http'}://{bracketed(given.address)}:{given.port}/{secret}")
     frames = asyncio.create_task(_frames(server, backend))
-    replace = False
-    while signals.going_on() and not replace and not frames.done():
-        backend.step()
-        server.pass_on()
-        server.pending.check(handler.connections, time.monotonic())
+    while signals.going_on():
+        with boundary.crossing("the console"):
+            backend.step()
+        with boundary.crossing("the pages"):
+            server.pass_on()
+            server.pending.check(handler.connections, time.monotonic())
         await asyncio.sleep(PASS)
-        replace = backend.listener.unknown_to_master > 1
-    if frames.done():
-        frames.result()  # an error of ours ends the program with its words
-    if replace:
-        os.environ[STATE] = server.sessions.save()
     frames.cancel()
     server.close()
     listening.close()
     await asyncio.sleep(2 * FRAME)  # the pages receive the reason
     with contextlib.suppress(asyncio.TimeoutError):
         await asyncio.wait_for(runner.cleanup(), 2.0)
-    return replace
 
 
 async def _frames(server: Server, backend: Backend) -> None:
     while True:
-        server.frames.make(backend)
-        if server.frames.number % CHECK == 0:
-            server.check_users()
+        with boundary.crossing("the frames of the pages"):
+            server.frames.make(backend)
+            if server.frames.number % CHECK == 0:
+                server.check_users()
         await asyncio.sleep(FRAME)
 
 
@@ -167,10 +160,8 @@ def main() -> int:
     resource.setrlimit(resource.RLIMIT_NOFILE, (min(hard, 65536) if hard > 0 else 65536, hard))
     with running_node("console") as signals:
         try:
-            replace = asyncio.run(serve(given, setup, signals))
+            asyncio.run(serve(given, setup, signals))
         except OSError as error:  # the port is in use, or the address is not this machine's
             print(f"console.py: {given.address}:{given.port}: {error.strerror or error}", file=sys.stderr)
             return 2
-    if replace:
-        os.execv(sys.executable, [sys.executable, *sys.argv])
     return 0

@@ -7,6 +7,7 @@ text bounded. All else is refused, and the refusal names the field.
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Callable, Mapping
 from typing import Any
 
@@ -14,6 +15,8 @@ from robot_control.common.files import printable
 
 MAX_SIZE = 64 * 1024
 """bytes"""
+SURROGATE = re.compile("[\ud800-\udfff]")
+"""Half a character of UTF-16, which JSON can name alone"""
 RATE, BURST = 100.0, 200.0
 """messages per second and client, and what may come at once after a stall"""
 
@@ -33,8 +36,8 @@ def number(lowest: float, highest: float, kind: type = float) -> Check:
 
 
 def text(longest: int) -> Check:
-    """A text of at most so many characters."""
-    return lambda value: isinstance(value, str) and len(value) <= longest
+    """A text of at most so many characters, which UTF-8 can hold."""
+    return lambda value: isinstance(value, str) and len(value) <= longest and not SURROGATE.search(value)
 
 
 def flag(value: Any) -> bool:  # noqa: ANN401 (JSON)

@@ -13,8 +13,8 @@ from geometry_msgs.msg import PoseArray
 from nav_msgs.msg import OccupancyGrid, Odometry
 from sensor_msgs.msg import LaserScan
 
+from robot_control.common.boundary import Latest, boundary
 from robot_control.common.pose import Pose, yaw_of
-from robot_control.console.topics import Latest
 from robot_control.path.frames import Tf
 from robot_control.path.waypoints import PathError
 
@@ -76,14 +76,17 @@ class NavigationView:
 
     def _locate(self) -> None:
         while True:
-            odometry: Odometry | None = self._odometry.message
-            frame = self.frame()
-            places: dict[str, Any] = {}
-            if odometry is not None and frame:
-                self._map = self._pose(odometry.header.frame_id, frame) or self._map
-                places = {"map": self._map} | self._seen(odometry)
-            self._places = places
+            with boundary.crossing("the view of the map"):
+                self._places = self._places_of_now()
             time.sleep(PERIOD)
+
+    def _places_of_now(self) -> dict[str, Any]:
+        odometry: Odometry | None = self._odometry.message
+        frame = self.frame()
+        if odometry is None or not frame:
+            return {}
+        self._map = self._pose(odometry.header.frame_id, frame) or self._map
+        return {"map": self._map} | self._seen(odometry)
 
     def _pose(self, target: str, source: str) -> tuple[float, float, float] | None:
         self._tf = self._tf or Tf()  # a robot without a map needs none of its many messages
@@ -95,12 +98,12 @@ class NavigationView:
 
     def _seen(self, odometry: Odometry) -> dict[str, Any]:
         now, seen = time.monotonic(), {}
-        scan, particles = self._scan.message, self._particles.message
-        if scan is not None and now - self._scan.received_at < SILENCE:
+        scan, particles = (topic.fresh(now, SILENCE) for topic in (self._scan, self._particles))
+        if scan is not None:
             laser = self._pose(odometry.header.frame_id, scan.header.frame_id)
             if laser is not None:
                 seen["scan"] = points_of(scan, Pose(*laser))
-        if particles is not None and now - self._particles.received_at < SILENCE:
+        if particles is not None:
             step = max(1, math.ceil(len(particles.poses) / MAX_PARTICLES))
             seen["particles"] = [(each.position.x, each.position.y) for each in particles.poses[::step]]
         return seen

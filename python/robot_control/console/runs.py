@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import contextlib
 import hashlib
+import os
 import subprocess
 import sys
 import tempfile
@@ -11,6 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from robot_control.blackbox.main import incidents_of
+from robot_control.common.files import printable
 
 MAX_RUNS = 200
 REPORT_TIME = 600.0
@@ -32,10 +35,11 @@ class Runs:
 
     def list(self) -> list[dict[str, Any]]:
         """The newest first: id, name, bytes, time of day."""
-        rows: list[dict[str, Any]] = [
-            {"id": key, "name": str(path.relative_to(self._folder)), "bytes": status.st_size, "time": status.st_mtime}
-            for key, path, status in ((key, path, path.stat()) for key, path in self._files().items())
-        ]
+        rows: list[dict[str, Any]] = []
+        for key, path in self._files().items():
+            with contextlib.suppress(OSError):  # it may be removed meanwhile
+                status, name = path.stat(), printable(str(path.relative_to(self._folder)))
+                rows.append({"id": key, "name": name, "bytes": status.st_size, "time": status.st_mtime})
         return sorted(rows, key=lambda row: -row["time"])[:MAX_RUNS]
 
     def file(self, key: str) -> Path:
@@ -70,4 +74,4 @@ class Runs:
         except OSError:
             return {}
         files = {path for path in paths if path.is_file() and not path.is_symlink()}
-        return {hashlib.sha256(str(path).encode(errors="replace")).hexdigest()[:16]: path for path in sorted(files)}
+        return {hashlib.sha256(os.fsencode(path)).hexdigest()[:16]: path for path in sorted(files)}

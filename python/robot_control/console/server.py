@@ -3,26 +3,29 @@
 from __future__ import annotations
 
 import asyncio
+import contextlib
 import hmac
 import logging
 import time
-from collections.abc import Awaitable, Callable
+from collections.abc import Awaitable, Callable, Iterator
 from pathlib import Path
 from typing import Any
 
 from aiohttp import hdrs, web
 
+from robot_control.common.boundary import boundary
 from robot_control.common.files import printable
 from robot_control.console.addresses import Origins
 from robot_control.console.authority import Role
 from robot_control.console.backend import Backend
-from robot_control.console.client import Client, Frames
+from robot_control.console.client import GIVES_WAY, GOING_AWAY, Client, Frames
 from robot_control.console.doctor_run import DoctorRun
-from robot_control.console.files import REPORT_POLICY, page_file, protect
+from robot_control.console.files import HEADERS, REPORT_POLICY, page_file, protect
 from robot_control.console.messages import MAX_SIZE
 from robot_control.console.model import Model, ModelError
 from robot_control.console.navigation import NoGridError
 from robot_control.console.pending_connections import PendingConnections
+from robot_control.console.room import gives_way
 from robot_control.console.runs import Runs, RunsError
 from robot_control.console.sessions import Session, Sessions, Tries
 from robot_control.console.users import Users, UsersError
@@ -34,8 +37,6 @@ PUBLIC = frozenset({"/login", "/api/login", "/style.css", "/login.js", "/icon.sv
 """Paths that are served without a login"""
 LOCAL_USER = "local"
 """Name of the user who has opened the page with the token"""
-GOING_AWAY = 1001
-"""Code with which a page is closed (RFC 6455, 7.4)"""
 journal = logging.getLogger("console")
 Handler = Callable[[web.Request], Awaitable[web.StreamResponse]]
 
@@ -44,19 +45,11 @@ class Server:
     """All routes."""
 
     def __init__(
-        self,
-        backend: Backend,
-        origins: Origins,
-        users: Users | None,
-        runs: Path,
-        saved: str,
-        *,
-        port: int,
-        read_only: bool,
+        self, backend: Backend, origins: Origins, users: Users | None, runs: Path, *, port: int, read_only: bool
     ) -> None:
-        """`users`: None where the token alone opens; `saved`: logins of the process before this one."""
+        """`users`: None where the token alone opens."""
         self._backend, self._origins, self._users, self._read_only = backend, origins, users, read_only
-        self.sessions, self._tries = Sessions(saved), Tries()
+        self.sessions, self._tries = Sessions(), Tries()
         self._runs, self._model, self._doctor_run = Runs(runs), Model(), DoctorRun()
         self.pending, self.frames = PendingConnections(), Frames()
         self._clients: list[Client] = []
@@ -97,7 +90,7 @@ class Server:
     def close(self) -> None:
         """Ends all pages."""
         for client in self._clients:
-            client.closing = GOING_AWAY
+            client.end(GOING_AWAY)
 
     # every request
 
@@ -108,6 +101,9 @@ class Server:
         except web.HTTPException as error:
             protect(error)
             raise
+        except Exception as error:  # all that the checks did not foresee; no request moves the robot
+            boundary.drop("a request", f"{type(error).__name__}: {error}")
+            raise web.HTTPInternalServerError(headers=HEADERS) from None
         if not response.prepared:
             protect(response)
         return response
@@ -143,7 +139,9 @@ class Server:
 
     def _begin(self, request: web.Request, response: web.Response, user: str, role: Role) -> web.Response:
         secure = request.secure or f"https://{request.headers[hdrs.HOST]}" in self._origins.own
-        cookie = self.sessions.begin(user, role, time.time())
+        commander = self._commander()
+        kept = None if commander is None else commander.session
+        cookie = self.sessions.begin(user, role, time.time(), kept)
         response.set_cookie(self._cookie, cookie, httponly=True, samesite="Strict", secure=secure, path="/")
         journal.info("%s: %s has logged in as %s", request.remote, user, role)
         return response
@@ -160,7 +158,8 @@ class Server:
         users, remote = self._users, request.remote or ""
         if users is None:
             raise web.HTTPForbidden(text="this console has no users: open the address that console.py printed")
-        wait = self._tries.wait(name, remote, time.time())
+        now = time.time()
+        wait = self._tries.admit(name, remote, now)
         if wait > 0:
             raise self._refusal(request, web.HTTPTooManyRequests, f"too many tries: wait {wait:.0f} s")
         try:
@@ -168,8 +167,8 @@ class Server:
                 check = (users.set_password, link, password, time.time()) if link else (users.check, name, password)
                 user = await asyncio.to_thread(*check)
         except UsersError as error:
-            self._tries.fail(name, remote, time.time())
             raise self._refusal(request, web.HTTPForbidden, f"{printable(name, 32)}: {error}".lstrip(": ")) from None
+        self._tries.succeed(name, remote, now)
         return self._begin(request, web.json_response({}), user.name, user.role)
 
     async def _logout(self, request: web.Request) -> web.StreamResponse:
@@ -184,22 +183,48 @@ class Server:
 
     async def _e_stop(self, request: web.Request) -> web.StreamResponse:
         journal.warning("%s: %s: EMERGENCY STOP", request.remote, request["session"].user)
-        self._backend.e_stop()
-        return web.json_response({})
+        answer = await self._backend.e_stop()
+        return web.json_response({"confirmed": answer.accepted, "text": answer.text})
 
     async def _socket(self, request: web.Request) -> web.StreamResponse:
-        if len(self._clients) >= MAX_PAGES:
-            raise self._refusal(request, web.HTTPServiceUnavailable, f"{MAX_PAGES} pages are open already")
+        if not web.WebSocketResponse().can_prepare(request):
+            raise web.HTTPBadRequest(text="this address takes WebSockets alone")
+        with self._page(request) as client:
+            return await client.serve(request)
+
+    @contextlib.contextmanager
+    def _page(self, request: web.Request) -> Iterator[Client]:
+        """A page that is registered as long as the block lives, however that ends."""
         session: Session = request["session"]
-        page = self._backend.authority.join(session.user, Role.WATCH if self._read_only else session.role)
+        self._make_room(request, session)
+        authority = self._backend.authority
+        page = authority.join(session.user, Role.WATCH if self._read_only else session.role)
         who = f"{request.remote}: {session.user}"
         journal.info("%s: page %d begins as %s", who, page.number, page.role)
-        client = Client(self._backend, self.frames, page, who, lambda: self.sessions.lives(session, time.time()))
+        client = Client(self._backend, self.frames, page, session, self.sessions)
         self._clients.append(client)
         try:
-            return await client.serve(request)
+            yield client
         finally:
             self._clients.remove(client)
+            authority.leave(page, time.monotonic())
+            self._backend.calls.forget(page)
+            journal.info("%s: page %d ended", who, page.number)
+
+    def _make_room(self, request: web.Request, session: Session) -> None:
+        """Ends a page where there are too many, but never the one that commands. Raises HTTPServiceUnavailable."""
+        present = [each for each in self._clients if not each.closing]
+        if len(present) < MAX_PAGES:
+            return
+        commander = self._commander()
+        client = gives_way([each for each in present if each is not commander], session.user, session.role)
+        if client is None:
+            raise self._refusal(request, web.HTTPServiceUnavailable, f"{MAX_PAGES} pages are open already")
+        client.end(GIVES_WAY)
+
+    def _commander(self) -> Client | None:
+        page = self._backend.authority.commander
+        return next((each for each in self._clients if each.page is page), None)
 
     # files
 

@@ -1,20 +1,21 @@
-"""Logins, and the limits of failed ones. It reads no clock: time is an argument, s of the time of day."""
+"""Logins, and the limits of their tries. It reads no clock: time is an argument, s of the time of day."""
 
 from __future__ import annotations
 
+import contextlib
 import hashlib
-import json
 import secrets
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 
 from robot_control.console.authority import Role
 
 LIFE = 12 * 3600.0
 """s from a login until it ends"""
 TRIES_OF_USER, TRIES_OF_ADDRESS, PERIOD = 5, 20, 300.0
-"""failed logins within PERIOD s, after which further ones are refused"""
-MAX_SESSIONS = 200
+"""logins within PERIOD s that failed or are not decided yet, after which further ones are refused"""
+MAX_SESSIONS = 20
+"""of one user"""
 
 
 @dataclass
@@ -30,16 +31,16 @@ class Session:
 class Sessions:
     """All logins, by the digests of their cookies, and the token of a console without users."""
 
-    def __init__(self, saved: str = "") -> None:
-        """`saved`: what the process before this one has saved."""
-        self.token, rows = json.loads(saved) if saved else (secrets.token_urlsafe(24), [])
-        self._sessions = {row["key"]: Session(**{**row, "role": Role(row["role"])}) for row in rows}
+    def __init__(self) -> None:
+        self.token = secrets.token_urlsafe(24)
+        self._sessions: dict[str, Session] = {}  # by key, the oldest first
 
-    def begin(self, user: str, role: Role, now: float) -> str:
-        """Begins a session; the text of its cookie."""
+    def begin(self, user: str, role: Role, now: float, kept: Session | None = None) -> str:
+        """Begins a session; the text of its cookie. One too many ends the user's own oldest one, but not `kept`."""
         cookie = secrets.token_urlsafe(32)
-        while len(self._sessions) >= MAX_SESSIONS:
-            self._sessions.pop(next(iter(self._sessions)))
+        own = [each for each in self._sessions.values() if each.user == user and each is not kept]
+        for each in own[: max(0, len(own) + 1 - MAX_SESSIONS)]:
+            self.end(each)
         session = Session(digest(cookie), user, role, now + LIFE)
         self._sessions[session.key] = session
         return cookie
@@ -62,30 +63,30 @@ class Sessions:
         kept = {key: each for key, each in self._sessions.items() if roles.get(each.user) is each.role}
         self._sessions = kept
 
-    def save(self) -> str:
-        """The token and the logins, for a process that replaces this one. No cookie is in it."""
-        return json.dumps([self.token, [asdict(session) for session in self._sessions.values()]])
-
 
 class Tries:
-    """Failed logins, by user and by address."""
+    """Tries to log in, by user and by address. A try counts from its admission, until it has succeeded."""
 
     def __init__(self) -> None:
-        self._failed: dict[tuple[str, str], list[float]] = {}
+        self._times: dict[tuple[str, str], list[float]] = {}
 
-    def wait(self, user: str, address: str, now: float) -> float:
-        """s until the next try is admitted; zero if it is admitted now."""
-        return max(self._wait("user", user, TRIES_OF_USER, now), self._wait("address", address, TRIES_OF_ADDRESS, now))
+    def admit(self, user: str, address: str, now: float) -> float:
+        """Counts a try and returns zero; s until the next one is admitted if this one is not."""
+        self._times = {key: times for key, times in self._times.items() if times and now - times[-1] < PERIOD}
+        keys = (("user", user), ("address", address))
+        for key, bound in zip(keys, (TRIES_OF_USER, TRIES_OF_ADDRESS), strict=True):
+            lately = [at for at in self._times.get(key, []) if now - at < PERIOD]
+            if len(lately) >= bound:
+                return lately[-bound] + PERIOD - now
+        for key in keys:
+            self._times[key] = [*self._times.get(key, [])[-TRIES_OF_ADDRESS:], now]
+        return 0.0
 
-    def fail(self, user: str, address: str, now: float) -> None:
-        """Notes a failed try."""
-        self._failed = {key: times for key, times in self._failed.items() if now - times[-1] < PERIOD}
+    def succeed(self, user: str, address: str, admitted: float) -> None:
+        """Takes back the try that was admitted at this time."""
         for key in (("user", user), ("address", address)):
-            self._failed[key] = [*self._failed.get(key, [])[-TRIES_OF_ADDRESS:], now]
-
-    def _wait(self, kind: str, name: str, bound: int, now: float) -> float:
-        lately = [at for at in self._failed.get((kind, name), []) if now - at < PERIOD]
-        return lately[-bound] + PERIOD - now if len(lately) >= bound else 0.0
+            with contextlib.suppress(KeyError, ValueError):  # it may have expired meanwhile
+                self._times[key].remove(admitted)
 
 
 def digest(secret: str) -> str:

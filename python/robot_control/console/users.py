@@ -64,8 +64,8 @@ class Users:
             raise UsersError(f"{self.path}: must belong to this account alone: chmod 600 {self.path}")
         try:
             rows = json.loads(self.path.read_text(encoding="utf-8"))
-            users = [User(**{**row, "role": Role[row["role"].upper()]}) for row in rows]
-        except (ValueError, TypeError, KeyError, AttributeError):
+            users = [_checked(User(**{**row, "role": Role[row["role"].upper()]})) for row in rows]
+        except (ValueError, TypeError, KeyError, AttributeError, RecursionError):
             raise UsersError(
                 f"{self.path}: is no file of console_users.py; remove it and add the users again"
             ) from None
@@ -116,6 +116,15 @@ class Users:
             partial.touch(mode=0o600)
             partial.chmod(0o600)
             partial.write_text(json.dumps(rows, indent=1), encoding="utf-8")
+
+
+def _checked(user: User) -> User:
+    """Raises ValueError or TypeError for an entry that this module has not written."""
+    for text in (user.salt, user.password, user.link):
+        bytes.fromhex(text)
+    if not NAME.fullmatch(user.name) or float(user.link_ends) < 0:
+        raise ValueError
+    return user
 
 
 def _hash(password: str, salt: str) -> str:

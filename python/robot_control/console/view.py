@@ -12,10 +12,10 @@ from geometry_msgs.msg import TwistStamped
 from nav_msgs.msg import Odometry, Path
 from sensor_msgs.msg import JointState
 
+from robot_control.common.boundary import Latest
 from robot_control.common.command import Command
 from robot_control.common.pose import pose_of
 from robot_control.console.navigation import NavigationView
-from robot_control.console.topics import Latest
 from robot_control.msg import DriveState, FollowPathActionFeedback, LegState, RobotStatus
 from robot_control.view.scene import Trail
 from robot_control.why.diagnosis import judge, missing_nodes
@@ -25,6 +25,7 @@ MAX_PATH = 2000
 """Points of a wanted path that are sent; a longer path is thinned evenly."""
 DRIVE_SILENCE = 1.0
 """s after which a drive_state or leg_state is too old to count"""
+PROGRESS = ("state", "reason", "progress", "remaining_distance", "cross_track_error")
 
 Values = dict[str, Any]
 
@@ -49,9 +50,9 @@ class View:
 
     def revoked(self, node: str) -> bool:
         """True if the controller refuses what the node requested before a stop."""
-        states = (self._topics["drive"], self._topics["legs"])
         now = time.monotonic()
-        return any(now - state.received_at < DRIVE_SILENCE and node in state.message.revoked for state in states)
+        states = [self._topics[name].fresh(now, DRIVE_SILENCE) for name in ("drive", "legs")]
+        return any(state is not None and node in state.revoked for state in states)
 
     def pose(self) -> tuple[float, float, float] | None:
         """x, y [m], yaw [rad] in odom."""
@@ -101,14 +102,8 @@ class View:
         answer, safety, estimator = judge(facts), facts.received(), facts.kind.estimator
         drive, legs = (self._topics[name].message for name in ("drive", "legs"))
         feedback, revoked, status = self._topics["feedback"], drive or legs, self._status.message
-        progress = (
-            {}
-            if feedback.message is None
-            else {
-                name: getattr(feedback.message.feedback, name)
-                for name in ("state", "reason", "progress", "remaining_distance", "cross_track_error")
-            }
-        )
+        way = None if feedback.message is None else feedback.message.feedback
+        progress = {} if way is None else {name: getattr(way, name) for name in PROGRESS}
         return finite(
             {
                 "type": "slow",

@@ -8,6 +8,7 @@ from collections import deque
 import rospy
 from geometry_msgs.msg import Twist
 
+from robot_control.common.boundary import boundary, subscribe
 from robot_control.common.live_parameters import LiveParameters
 from robot_control.common.robot_kind import running_kind
 from robot_control.common.roles import NO_LATERAL
@@ -16,7 +17,7 @@ from robot_control.common.topic_sender import Sender, Signals, ended_by_signals
 from robot_control.drive.release import Line, Phase, Release
 from robot_control.drive.send_plan import SendPlan, parse_plan
 from robot_control.msg import SafetyStatus
-from robot_control.safety.interruptions import Status
+from robot_control.safety.interruptions import SURPRISE, Status
 from robot_control.safety.process_start import process_began
 from robot_control.safety.watch import status_of
 
@@ -57,7 +58,7 @@ class Statuses:
     def __init__(self) -> None:
         self._received: deque[Status] = deque()
         self._parameters = LiveParameters()
-        self._subscriber = rospy.Subscriber("safety_status", SafetyStatus, self._receive, tcp_nodelay=True)
+        self._subscriber = subscribe("safety_status", SafetyStatus, self._receive, tcp_nodelay=True)
 
     def update(self, release: Release) -> list[Line]:
         """Hands the messages since the last look to `release`, or how long there were none."""
@@ -82,6 +83,7 @@ def send(plan: SendPlan, signals: Signals) -> int:
     watch = Statuses()
     _wait_for_subscriber(publisher, signals)
     release = Release(time.monotonic(), process_began())
+    boundary.stops(lambda: release.interrupt(time.monotonic(), SURPRISE))
     phase = Phase.WAITING
     sent, end = 0, math.inf
     deadline = time.monotonic()

@@ -68,6 +68,10 @@ class Release:
         """The kind of message that is sent now."""
         return self._phase
 
+    def interrupt(self, now: float, why: str) -> None:
+        """Ends the command: something else than the robot speaks against it."""
+        self._interruptions.interrupt(now, why)
+
     def step(self, now: float, statuses: Sequence[Status] = (), *, connected: bool = True) -> list[Line]:
         """One look of the program, with all messages since the previous one.
 

@@ -6,18 +6,17 @@ import math
 import time
 
 import rospy
-from diagnostic_msgs.msg import DiagnosticArray
 from geometry_msgs.msg import Twist
 from nav_msgs.msg import Odometry
 
+from robot_control.common.boundary import Latest
 from robot_control.common.pose import pose_of
 from robot_control.common.topic_sender import Sender
 from robot_control.identify.excitation_watch import Observation
 from robot_control.identify.recorded_log import RunningTelemetry
 from robot_control.safety.process_start import process_began
 from robot_control.safety.watch import SafetyWatch
-
-NEVER = -math.inf
+from robot_control.why.recent import Diagnostics, values_of
 
 
 class RunningRobot:
@@ -25,18 +24,23 @@ class RunningRobot:
 
     def __init__(self, *, sends: bool = True) -> None:
         """If `sends` is false, it only receives and does not count as a sender on cmd_vel."""
-        self.logs: dict[str, RunningTelemetry] = {}
-        self._odometry: Odometry | None = None
-        self._odometry_at = NEVER
+        self._reports = Diagnostics(math.inf)
+        self._odometry = Latest("odom", Odometry)
         self.requested = process_began()
         """s (monotonic), of the motion that follows"""
         self._watch = SafetyWatch()
         self._publisher = rospy.Publisher("cmd_vel", Twist, queue_size=1, tcp_nodelay=True) if sends else None
         self._sender = None if self._publisher is None else Sender(self._publisher, Twist())
-        self._subscribers = [
-            rospy.Subscriber("odom", Odometry, self._receive_odometry, queue_size=1, tcp_nodelay=True),
-            rospy.Subscriber("/diagnostics", DiagnosticArray, self._receive_diagnostics),
-        ]
+
+    @property
+    def logs(self) -> dict[str, RunningTelemetry]:
+        """The newest report of each telemetry, by node."""
+        values = {node: values_of(status) for node, (_, status) in self._reports.items(time.monotonic()).items()}
+        return {
+            node: RunningTelemetry(node, each["bag"], each.get("recording") == "1")
+            for node, each in values.items()
+            if each.get("bag")
+        }
 
     def send(self, linear: float, angular: float) -> None:
         """m/s, rad/s."""
@@ -52,18 +56,18 @@ class RunningRobot:
 
     def reports(self) -> bool:
         """True if odometry and a report of the safety monitor have arrived."""
-        return self._odometry is not None and self._watch.message is not None
+        return self._odometry.message is not None and self._watch.message is not None
 
     def observe(self, senders: tuple[str, ...] = ()) -> Observation:
         """The present state; `senders` are the others on cmd_vel."""
         revoked = self._watch.revoked(self.requested, waited=True)
         now = time.monotonic()
-        odometry, status = self._odometry, self._watch.message
+        odometry, status = self._odometry.message, self._watch.message
         return Observation(
             pose=None if odometry is None else pose_of(odometry),
             linear=0.0 if odometry is None else odometry.twist.twist.linear.x,
             angular=0.0 if odometry is None else odometry.twist.twist.angular.z,
-            pose_age=now - self._odometry_at,
+            pose_age=now - self._odometry.received_at,
             state="" if status is None else status.state_name,
             status_age=now - self._watch.received_at,
             revoked=revoked,
@@ -72,14 +76,3 @@ class RunningRobot:
             speed_limit=math.inf if status is None else status.speed_limit,
             senders=senders,
         )
-
-    def _receive_odometry(self, message: Odometry) -> None:
-        self._odometry, self._odometry_at = message, time.monotonic()
-
-    def _receive_diagnostics(self, message: DiagnosticArray) -> None:
-        for status in message.status:
-            values = {pair.key: pair.value for pair in status.values}
-            path = values.get("bag")
-            if path:
-                node = "/" + status.name.lstrip("/")
-                self.logs[node] = RunningTelemetry(node, path, values.get("recording") == "1")

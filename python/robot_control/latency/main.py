@@ -3,49 +3,52 @@
 import argparse
 import contextlib
 import sys
-import threading
 import time
+from collections import deque
 
 import rospy
 from diagnostic_msgs.msg import DiagnosticArray
 
+from robot_control.common.boundary import subscribe
 from robot_control.common.files import given_path
 from robot_control.common.picture_file import check_picture
 from robot_control.common.ros_master import require_master
 from robot_control.common.ros_node import begin_node
 from robot_control.latency.figures import Figures, figures_of, table
+from robot_control.why.recent import Diagnostics, values_of
 
 FRAME = 1.0
 """s between two tables; nodes report once per second"""
 SILENCE = 3.0
 """s; the values of a node that reports no longer are not shown"""
 
+MEASURED = "period_10s_us"
+"""Key of a report with figures"""
+MAX_SAMPLES = 1_000_000
+"""of the plot; four nodes make them in three days"""
+
 
 class Listener:
     """Keeps the newest values of each node with figures, and all figures for the plot."""
 
     def __init__(self) -> None:
-        self._lock = threading.Lock()
-        self._nodes: dict[str, tuple[float, dict[str, str]]] = {}
+        self._reports = Diagnostics(SILENCE)
         self._start = time.monotonic()
-        self.samples: list[tuple[float, str, dict[str, Figures]]] = []
-        rospy.Subscriber("/diagnostics", DiagnosticArray, self._receive, queue_size=100)
+        self.samples: deque[tuple[float, str, dict[str, Figures]]] = deque(maxlen=MAX_SAMPLES)
+        subscribe("/diagnostics", DiagnosticArray, self._receive, queue_size=100)
 
     def _receive(self, message: DiagnosticArray) -> None:
         now = time.monotonic()
         for status in message.status:
-            values = {pair.key: pair.value for pair in status.values}
-            if "period_10s_us" not in values:
-                continue
-            with self._lock:
-                self._nodes[status.name] = (now, values)
+            values = values_of(status)
+            if MEASURED in values:
                 self.samples.append((now - self._start, status.name, figures_of(values)))
 
     def nodes(self) -> dict[str, dict[str, str]]:
         """Node → values, of those that report."""
-        oldest = time.monotonic() - SILENCE
-        with self._lock:
-            return {node: values for node, (at, values) in sorted(self._nodes.items()) if at > oldest}
+        newest = sorted(self._reports.items(time.monotonic()).items())
+        values = {status.name: values_of(status) for _, (_, status) in newest}
+        return {node: each for node, each in values.items() if MEASURED in each}
 
 
 def show(listener: Listener, seconds: float) -> None:
@@ -90,5 +93,5 @@ def main() -> None:
     if given.plot:
         from robot_control.latency.picture import draw  # noqa: PLC0415 (matplotlib takes a second)
 
-        draw(listener.samples, given.plot)
+        draw(list(listener.samples), given.plot)
         print(f"written: {given.plot}")

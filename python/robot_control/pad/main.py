@@ -12,6 +12,7 @@ from typing import Any
 import rospy
 from sensor_msgs.msg import Joy
 
+from robot_control.common.boundary import Latest, boundary, subscribe
 from robot_control.common.command import SEND_PERIOD, Pace
 from robot_control.common.command_topic import CommandTopic
 from robot_control.common.files import printable
@@ -76,7 +77,7 @@ class Source:
         self._publisher = None if topic else rospy.Publisher("joy", Joy, queue_size=1)
         self._received: deque[Joy] = deque(maxlen=MESSAGES)
         if topic:
-            rospy.Subscriber("joy", Joy, self._received.append, queue_size=MESSAGES, tcp_nodelay=True)
+            subscribe("joy", Joy, self._received.append, queue_size=MESSAGES, tcp_nodelay=True)
 
     def poll(self, now: float) -> None:
         """Hands new messages or the device's state to the pad."""
@@ -112,12 +113,13 @@ class Refusal:
     """Whether the controller refuses the motion that this program requests (DriveState.revoked, LegState.revoked)."""
 
     def __init__(self) -> None:
-        self.active = False
-        for name, kind in (("drive_state", DriveState), ("leg_state", LegState)):
-            rospy.Subscriber(name, kind, self._receive, queue_size=1, tcp_nodelay=True)
+        self._states = Latest("drive_state", DriveState), Latest("leg_state", LegState)
 
-    def _receive(self, message: DriveState | LegState) -> None:
-        self.active = rospy.get_name() in message.revoked
+    @property
+    def active(self) -> bool:
+        """True if the newest message of the robot's controller says so."""
+        newest = max(self._states, key=lambda state: state.received_at).message
+        return newest is not None and rospy.get_name() in newest.revoked
 
 
 def drive(given: argparse.Namespace, signals: Signals) -> None:
@@ -129,7 +131,8 @@ def drive(given: argparse.Namespace, signals: Signals) -> None:
     watch, interruptions, refusal, refused = SafetyWatch(), 0, Refusal(), False
     while signals.going_on():
         now = time.monotonic()
-        source.poll(now)
+        with boundary.crossing("the pad"):
+            source.poll(now)
         count, why = watch.interruptions()
         if count != interruptions:
             interruptions = count

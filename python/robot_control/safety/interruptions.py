@@ -6,6 +6,7 @@ A request, a plan, a hold or a wait belongs to the time in which it began. An in
     reset    `withdrawals` or `run` differ between two messages that permit to drive: a stop lies between them
     gap      this program did not look for longer than GAP, and neither waited nor planned: it was suspended, and what
              it knows is old
+    surprise an input that this program did not foresee may have left it half way through a motion (boundary.py)
     unseen   the monitor says that a permission ended after this program began, or since its last message
 
 A request that was made during a stop counts as older than its reset. A request that arrives as a message began when it
@@ -26,6 +27,7 @@ GAP = 1.0
 """s; programs look every 0.02 s, and a loaded machine delays one by half a second now and then. The loop refuses a
 request from before a stop, however short the gap of the program."""
 RESTARTED = "INIT: a node or the simulation was started again, and releases no command from before"
+SURPRISE = "this program met an input that it did not foresee"
 UNSEEN = "the robot was stopped and released, or started again"
 
 
@@ -89,7 +91,7 @@ class Interruptions:
         """One pass: notes how long there was none, unless the program `waited` or planned, and takes the messages."""
         gap, self._looked = now - self._looked, now
         if gap > GAP and not waited:
-            self._interrupt(now, f"this program stood still for {gap:.1f} s")
+            self.interrupt(now, f"this program stood still for {gap:.1f} s")
         for status in statuses:
             self.receive(status, now)
 
@@ -97,15 +99,20 @@ class Interruptions:
         """One message."""
         why = self._change(status)
         if why:
-            self._interrupt(now, why)
+            self.interrupt(now, why)
         elif self._waits and not status.stopped and status.withdrawn >= self._heard:
-            self._interrupt(min(now, status.withdrawn), UNSEEN)
+            self.interrupt(min(now, status.withdrawn), UNSEEN)
         self._heard = now
         if status.stopped:
             self._stopped = now, status.why()
         elif self.status is not None and self.status.stopped:
             self._stopped = now, "e_stop_reset was called"
         self.status = status
+
+    def interrupt(self, at: float, why: str) -> None:
+        """Ends the time before `at`, s."""
+        self._interrupted = max(self._interrupted, (at, why))
+        self.count += 1
 
     @property
     def _waits(self) -> bool:
@@ -121,10 +128,6 @@ class Interruptions:
         """Why a request of the time `requested` s may not begin any more; empty if it may."""
         at, why = max(self._stopped, self._interrupted)
         return why if at >= requested else ""
-
-    def _interrupt(self, at: float, why: str) -> None:
-        self._interrupted = max(self._interrupted, (at, why))
-        self.count += 1
 
     def _change(self, status: Status) -> str:
         before = self.status

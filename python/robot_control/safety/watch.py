@@ -8,11 +8,11 @@ import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-import rospy
-
+from robot_control.common.boundary import boundary, subscribe
 from robot_control.msg import SafetyStatus
-from robot_control.safety.interruptions import Interruptions, Status
+from robot_control.safety.interruptions import SURPRISE, Interruptions, Status
 from robot_control.safety.process_start import process_began
+from robot_control.safety.states import STOPPED
 
 LATE = 0.1
 """s between two looks after which messages may wait that the receiving thread has not taken"""
@@ -50,7 +50,8 @@ class SafetyWatch:
         self._lock = threading.Lock()
         self._looked = time.monotonic()
         self._interruptions = Interruptions(self._looked, process_began())
-        rospy.Subscriber("safety_status", SafetyStatus, self.receive, tcp_nodelay=True)
+        subscribe("safety_status", SafetyStatus, self.receive, tcp_nodelay=True)
+        boundary.stops(self._surprise)
 
     def receive(self, message: SafetyStatus) -> None:
         """One message."""
@@ -77,6 +78,18 @@ class SafetyWatch:
             status = self._interruptions.status
             fresh = time.monotonic() - self.received_at < silence
             return status.drivable if status is not None and fresh else None
+
+    def stopped_since(self, moment: float) -> str:
+        """The name of the state if a message that came after `moment`, s (monotonic), says that the robot stops or is
+        stopped; else empty.
+        """
+        with self._lock:
+            state = "" if self.message is None or self.received_at <= moment else self.message.state_name
+        return state if state in STOPPED else ""
+
+    def _surprise(self) -> None:
+        with self._lock:
+            self._interruptions.interrupt(time.monotonic(), SURPRISE)
 
     @contextmanager
     def _look(self, *, waited: bool) -> Iterator[Interruptions]:

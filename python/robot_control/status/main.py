@@ -9,14 +9,15 @@ import time
 import xml.etree.ElementTree as ET
 
 import rospy
-from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 
+from robot_control.common.boundary import Latest, boundary
 from robot_control.common.robot_kind import running_kind
 from robot_control.common.ros_node import running_node
 from robot_control.installed_files import share_file
 from robot_control.msg import DriveState, LegState, RobotStatus, SafetyStatus
 from robot_control.status.report import Reports, changed, status_of
 from robot_control.why.facts import below
+from robot_control.why.recent import Diagnostics
 from robot_control.why.state import SILENCE
 
 POLL_PERIOD = 0.05
@@ -32,18 +33,12 @@ class Status:
         self._namespace = rospy.get_namespace()
         self._began = time.monotonic()
         self._version = ET.parse(share_file("package.xml")).findtext("version", "")
-        self._safety: SafetyStatus | None = None
-        self._safety_at = self._drive_at = self._legs_at = self._published_at = -math.inf
-        # Parsed once per look: 50 of them come per second.
-        self._drive: rospy.AnyMsg | None = None
-        self._legs: rospy.AnyMsg | None = None
-        self._reports: dict[str, tuple[float, DiagnosticStatus]] = {}
+        self._published_at = -math.inf
+        self._safety = Latest("safety_status", SafetyStatus)
+        self._drive, self._legs = Latest("drive_state", DriveState), Latest("leg_state", LegState)
+        self._reports = Diagnostics(SILENCE)
         self._published = RobotStatus()
         self._publisher = rospy.Publisher("robot_status", RobotStatus, queue_size=1, latch=True)
-        rospy.Subscriber("safety_status", SafetyStatus, self._receive_safety, queue_size=1)
-        rospy.Subscriber("drive_state", rospy.AnyMsg, self._receive_drive, queue_size=1)
-        rospy.Subscriber("leg_state", rospy.AnyMsg, self._receive_legs, queue_size=1)
-        rospy.Subscriber("/diagnostics", DiagnosticArray, self._receive_diagnostics)
 
     def poll(self, now: float) -> None:
         """Publishes if a message is due."""
@@ -57,40 +52,15 @@ class Status:
         self._publisher.publish(status)
 
     def _reports_of_now(self, now: float) -> Reports:
+        drive, legs = (topic.fresh(now, SILENCE) for topic in (self._drive, self._legs))
+        newest = {below(self._namespace, name): report for name, (_, report) in self._reports.items(now).items()}
         return Reports(
-            safety=self._safety if now - self._safety_at < SILENCE else None,
-            diagnostics={name: report for name, (at, report) in dict(self._reports).items() if now - at < SILENCE},
+            safety=self._safety.fresh(now, SILENCE),
+            diagnostics={name: report for name, report in newest.items() if name},
             kind=running_kind(),
-            commander=self._commander() if now - self._drive_at < SILENCE else "",
-            posture=self._posture() if now - self._legs_at < SILENCE else "",
+            commander="" if drive is None else drive.commander,
+            posture="" if legs is None else legs.posture,
         )
-
-    def _commander(self) -> str:
-        if self._drive is None:
-            return ""
-        commander: str = DriveState().deserialize(self._drive._buff).commander  # noqa: SLF001 (all that AnyMsg has)
-        return commander
-
-    def _posture(self) -> str:
-        if self._legs is None:
-            return ""
-        posture: str = LegState().deserialize(self._legs._buff).posture  # noqa: SLF001 (all that AnyMsg has)
-        return posture
-
-    def _receive_safety(self, message: SafetyStatus) -> None:
-        self._safety, self._safety_at = message, time.monotonic()
-
-    def _receive_drive(self, message: rospy.AnyMsg) -> None:
-        self._drive, self._drive_at = message, time.monotonic()
-
-    def _receive_legs(self, message: rospy.AnyMsg) -> None:
-        self._legs, self._legs_at = message, time.monotonic()
-
-    def _receive_diagnostics(self, message: DiagnosticArray) -> None:
-        for report in message.status:
-            name = below(self._namespace, "/" + report.name.lstrip("/"))
-            if name:
-                self._reports[name] = time.monotonic(), report
 
 
 def main() -> None:
@@ -103,5 +73,6 @@ def main() -> None:
     with running_node("robot_status") as signals:
         status = Status()
         while signals.going_on():
-            status.poll(time.monotonic())
+            with boundary.crossing("the reports"):
+                status.poll(time.monotonic())
             time.sleep(POLL_PERIOD)

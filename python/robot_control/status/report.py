@@ -92,7 +92,10 @@ def _confidence(reports: Reports) -> float:
         return math.nan
     if "valid" not in flags.split():
         return 0.0
-    return float(reports.value(reports.kind.estimator, "odometry_confidence") or "nan")
+    try:
+        return float(reports.value(reports.kind.estimator, "odometry_confidence"))
+    except ValueError:
+        return math.nan
 
 
 def changed(new: RobotStatus, old: RobotStatus) -> bool:

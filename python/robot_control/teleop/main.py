@@ -10,6 +10,7 @@ import time
 import rospy
 from std_msgs.msg import Empty
 
+from robot_control.common.boundary import boundary
 from robot_control.common.command import Command, Pace
 from robot_control.common.command_topic import CommandTopic
 from robot_control.common.ros_master import require_master
@@ -52,7 +53,7 @@ class Teleop:
         self._decoder = Decoder()
         self._listener, self._watch = Listener(), SafetyWatch()
         self._interruptions = 0
-        self._services = Services()
+        self._services = Services(self._watch)
         self._topic = CommandTopic(SOURCE)
         self._heartbeat = rospy.Publisher("heartbeat", Empty, queue_size=1, tcp_nodelay=True)
         self._pace = Pace(self._topic.send)
@@ -78,13 +79,15 @@ class Teleop:
             self._operator.permit(self._watch.drivable(SILENCE), now)
             self._operator.limit(self._limits.newest())
             self._pace.step(self._operator.command(now), now)
-            self._take_answers()
+            with boundary.crossing("the robot's answers"):
+                self._take_answers()
             if now - self._beat_at >= HEARTBEAT_PERIOD:
                 self._beat_at = now
                 self._heartbeat.publish(Empty())
             if now - self._drawn_at >= FRAME:
                 self._drawn_at = now
-                self._draw(now)
+                with boundary.crossing("the screen"):
+                    self._draw(now)
 
     def _take(self, data: bytes, now: float, *, late: bool) -> bool:
         """True if the program shall end."""
@@ -128,7 +131,8 @@ class Teleop:
 
     def _query_master(self) -> None:
         while True:
-            self._listener.query_master()
+            with boundary.crossing("the master"):
+                self._listener.query_master()
             time.sleep(MASTER_PERIOD)
 
 

@@ -1,4 +1,9 @@
-"""Requests the e-stop and the reset without delaying the keys: a thread calls, and the answer is read later."""
+"""Requests the e-stop and the reset without delaying the keys: a thread calls, and the answer is read later.
+
+The e-stop counts as done once the robot says so: by the answer of e_stop_trigger, or else by safety_status. Until then
+it is repeated on the topic e_stop, whose connections outlive a restart of the master. An e-stop that reached no node,
+or that nothing confirms, is reported as that.
+"""
 
 from __future__ import annotations
 
@@ -11,14 +16,20 @@ import rospy
 from std_msgs.msg import Bool
 from std_srvs.srv import Trigger
 
+from robot_control.safety.watch import SafetyWatch
 from robot_control.why.state import Facts
 
 PATIENCE = 0.3
 """s for the answer of e_stop_trigger; then `true` goes out on the topic e_stop as well"""
+CONFIRMED_WITHIN = 1.5
+"""s after the first message on e_stop; safety_status comes at least once per second"""
 LATEST = 5.0
 """s after which a reset that still waits behind a service without an answer is dropped"""
 AGAIN = 0.5
 """s in which a repeated key is one request"""
+
+E_STOP = "e_stop_trigger"
+NO_RECEIVER = "no node receives the topic e_stop"
 
 
 @dataclass(frozen=True)
@@ -26,11 +37,8 @@ class Answer:
     """Answer of a service."""
 
     service: str
-    accepted: bool | None  # None: no answer in time, or no service; the e-stop was sent on the topic instead
+    accepted: bool  # of the e-stop: the robot has confirmed it
     text: str
-
-
-VERDICTS = {True: "accepted", False: "REFUSED", None: "sent on the topic e_stop"}
 
 
 def in_words(answer: Answer, facts: Facts) -> str:
@@ -38,28 +46,31 @@ def in_words(answer: Answer, facts: Facts) -> str:
     even after that node has ended. The level may be that of a pressed button; the text names the command to take it
     back.
     """
-    if answer.service != "e_stop_reset":
-        return f"emergency stop {VERDICTS[answer.accepted]}: {answer.text}"
+    if answer.service == E_STOP:
+        return f"{'emergency stop confirmed' if answer.accepted else 'EMERGENCY STOP NOT CONFIRMED'}: {answer.text}"
     safety = facts.received()
     causes = () if safety is None else safety.causes
-    if answer.accepted is False and any(cause.name == "e_stop_topic" and cause.active for cause in causes):
+    if not answer.accepted and any(cause.name == "e_stop_topic" and cause.active for cause in causes):
         command = f"rostopic pub -1 {facts.path('e_stop')} std_msgs/Bool false"
         return (
             f"reset REFUSED: the topic e_stop still says true; once its reason is gone, by its publisher's false, or "
             f"if that has ended: {command}, then the reset again"
         )
-    return f"reset {VERDICTS[answer.accepted]}: {answer.text}"
+    return f"reset {'accepted' if answer.accepted else 'REFUSED'}: {answer.text}"
 
 
 class Services:
     """Used by one thread; a second one, inside, makes the calls."""
 
-    def __init__(self) -> None:
+    def __init__(self, watch: SafetyWatch) -> None:
+        self._watch = watch
         self._topic = rospy.Publisher("e_stop", Bool, queue_size=1, tcp_nodelay=True)
         self._topic_said_true = False
         self._wanted: queue.Queue[tuple[str, float, int]] = queue.Queue()  # service, when it was requested, attempts
         self._answers: queue.Queue[Answer] = queue.Queue()
         self._e_stop_at: float | None = None  # when it was requested, until it is answered
+        self._sent_at: float | None = None  # when that one was first sent on the topic
+        self._refusal = ""  # of the service
         self._last_e_stop = float("-inf")
         threading.Thread(target=self._work, daemon=True).start()
 
@@ -68,15 +79,16 @@ class Services:
         now = time.monotonic()
         if now - self._last_e_stop < AGAIN:
             return
-        self._last_e_stop = now
-        self._e_stop_at = now
-        self._wanted.put(("e_stop_trigger", now, 1))
+        self._last_e_stop = self._e_stop_at = now
+        self._sent_at, self._refusal = None, ""
+        self._wanted.put((E_STOP, now, 1))
 
     def reset(self) -> None:
         """Takes back the topic's level if it was raised here. The service may overtake the topic: a reset that is then
         refused is called once more.
         """
         attempts = 1
+        self._e_stop_at = None
         if self._topic_said_true:
             self._topic.publish(Bool(data=False))
             self._topic_said_true = False
@@ -89,23 +101,35 @@ class Services:
         answers = []
         while not self._answers.empty():
             answer = self._answers.get()
-            if answer.service == "e_stop_trigger":
+            if answer.service == E_STOP and not answer.accepted:
+                self._refusal = answer.text
+                continue
+            if answer.service == E_STOP:
                 self._e_stop_at = None
-                answer = answer if answer.accepted else self._e_stop_on_topic(answer.text)
             elif not answer.accepted and not self._topic_said_true:
                 # A restarted safety_monitor holds the topic true for a publisher that it does not know and that is
                 # silent.
                 self._topic.publish(Bool(data=False))
             answers.append(answer)
-        if self._e_stop_at is not None and time.monotonic() - self._e_stop_at > PATIENCE:
-            answers.append(self._e_stop_on_topic("e_stop_trigger does not answer"))
-        return answers
+        return answers + self._e_stop_on_topic(time.monotonic())
 
-    def _e_stop_on_topic(self, reason: str) -> Answer:
-        self._e_stop_at = None
+    def _e_stop_on_topic(self, now: float) -> list[Answer]:
+        """Sends the e-stop that the service has not taken, again in each pass, until its answer is known."""
+        if self._e_stop_at is None or not (self._refusal or now - self._e_stop_at > PATIENCE):
+            return []
+        self._sent_at = now if self._sent_at is None else self._sent_at
         self._topic_said_true = True
         self._topic.publish(Bool(data=True))
-        return Answer("e_stop_trigger", accepted=None, text=reason)
+        state = self._watch.stopped_since(self._sent_at)
+        if not state and now - self._sent_at < CONFIRMED_WITHIN:
+            return []
+        self._e_stop_at = None
+        why = self._refusal or f"{E_STOP} does not answer"
+        if state:
+            return [Answer(E_STOP, accepted=True, text=f"sent on the topic e_stop ({why}); the robot is {state}")]
+        receivers = self._topic.get_num_connections()
+        silence = f"{receivers} nodes receive e_stop, and safety_status names no stop" if receivers else NO_RECEIVER
+        return [Answer(E_STOP, accepted=False, text=f"{why}; {silence}. Use the button on the robot")]
 
     def _work(self) -> None:
         while True:

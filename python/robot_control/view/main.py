@@ -12,6 +12,7 @@ from nav_msgs.msg import Odometry, Path
 from visualization_msgs.msg import Marker, MarkerArray
 
 from robot_control._robot_control import LegModel
+from robot_control.common.boundary import Latest, boundary, subscribe
 from robot_control.common.ros_node import running_node
 from robot_control.msg import DriveState, LegState, SafetyStatus
 from robot_control.view.feet import Swings, in_odom, load_arrows
@@ -33,9 +34,8 @@ class View:
     """The last of each message, drawn."""
 
     def __init__(self) -> None:
-        self._safety = SafetyStatus(speed_limit=float("inf"))
-        self._drive = DriveState()
-        self._odometry: Odometry | None = None
+        self._safety, self._drive = Latest("safety_status", SafetyStatus), Latest("drive_state", DriveState)
+        self._odometry = Latest("odom", Odometry)
         self._trail = Trail()
         self._wheels: dict[str, Wheel] = {}
         self._legs: LegModel | None = None
@@ -43,14 +43,11 @@ class View:
         self._swings = Swings()
         self._markers = rospy.Publisher("view/markers", MarkerArray, queue_size=1)
         self._path = rospy.Publisher("view/path_driven", Path, queue_size=1, latch=True)
-        rospy.Subscriber("safety_status", SafetyStatus, self._receive_safety)
-        rospy.Subscriber("drive_state", DriveState, self._receive_drive, queue_size=1)
-        rospy.Subscriber("leg_state", LegState, self._receive_legs, queue_size=1)
-        rospy.Subscriber("odom", Odometry, self._receive_odometry, queue_size=1)
+        subscribe("leg_state", LegState, self._receive_legs, queue_size=1)
 
     def draw(self) -> None:
         """Draws nothing before the first odometry, because the markers use its frames."""
-        odometry = self._odometry
+        odometry, drive = self._odometry.message, self._drive.message or DriveState()
         if odometry is None:
             return
         if not self._wheels and self._legs is None:
@@ -59,8 +56,8 @@ class View:
         if self._trail.add(position.x, position.y):
             self._path.publish(self._path_message(odometry.header.frame_id))
         frame = odometry.child_frame_id
-        markers = [self._text(frame)]
-        arrows = force_arrows(self._wheels, self._drive.name, self._drive.effort) + self._forces_of_feet()
+        markers = [self._text(frame, self._leg_state or drive)]
+        arrows = force_arrows(self._wheels, drive.name, drive.effort) + self._forces_of_feet()
         for number, (begin, end) in enumerate(arrows):
             arrow = _marker(frame, number + 1, Marker.ARROW, (0.2, 0.6, 1.0))
             arrow.points = [Point(*begin), Point(*end)]
@@ -82,22 +79,17 @@ class View:
 
     def _receive_legs(self, message: LegState) -> None:
         """Follows the swings here: a swing lasts few periods of the drawing. The joints of a brake want no place."""
-        self._leg_state, odometry = message, self._odometry
+        self._leg_state, odometry = message, self._odometry.message
         wanted = np.array(message.wanted)
         if self._legs is None or odometry is None or wanted.size != JOINTS or not np.isfinite(wanted).all():
             return
         places = in_odom(np.array(self._legs.forward(wanted)), odometry.pose.pose)
         self._swings.add(places, message.bears)
 
-    def _text(self, frame: str) -> Marker:
-        state = self._leg_state or self._drive
-        said = status_text(
-            self._safety.state_name,
-            self._safety.sentences,
-            self._safety.warning_sentences,
-            limits_of(state.reasons, state.sentences),
-            self._safety.speed_limit,
-        )
+    def _text(self, frame: str, state: LegState | DriveState) -> Marker:
+        safety = self._safety.message or SafetyStatus(speed_limit=float("inf"))
+        limits = limits_of(state.reasons, state.sentences)
+        said = status_text(safety.state_name, safety.sentences, safety.warning_sentences, limits, safety.speed_limit)
         text = _marker(frame, 0, Marker.TEXT_VIEW_FACING, said.colour)
         text.text = said.text
         text.pose.position.z = ABOVE
@@ -113,15 +105,6 @@ class View:
             pose.pose.orientation.w = 1.0
             path.poses.append(pose)
         return path
-
-    def _receive_safety(self, message: SafetyStatus) -> None:
-        self._safety = message
-
-    def _receive_drive(self, message: DriveState) -> None:
-        self._drive = message
-
-    def _receive_odometry(self, message: Odometry) -> None:
-        self._odometry = message
 
 
 def _marker(frame: str, number: int, kind: int, colour: tuple[float, float, float]) -> Marker:
@@ -144,5 +127,6 @@ def main() -> None:
     with running_node("view_markers") as signals:
         view = View()
         while signals.going_on():
-            view.draw()
+            with boundary.crossing("what is drawn"):
+                view.draw()
             rospy.rostime.wallsleep(PERIOD)

@@ -176,9 +176,7 @@ def _navigation(facts: Facts) -> Answer | None:
     verdict, what = (Verdict.STOPPED, "waits") if waits else (Verdict.IDLE, "is given up")
     then = "; the robot then drives on" if waits else ", and send the goal again"
     return Answer(
-        verdict,
-        f"The goal {what}: {facts.reports[NAVIGATE].message}.",
-        (("operator", f"remove this cause{then}"),),
+        verdict, f"The goal {what}: {facts.reports[NAVIGATE].message}.", (("operator", f"remove this cause{then}"),)
     )
 
 

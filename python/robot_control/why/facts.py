@@ -2,16 +2,22 @@
 
 from collections.abc import Iterable, Sequence
 
+from robot_control.common.boundary import UnfitError
 from robot_control.common.roles import DRIVER, ESTIMATOR, HARDWARE_DRIVER, MONITOR
 from robot_control.msg import SafetyStatus
 from robot_control.why.state import Cause, Safety
 
 
 def safety_of(status: SafetyStatus, held: float, age: float) -> Safety:
-    """The content of a message; `held` s in its state, `age` s since it was received."""
-    causes = zip(
-        status.causes, status.sentences, status.remedies_before_reset, status.actors, status.details, strict=True
-    )
+    """The content of a message; `held` s in its state, `age` s since it was received.
+
+    Raises:
+        UnfitError: the causes and what belongs to them are not equally many.
+    """
+    columns = (status.causes, status.sentences, status.remedies_before_reset, status.actors, status.details)
+    if len({len(column) for column in columns}) > 1:
+        raise UnfitError("has lists of causes, sentences, remedies, actors and details of different lengths")
+    causes = zip(*columns, strict=True)
     return Safety(
         state=status.state_name,
         permit=status.permit_name,

@@ -7,11 +7,7 @@ REFUSALS = {"refused": "", "not_standing": "standing", "not_lying": "lying", "ou
 """Reason why a request is not executed → the posture that it needs."""
 LIMITS = ("no_plan", "leg_speed", "speed_limited", "permit_slow", "timed_out", "stale")
 """Reasons why a walk differs from what is requested, or ends."""
-POSTURES = {
-    "gathering": "its legs move to the lying posture",
-    "rising": "it stands up",
-    "lowering": "it lies down",
-}
+POSTURES = {"gathering": "its legs move to the lying posture", "rising": "it stands up", "lowering": "it lies down"}
 """The postures in which it moves by itself, in words."""
 
 

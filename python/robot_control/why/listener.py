@@ -2,18 +2,20 @@
 
 import time
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import Any
 
 import rospy
-from diagnostic_msgs.msg import DiagnosticArray
 from geometry_msgs.msg import Twist, TwistStamped
 from nav_msgs.msg import Odometry
 
+from robot_control.common.boundary import Latest, subscribe
 from robot_control.common.live_parameters import LiveParameters
 from robot_control.common.robot_kind import running_kind
 from robot_control.common.ros_master import Master, senders_of
 from robot_control.msg import SafetyStatus
 from robot_control.why.facts import below, nodes_of, other_robots, safety_of
+from robot_control.why.recent import Diagnostics, values_of
 from robot_control.why.state import SILENCE, Facts, Report, Safety, Speeds
 
 MASTER_PERIOD = 1.0
@@ -28,41 +30,29 @@ class Listener:
         self.master = Master(rospy.get_name())
         self._state: Sequence[Any] | None = None
         self._queried_at = 0.0
-        self._status: SafetyStatus | None = None
-        self._status_at = 0.0
-        self._reports: dict[str, tuple[float, Report]] = {}  # by absolute name
-        self._limited: tuple[Speeds, float] | None = None  # and when
-        self._measured: tuple[Speeds, float] | None = None
+        self._registered = True  # with the present master, by all of its topics
+        self._safety: tuple[Safety, float, rospy.Time] | None = None  # when it came, and since when the state is held
+        self._reports = Diagnostics(SILENCE)
+        self._limited, self._measured = Latest("cmd_vel_out", TwistStamped), Latest("odom", Odometry)
         self._parameters = LiveParameters()
-        self.unknown_to_master = 0  # how often in a row the master did not list this program
-        rospy.Subscriber("safety_status", SafetyStatus, self._receive_status)
-        rospy.Subscriber("/diagnostics", DiagnosticArray, self._receive_diagnostics)
-        rospy.Subscriber("cmd_vel_out", TwistStamped, self._receive_limited, queue_size=1)
-        rospy.Subscriber("odom", Odometry, self._receive_odometry, queue_size=1)
+        subscribe("safety_status", SafetyStatus, self._receive_status)
 
     def _receive_status(self, message: SafetyStatus) -> None:
-        self._status, self._status_at = message, time.monotonic()
-
-    def _receive_diagnostics(self, message: DiagnosticArray) -> None:
-        for status in message.status:
-            report = Report(status.message, {pair.key: pair.value for pair in status.values})
-            self._reports["/" + status.name.lstrip("/")] = (time.monotonic(), report)
-
-    def _receive_limited(self, message: TwistStamped) -> None:
-        self._limited = _speeds(message.twist), time.monotonic()
-
-    def _receive_odometry(self, message: Odometry) -> None:
-        self._measured = _speeds(message.twist.twist), time.monotonic()
+        self._safety = safety_of(message, 0.0, 0.0), time.monotonic(), message.since
 
     def query_master(self) -> None:
-        """Queries the master at most every MASTER_PERIOD; waits up to ros_master.TIMEOUT."""
+        """Queries the master at most every MASTER_PERIOD; waits up to ros_master.TIMEOUT.
+
+        A master that was started again does not know this program. The node is registered again, and its connections
+        stay. Over them it still reaches the nodes that the new master does not know either.
+        """
         now = time.monotonic()
         if now - self._queried_at < MASTER_PERIOD:
             return
         self._queried_at = now
         self._state = self.master.state()
-        known = self._state is None or rospy.get_name() in nodes_of(self._state)
-        self.unknown_to_master = 0 if known else self.unknown_to_master + 1
+        if self._state is not None and not (self._registered and rospy.get_name() in nodes_of(self._state)):
+            self._registered = self.master.register_again()
 
     def complete(self) -> bool:
         """True if every node of the loop has reported."""
@@ -79,8 +69,9 @@ class Listener:
         """The present facts."""
         now = time.monotonic()
         state = self._state or ([], [], [])
-        kind = running_kind()
-        reports = {name: Report(last.message, last.values, now - at) for name, (at, last) in self._reports.items()}
+        kind, limited, measured = running_kind(), self._limited.fresh(now, SILENCE), self._measured.fresh(now, SILENCE)
+        newest = self._reports.items(now).items()
+        reports = {name: Report(status.message, values_of(status), now - at) for name, (at, status) in newest}
         return Facts(
             master=self.master.uri,
             master_answers=self._state is not None,
@@ -89,25 +80,22 @@ class Listener:
             safety=self.safety(now),
             reports={below(self.namespace, name): report for name, report in reports.items()},
             registered=frozenset(below(self.namespace, name) for name in nodes_of(state)),
-            elsewhere=other_robots(self.namespace, (name for name, report in reports.items() if report.age < SILENCE)),
+            elsewhere=other_robots(self.namespace, reports),
             senders=senders_of(state[0], map(rospy.resolve_name, kind.request_topics), rospy.get_name()),
             clearance_senders=senders_of(state[0], [rospy.resolve_name("clearance")], rospy.get_name()),
-            limited=_fresh(self._limited, now),
-            measured=_fresh(self._measured, now),
+            limited=None if limited is None else _speeds(limited.twist),
+            measured=None if measured is None else _speeds(measured.twist.twist),
             command_timeout=self._parameters.command_timeout,
         )
 
     def safety(self, now: float) -> Safety | None:
         """The last status of the monitor."""
-        if self._status is None:
+        if self._safety is None:
             return None
-        held = max(0.0, (rospy.Time.now() - self._status.since).to_sec()) if self._status.since else 0.0
-        return safety_of(self._status, held, now - self._status_at)
+        safety, at, since = self._safety
+        held = max(0.0, (rospy.Time.now() - since).to_sec()) if since else 0.0
+        return replace(safety, held=held, age=now - at)
 
 
 def _speeds(twist: Twist) -> Speeds:
     return (twist.linear.x, twist.angular.z, twist.linear.y)
-
-
-def _fresh(received: tuple[Speeds, float] | None, now: float) -> Speeds | None:
-    return None if received is None or now - received[1] > SILENCE else received[0]

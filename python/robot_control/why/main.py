@@ -10,6 +10,7 @@ from typing import TextIO
 import rosgraph
 import rospy
 
+from robot_control.common.boundary import boundary
 from robot_control.common.ros_master import Master
 from robot_control.common.ros_node import begin_node
 from robot_control.why.answer import Verdict
@@ -94,10 +95,9 @@ def answer_live() -> int:
     _master_is_there(screen)
     listener = _listen()
     while not rospy.is_shutdown():
-        listener.query_master()
-        screen.show(listener.facts())
-        if listener.unknown_to_master > 1:  # another master was started: this program is no part of its graph
-            os.execv(sys.executable, [sys.executable, *sys.argv])
+        with boundary.crossing("the robot's reports"):
+            listener.query_master()
+            screen.show(listener.facts())
         time.sleep(FRAME)
     return 0
 

@@ -104,6 +104,11 @@ class Facts:
         return self.safety if fresh else None
 
     @property
+    def forgotten(self) -> bool:
+        """True if the monitor reports, and the master, which was started again, does not know it."""
+        return self.master_answers and self.received() is not None and self.kind.monitor not in self.registered
+
+    @property
     def speed_limit(self) -> float:
         """m/s, of the last status that counts."""
         safety = self.received()
@@ -133,7 +138,8 @@ class Facts:
     def sources(self) -> dict[str, str]:
         """The state of each command source, by priority; empty if the robot has no list of them."""
         text = self.value(self.controller, "sources")
-        return dict(part.split(": ", 1) for part in text.split(", ")) if text else {}
+        parts = [part.partition(": ") for part in text.split(", ")]
+        return {name: state for name, colon, state in parts if colon}
 
     def path(self, name: str) -> str:
         """The absolute name of a topic or service."""

@@ -88,6 +88,15 @@ TEST_F(Xacro, RefusesInItsOwnWords) {
   EXPECT_THAT(refusal("unknown.xacro"), HasSubstr("xacro:nothing"));
 }
 
+TEST_F(Xacro, AProgramInItIsRefusedByItsName) {
+  SKIP_WITHOUT_XACRO();
+  folder_.write(
+      "program.xacro",
+      "<robot name=\"r\" xmlns:xacro=\"http://www.ros.org/wiki/xacro\"><link name=\""
+      "${[c for c in ().__class__.__base__.__subclasses__() if c.__name__ == 'Popen'][0]('true')}\"/></robot>");
+  EXPECT_THAT(refusal("program.xacro"), AllOf(HasSubstr("program.xacro"), HasSubstr("__ is refused in an expression")));
+}
+
 TEST_F(Xacro, AbsentFileIsRefused) {
   EXPECT_THAT(refusal("nowhere.xacro"), AllOf(HasSubstr("nowhere.xacro"), HasSubstr("No such file")));
 }

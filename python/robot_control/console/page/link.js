@@ -32,7 +32,8 @@ export function connect() {
     for (const resolve of waiting.values()) resolve({ accepted: false, text: "the connection was lost" });
     waiting.clear();
     emit("closed", {});
-    if (code === 4401 || (await loggedOut())) location.assign("/login");
+    if (code === 4409) emit("said", { text: "this page gave way to a newer one of yours: reload it to go on" });
+    else if (code === 4401 || (await loggedOut())) location.assign("/login");
     else setTimeout(connect, wait = Math.min(2 * wait, MAX_WAIT));
   };
 }

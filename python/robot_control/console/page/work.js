@@ -3,10 +3,12 @@ import { on, send, call, connect } from "/link.js";
 import { release } from "/drive.js";
 import { by, list, number } from "/panels.js";
 
+const E_STOP_LIMIT = 4000;  // ms; the server answers after 3 s at the latest
 const messages = [];
 let authority = null, robot = null, key = "";
 
 function say(text) {
+  if (messages[0]?.endsWith(` ${text}`)) return;
   messages.unshift(`${new Date().toLocaleTimeString()} ${text}`);
   messages.length = Math.min(messages.length, 8);
   list("messages", messages);
@@ -108,10 +110,12 @@ for (const id of SPEEDS) {
 by("e-stop").addEventListener("click", async () => {
   release();
   try {
-    const answer = await fetch("/api/e_stop", { method: "POST", keepalive: true });
-    say(answer.ok ? "the emergency stop was requested" : `EMERGENCY STOP NOT SENT: ${await answer.text()}`);
+    const signal = AbortSignal.timeout(E_STOP_LIMIT);
+    const answer = await fetch("/api/e_stop", { method: "POST", keepalive: true, signal });
+    const { confirmed, text } = answer.ok ? await answer.json() : { confirmed: false, text: await answer.text() };
+    say(`${confirmed ? "emergency stop confirmed" : "EMERGENCY STOP NOT CONFIRMED"}: ${text}`);
   } catch {
-    say("EMERGENCY STOP NOT SENT: the console does not answer; use the button on the robot");
+    say("EMERGENCY STOP NOT CONFIRMED: the console does not answer; use the button on the robot");
   }
 });
 
