@@ -8,6 +8,8 @@ from typing import Any
 
 import yaml  # type: ignore[import-untyped]
 
+from robot_control.common.files import printable
+
 
 class SettingsError(ValueError):
     """The settings cannot be used; the message names every problem."""
@@ -24,9 +26,17 @@ def overlaid(paths: Iterable[Path], problems_of: Callable[[Any], Iterable[str]])
     for path in paths:
         try:
             tree = yaml.safe_load(path.read_text(encoding="utf-8")) or {}
-        except (yaml.YAMLError, UnicodeDecodeError, RecursionError) as error:
-            raise SettingsError(f"{path}: is no YAML: {error}") from None
+        except OSError:
+            raise
+        except Exception as error:  # PyYAML raises any
+            raise SettingsError(f"{path}: is no YAML{_place_of(error)}") from None
         found = [f"{path}: {problem}" for problem in problems_of(tree)]
         problems += found
         values |= {} if found else tree
     return values, problems
+
+
+def _place_of(error: Exception) -> str:
+    """Line and problem, without the text of the line, which may hold a password."""
+    mark, problem = getattr(error, "problem_mark", None), getattr(error, "problem", "")
+    return f", line {mark.line + 1}: {printable(str(problem))}" if mark else f": {type(error).__name__}"

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import re
 import socket
 from collections.abc import Iterator, Mapping
@@ -17,7 +16,9 @@ from robot_control.common.settings_files import SettingsError, overlaid
 RCLONE_CONFIG = "~/.config/rclone/rclone.conf"
 """rclone's own place for it"""
 HOURS = re.compile(r"([01]\d|2[0-3]):([0-5]\d)-([01]\d|2[0-3]):([0-5]\d)")
-ROBOT = re.compile(r"[A-Za-z0-9_.-]{1,64}")
+ROBOT = re.compile(r"(?!\.)[A-Za-z0-9_.-]{1,64}")
+MAX_NUMBER = 1e9
+"""of any setting"""
 
 
 @dataclass(frozen=True)
@@ -52,7 +53,17 @@ class Settings:
     def destination(self) -> str:
         """The folder of this robot, as rclone names it."""
         slash = "" if self.far_side.endswith((":", "/")) else "/"
-        return f"{self.far_side}{slash}{self.robot or socket.gethostname()}"
+        return f"{self.far_side}{slash}{self.name}"
+
+    @property
+    def name(self) -> str:
+        """Of the robot."""
+        return self.robot or socket.gethostname()
+
+
+def redacted(place: str) -> str:
+    """A place as rclone names it, for a message: without the options of a connection string and the user of a URL."""
+    return printable(place if place.startswith("/") else re.sub(r"(?s)(,|//).*", r"\1…", place))
 
 
 def read_settings(*paths: Path) -> Settings:
@@ -77,26 +88,34 @@ def _wrong_types(tree: object) -> Iterator[str]:
         return
     defaults = {each.name: each.default for each in fields(Settings)}
     for name, value in tree.items():
-        default, text = defaults.get(name), printable(str(value))
+        default, text = defaults.get(name), _shown(value)
         if name not in defaults:
-            yield f"{printable(str(name))}: is unknown; known are {', '.join(defaults)}"
+            yield f"{_shown(name)}: is unknown; known are {', '.join(defaults)}"
         elif isinstance(default, tuple):
             if not isinstance(value, list) or not all(isinstance(each, str) for each in value):
                 yield f"{name} = {text}: must be a list of texts"
         elif isinstance(default, float):
-            if not isinstance(value, int | float) or isinstance(value, bool) or not 0 <= value < math.inf:
-                yield f"{name} = {text}: must be a number, 0 or more"
+            if not isinstance(value, int | float) or isinstance(value, bool) or not 0 <= value <= MAX_NUMBER:
+                yield f"{name} = {text}: must be a number, 0 or more, at most {MAX_NUMBER:g}"
         elif not isinstance(value, type(default)):
             yield f"{name} = {text}: must be {'true or false' if isinstance(default, bool) else 'a text'}"
+        elif isinstance(value, str) and not value.isprintable():
+            yield f"{name} = {text}: holds characters that do not print"
+
+
+def _shown(value: object) -> str:
+    """The value, in which a text may be a place; of a list or of a long number its kind alone."""
+    plain = isinstance(value, str | bool | float) or (isinstance(value, int) and abs(value) < 1 << 64)
+    return redacted(str(value)) if plain else f"a value of the kind {type(value).__name__}"
 
 
 def _together(settings: Settings) -> Iterator[str]:
     if not settings.far_side:
         yield "far_side is empty: name a remote of rclone's configuration and a folder there, as in factory:robots"
     elif settings.far_side.startswith("-"):
-        yield f"far_side = {printable(settings.far_side)}: begins with -"
-    if settings.robot and not ROBOT.fullmatch(settings.robot):
-        yield f"robot = {printable(settings.robot)}: must be of letters, digits and _ . -, at most 64"
+        yield f"far_side = {redacted(settings.far_side)}: begins with -"
+    if not ROBOT.fullmatch(settings.name):
+        yield f"robot = {printable(settings.name)}: must be of letters, digits and _ . -, at most 64, without a . before"
     for each in settings.hours:
         if not HOURS.fullmatch(each):
             yield f"hours: {printable(each)}: must be as in 22:00-06:00"

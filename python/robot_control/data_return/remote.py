@@ -1,0 +1,216 @@
+"""The remote through rclone, which neither resumes nor writes atomically: every call says what it has left there."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+import re
+import shutil
+import subprocess
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from robot_control.common.files import given_path, printable
+from robot_control.data_return.parts import MAX_FILE
+from robot_control.data_return.settings import Settings, redacted
+
+POLL = 0.2
+"""s between two checks whether a call has to end"""
+SILENCE = 20
+"""s without a byte after which a connection counts as lost"""
+SLOWEST = 20e3
+"""bytes/s; a link that is slower is no good one"""
+HASHES = ("sha256", "sha1", "md5")
+"""that a remote may compute of a file; the first one is compared"""
+NOT_FOUND = (3, 4)
+"""exit codes of rclone: a folder, a file"""
+PLACE = "robot_control_place"
+"""name of rclone's alias for the place of all calls, for a command line is shown to every user of the machine"""
+
+REASONS = (
+    (r"didn't find section in config", "this remote is not in rclone's configuration: rclone config shows all"),
+    (r"directory not found", "there is no such folder"),
+    (r"certificate has expired", "its certificate has expired: renew it there"),
+    (r"x509|certificate", "its certificate is not trusted: set ca_file"),
+    (r"knownhosts|host key", "its host key is not the known one: known_hosts_file of rclone's configuration"),
+    (
+        r"unable to authenticate|\b401\b|unauthorized|invalid ?credentials|SignatureDoesNotMatch|InvalidAccessKeyId",
+        "it refuses user or password: rclone config",
+    ),
+    (r"no space left|\b507\b|insufficient storage|quota|\b405\b|SSH_FX_FAILURE", "it cannot write; is its disk full?"),
+    (r"permission denied|\b403\b|forbidden|read-?only", "this user may not write there"),
+    (
+        r"connection re|no such host|i/o timeout|unreachable|no route|deadline exceeded|broken pipe|connection lost|"
+        r"\bEOF\b|couldn't connect|handshake|\b50[234]\b|server misbehaving|closed network",
+        "it does not answer",
+    ),
+)
+"""what rclone writes, and what it means"""
+
+
+class RemoteError(RuntimeError):
+    """A call failed; the message says why and what helps."""
+
+
+class InterruptedCallError(RuntimeError):
+    """A call was ended, because nothing may be sent now."""
+
+
+@dataclass(frozen=True)
+class RemoteFile:
+    """What a remote says of a file; kind of hash and hash are empty where it computes none."""
+
+    size: int
+    kind: str = ""
+    digest: str = ""
+
+    def holds(self, data: bytes) -> bool:
+        """By its hash, else by its size."""
+        own = hashlib.new(self.kind, data, usedforsecurity=False).hexdigest() if self.kind else ""
+        return (self.size, self.digest) == (len(data), own)
+
+
+def require_rclone() -> None:
+    """Raises RemoteError: it is missing."""
+    if shutil.which("rclone") is None:
+        raise RemoteError("needs Debian's rclone: scripts/setup --data-return")
+
+
+class Rclone:
+    """Calls of rclone in which `PLACE:` is `place`. Neither their command lines nor their errors show its passwords.
+
+    `reason_to_wait` says during a call why it has to end; empty: it goes on.
+    """
+
+    def __init__(
+        self, place: str, config: str, *options: str, reason_to_wait: Callable[[], str] = lambda: "", bandwidth: float = 0
+    ) -> None:
+        self._shown, self._reason_to_wait = redacted(place), reason_to_wait
+        self._slowest = min(SLOWEST, bandwidth * 0.5e6) if bandwidth else SLOWEST
+        self._command = ["setpriv", "--pdeathsig", "KILL", "rclone", "--retries", "1", "--low-level-retries", "1"]
+        self._command += ["--transfers", "1", "--checkers", "1", "--timeout", f"{SILENCE}s"]
+        self._command += ["--contimeout", f"{SILENCE}s", "--config", str(given_path(config)), *options]
+        alias = f"RCLONE_CONFIG_{PLACE.upper()}"
+        self._environment = {**os.environ, "GOMAXPROCS": "1"}  # one core at most
+        self._environment |= {f"{alias}_TYPE": "alias", f"{alias}_REMOTE": place}
+
+    def require_permission(self) -> None:
+        """Raises InterruptedCallError: nothing may be sent now."""
+        if why := self._reason_to_wait():
+            raise InterruptedCallError(why)
+
+    def run(self, *words: str, size: int = 0, missing: bytes | None = None) -> bytes:
+        """The output of a call that moves `size` bytes; `missing` where there is no such folder or file.
+
+        Raises:
+            RemoteError, InterruptedCallError.
+        """
+        end = time.monotonic() + 3 * SILENCE + size / self._slowest
+        with subprocess.Popen(
+            [*self._command, *words],
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            env=self._environment,
+        ) as process:
+            while True:
+                try:
+                    out, problem = process.communicate(timeout=POLL)
+                    break
+                except subprocess.TimeoutExpired:
+                    try:
+                        self.require_permission()
+                        if time.monotonic() > end:
+                            raise RemoteError(
+                                f"{self._shown}: the link is slower than {self._slowest:.0f} bytes/s"
+                            ) from None
+                    except RuntimeError:
+                        process.kill()
+                        raise
+        if process.returncode in NOT_FOUND and missing is not None:
+            return missing
+        if process.returncode:
+            raise RemoteError(f"{self._shown}: {self._reason(problem.decode(errors='replace'))}")
+        return out
+
+    def _reason(self, problem: str) -> str:
+        why = reason(problem)
+        return "rclone failed" if self._shown.endswith("…") and why.startswith("rclone: ") else why
+
+
+class Remote:
+    """The folder of this robot."""
+
+    def __init__(self, settings: Settings, reason_to_wait: Callable[[], str] = lambda: "") -> None:
+        options = ["--bwlimit", f"{settings.bandwidth * 1e6:.0f}b"] if settings.bandwidth else []
+        if settings.ca_file:
+            options += ["--ca-cert", str(given_path(settings.ca_file))]
+        self._rclone = Rclone(
+            settings.destination,
+            settings.rclone_config,
+            *options,
+            reason_to_wait=reason_to_wait,
+            bandwidth=settings.bandwidth,
+        )
+        self.require_permission = self._rclone.require_permission
+
+    def put(self, source: Path, target: str) -> None:
+        """Copies the files of a folder. One with the same hash (without hashes: size) that is there already stays.
+
+        The caller verifies them: a copy that verifies by itself deletes a whole file where the link is cut meanwhile.
+        """
+        size = sum(each.stat().st_size for each in source.iterdir())
+        options = ("--checksum", "--ignore-checksum", "--no-traverse")
+        self._rclone.run("copy", *options, str(source), f"{PLACE}:{target}", size=size)
+
+    def files(self, target: str, names: Sequence[str] = (), size: int = 0) -> dict[str, RemoteFile]:
+        """The files of a folder whose files have `size` bytes together, or those of them that are named."""
+        chosen = [word for name in names for word in ("--include", f"/{name}")]
+        words = ("lsjson", "--hash", "--files-only", "--no-modtime", *chosen, f"{PLACE}:{target}")
+        return listed(self._rclone.run(*words, size=size, missing=b"[]"))
+
+    def read(self, name: str, size: int) -> bytes:
+        """The content of a file that should have this size; of a longer one not more than one byte more."""
+        return self._rclone.run("cat", "--count", str(size + 1), f"{PLACE}:{name}", size=size)
+
+    def remove(self, name: str) -> None:
+        """A file that has another content than was sent."""
+        self._rclone.run("deletefile", f"{PLACE}:{name}")
+
+    def used(self) -> int:
+        """Bytes of this robot."""
+        answer = self._rclone.run("size", "--json", f"{PLACE}:", missing=b'{"bytes": 0}')
+        try:
+            return int(json.loads(answer)["bytes"])
+        except (ValueError, KeyError, TypeError) as error:
+            raise RemoteError(f"rclone gives no size: {error}") from None
+
+
+def listed(answer: bytes, name: str = "Name") -> dict[str, RemoteFile]:
+    """The files of rclone's list, by their `name`. Raises RemoteError: it is none."""
+    try:
+        files = {}
+        for each in json.loads(answer):
+            if not isinstance(each[name], str) or type(each["Size"]) is not int:
+                raise ValueError("a file without name and size")
+            files[each[name]] = RemoteFile(each["Size"], *_hash(each.get("Hashes") or {}))
+    except (ValueError, KeyError, TypeError, AttributeError, RecursionError) as error:
+        raise RemoteError(f"rclone gives no list of files: {printable(str(error))}") from None
+    return files
+
+
+def _hash(known: dict[str, Any]) -> tuple[str, str]:
+    return next(((kind, known[kind].lower()) for kind in HASHES if known.get(kind)), ("", ""))
+
+
+def reason(problem: str) -> str:
+    """One sentence for what stopped rclone, out of its output."""
+    for pattern, meaning in REASONS:
+        if re.search(pattern, problem, re.IGNORECASE):
+            return meaning
+    lines = [line for line in problem.splitlines() if line.strip()]
+    return f"rclone: {printable(re.sub(r'^[0-9/]+ [0-9:]+ ', '', lines[-1]))}" if lines else "rclone failed"
