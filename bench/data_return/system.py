@@ -15,8 +15,8 @@ from types import TracebackType
 from typing import Self
 
 import yaml  # type: ignore[import-untyped]
-from robot_control.data_return.remote import Remote
 from robot_control.data_return.plan import BATCH, PART_BYTES
+from robot_control.data_return.remote import Remote
 from robot_control.data_return.settings import read_settings
 
 from bench.console.process import program

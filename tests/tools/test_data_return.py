@@ -8,6 +8,16 @@ from itertools import pairwise
 from pathlib import Path
 
 import pytest
+from data_return_system import (
+    DAY,
+    OPEN_BAG,
+    PART,
+    WHOLE_BAG,
+    System,
+    check_nothing_is_lost,
+    use_small_parts,
+    write,
+)
 from robot_control.common import files as common_files
 from robot_control.common.files import write_durably
 from robot_control.data_return import plan
@@ -17,20 +27,15 @@ from robot_control.data_return.node import default_interfaces
 from robot_control.data_return.parts import MANIFEST, GapError, manifest, opened, put_together, read_manifest
 from robot_control.data_return.plan import Conditions, Entry, Part, deletable, next_entry, reason_to_wait
 from robot_control.data_return.queue_file import QueueError, QueueFile
-from robot_control.data_return.sender import Sender
 from robot_control.data_return.settings import Settings, SettingsError, read_settings
 
 from bench.data_return.virtual_disk import VirtualDisk
 from bench.data_return.virtual_remote import PowerLoss, VirtualRemote
 
-DAY = 2e9  # s; all files are older
-PART = 1000  # bytes, in place of 4 MiB
-
 
 @pytest.fixture(autouse=True)
 def small_parts(monkeypatch):
-    for module in ("plan", "parts"):
-        monkeypatch.setattr(f"robot_control.data_return.{module}.PART_BYTES", PART)
+    use_small_parts(monkeypatch)
 
 
 def entry(name, kind="runs", at=0, size=10, **fields):
@@ -148,8 +153,10 @@ KNOWN = '{"key": "1-10-1", "path": "a", "kind": "runs", "size": 10, "mtime_ns": 
         '{"files": [%s]}' % (KNOWN % ('"runs/../../r2"', "{}", '"returned": true')),
         '{"files": [%s]}' % (KNOWN % ('"runs/a"', "{}", '"returned": 1')),
         '{"files": [%s]}' % (KNOWN % ('"runs/a"', "{}", '"returned": true, "size": 1e300')),
-        '{"files": [%s]}' % (KNOWN % ('"runs/a"', '{"7": {"name": "00007", "size": 1, "sha256": ""}}', '"returned": true')),
-        '{"files": [%s]}' % (KNOWN % ('"runs/a"', '{"0": {"name": "../0", "size": 1, "sha256": ""}}', '"returned": true')),
+        '{"files": [%s]}'
+        % (KNOWN % ('"runs/a"', '{"7": {"name": "00007", "size": 1, "sha256": ""}}', '"returned": true')),
+        '{"files": [%s]}'
+        % (KNOWN % ('"runs/a"', '{"0": {"name": "../0", "size": 1, "sha256": ""}}', '"returned": true')),
     ],
     ids=["empty", "list", "deep", "key", "no list", "target", "type", "size", "number", "name"],
 )
@@ -178,15 +185,6 @@ def test_one_program_uses_a_queue(tmp_path):
 
 
 # ---- what is finished
-
-OPEN_BAG = b"#ROSBAG V2.0\n" + b"index_pos=" + bytes(8) + b"rows"
-WHOLE_BAG = b"#ROSBAG V2.0\n" + b"index_pos=" + b"\x01" + bytes(7) + b"rows"
-
-
-def write(path, content, at=1e9):
-    path.parent.mkdir(parents=True, exist_ok=True)
-    path.write_bytes(content)
-    os.utime(path, (at, at))
 
 
 def opened_file(path):
@@ -296,56 +294,7 @@ def plan_sha(data):
     return sha256(data)
 
 
-# ---- the sender with a far side in memory
-
-
-class System:
-    """Logs, a queue and a far side; the program can end at any moment and begins again."""
-
-    def __init__(self, tmp_path, files, far=None, **values):
-        self.folder, self.sources = tmp_path, files
-        for number, (name, content) in enumerate(files.items()):
-            write(tmp_path / "logs" / name, content, 1e9 + number)
-        self.settings = Settings(folder=str(tmp_path / "logs"), queue_folder=str(tmp_path / "queue"), **values)
-        self.far = far or VirtualRemote()
-        self.said = []
-        self.now = 0.0
-        self.begin()
-
-    def begin(self):
-        self.settings.queue.mkdir(exist_ok=True)
-        self.queue = QueueFile(self.settings.queue)
-        self.sender = Sender(self.settings, self.queue, self.far, self.said.append)
-
-    def step(self, reason_to_wait=""):
-        self.now += 1.0
-        return self.sender.step(self.now, DAY, reason_to_wait)
-
-    @property
-    def done(self):
-        return bool(self.queue.entries) and all(each.returned for each in self.queue.entries.values())
-
-    def finish(self, steps=2000):
-        for _ in range(steps):
-            self.step()
-            if self.done:
-                return
-        raise AssertionError(self.sender.progress)
-
-    def written(self, folder):
-        for name, data in self.far.content.items():
-            write(folder / name, data)
-        return folder
-
-    def verify_far_side(self):
-        out = {}
-        for name in [name for name in self.far.content if name.endswith(MANIFEST)]:
-            begin = name.removesuffix(MANIFEST)
-            path = self.folder / "one"
-            with path.open("wb") as file:
-                content = put_together(lambda wanted, begin=begin: self.far.content[begin + wanted], file)
-            out[content["name"]] = path.read_bytes()
-        assert out == self.sources
+# ---- the sender with a remote in memory
 
 
 def some_files(seed=1):
@@ -397,17 +346,6 @@ def test_the_program_may_end_before_every_effect(tmp_path, monkeypatch, hashes):
         if left[0] > -1:
             break
     assert lost_at > 30
-
-
-def check_nothing_is_lost(system):
-    """Each file that is no more on the robot is whole on the far side."""
-    for name, content in system.sources.items():
-        path = system.folder / "logs" / name
-        if path.exists():
-            assert path.read_bytes() == content
-            continue
-        (begin,) = {key.rpartition("/")[0] for key in system.far.content if key.split("Z-")[1].startswith(path.name)}
-        assert put_together(lambda wanted, begin=begin: system.far.content[f"{begin}/{wanted}"], None)["name"] == name
 
 
 @pytest.mark.parametrize(("in_batch_time", "parts"), [(0.0, 4), (1.0, 4), (10.5, 10), (100.0, 16)])

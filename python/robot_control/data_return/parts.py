@@ -23,7 +23,7 @@ HELPS = 0.9
 SAMPLE = 1 << 16
 """bytes: a part that does not compress, as those of most bags, costs a 64th of the time"""
 FORMAT = 1
-RANGES = {"size": (0, 2**63 - 1), "mtime_ns": (-(2**63), 2**63 - 1), "part_size": (1, MAX_FILE)}
+RANGES = {"size": (0, 2**63 - 1), "mtime_ns": (-(2**65), 2**65), "part_size": (1, MAX_FILE)}
 """of the numbers of a manifest"""
 
 

@@ -15,7 +15,6 @@ from pathlib import Path
 from typing import Any
 
 from robot_control.common.files import given_path, printable
-from robot_control.data_return.parts import MAX_FILE
 from robot_control.data_return.settings import Settings, redacted
 
 POLL = 0.2
@@ -87,7 +86,12 @@ class Rclone:
     """
 
     def __init__(
-        self, place: str, config: str, *options: str, reason_to_wait: Callable[[], str] = lambda: "", bandwidth: float = 0
+        self,
+        place: str,
+        config: str,
+        *options: str,
+        reason_to_wait: Callable[[], str] = lambda: "",
+        bandwidth: float = 0,
     ) -> None:
         self._shown, self._reason_to_wait = redacted(place), reason_to_wait
         self._slowest = min(SLOWEST, bandwidth * 0.5e6) if bandwidth else SLOWEST

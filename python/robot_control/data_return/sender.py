@@ -31,7 +31,7 @@ from robot_control.data_return.plan import (
 )
 from robot_control.data_return.queue_file import QueueFile
 from robot_control.data_return.remote import InterruptedCallError, Remote, RemoteError
-from robot_control.data_return.removal import remove
+from robot_control.data_return.removal import removal
 from robot_control.data_return.settings import Settings
 
 SCAN_PERIOD = 5.0
@@ -42,9 +42,9 @@ SCAN_PERIOD = 5.0
 class _Setback:
     """Why a file failed while another one did not, and when it is tried again."""
 
-    why: str
-    count: int
-    again: float
+    why: str = ""
+    count: int = 0
+    again: float = 0.0
 
 
 class Sender:
@@ -110,24 +110,28 @@ class Sender:
         return entry is not None
 
     def _fail(self, now: float, entry: Entry | None, why: str) -> None:
-        self._failures += 1
         self._used, self._scan_at = None, 0.0
+        if entry is not None and entry.key in self._setbacks:
+            self._set_back(now, entry.key, why)
+            return
+        self._failures += 1
         self._again = now + wait_after(self._failures)
-        known = self._setbacks.get(entry.key) if entry else None
-        if why != self._problem and (known is None or why != known.why):
+        if why != self._problem:
             self._say(f"{why}; tried again, at the latest every {wait_after(99):.0f} s")
         self._problem = why
         if entry is not None:
             self._failed[entry.key] = why
 
+    def _set_back(self, now: float, key: str, why: str) -> None:
+        known = self._setbacks.get(key, _Setback())
+        if why != known.why:
+            self._say(f"{printable(self._queue.entries[key].path)} waits, and others go on: {why}")
+        self._setbacks[key] = _Setback(why, known.count + 1, now + wait_after(known.count + 1))
+
     def _succeed(self, now: float, entry: Entry) -> None:
         self._setbacks.pop(entry.key, None)
         for key in self._failed.keys() & self._queue.entries.keys() - {entry.key}:
-            why, known = self._failed[key], self._setbacks.get(key)
-            if known is None or known.why != why:
-                self._say(f"{printable(self._queue.entries[key].path)} waits, and others go on: {why}")
-            times = known.count + 1 if known else 1
-            self._setbacks[key] = _Setback(why, times, now + wait_after(times))
+            self._set_back(now, key, self._failed[key])
         self._failed.clear()
 
     def _next(self, now: float) -> Entry | None:
@@ -137,7 +141,7 @@ class Sender:
         ready = [
             each
             for each in [*surplus, *(each for each in entries if not each.returned)]
-            if each.key not in self._setbacks or self._setbacks[each.key].again <= now
+            if self._setbacks.get(each.key, _Setback()).again <= now
         ]
         if all(each.key in self._failed for each in ready):
             self._failed.clear()
@@ -154,13 +158,14 @@ class Sender:
 
     def _delete(self, entry: Entry) -> None:
         """Deletes a file that the remote still has; another one is sent again."""
-        known = self._manifest(entry.target)
-        if known is not None and len(self._proven(entry, known)) == entry.count:
-            remove(self._settings.logs / entry.path, entry.key)
-            del self._queue.entries[entry.key]
-        else:
-            entry.returned = False
-            self._say(f"{printable(entry.path)} is no more on the far side as it is here; it is sent again")
+        with removal(self._settings.logs / entry.path) as remove:
+            known = self._manifest(entry.target)
+            if known is not None and len(self._proven(entry, known)) == entry.count:
+                remove()
+                del self._queue.entries[entry.key]
+            else:
+                entry.returned = False
+                self._say(f"{printable(entry.path)} is no more on the far side as it is here; it is sent again")
         self._queue.save()
 
     def _send(self, entry: Entry) -> None:
