@@ -49,7 +49,8 @@ class DataReturnTest(unittest.TestCase):
         self.assertEqual(os.getpriority(os.PRIO_PROCESS, sender.pid), 19)
         wait_for("the return", lambda: reports[-1].data_return == "all 1 files are on the far side")
         self.assertTrue(verify(f"{folder}/far", "", None))
-        self.assertEqual(reports[-1].problems, [])
+        # The odometry is degraded until the first rest: a robot whose machine is busy is ready to drive before it.
+        wait_for("no problem", lambda: reports[-1].problems == [])
         run.unlink()
         (folder / "far").rename(folder / "gone")
         (folder / "far").write_text("no folder")
