@@ -24,7 +24,7 @@ from robot_control.data_return import plan
 from robot_control.data_return.fetch import verify
 from robot_control.data_return.main import _print_status
 from robot_control.data_return.node import default_interfaces
-from robot_control.data_return.parts import MANIFEST, GapError, manifest, opened, put_together, read_manifest
+from robot_control.data_return.parts import MANIFEST, GapError, manifest, opened, packed, put_together, read_manifest
 from robot_control.data_return.plan import Conditions, Entry, Part, deletable, next_entry, reason_to_wait
 from robot_control.data_return.queue_file import QueueError, QueueFile
 from robot_control.data_return.settings import Settings, SettingsError, read_settings
@@ -236,9 +236,9 @@ def test_a_renamed_run_is_the_same_file(tmp_path):
 def test_parts_are_the_same_whenever_they_are_packed_and_compressed_where_it_helps(tmp_path):
     noise = random.Random(1).randbytes(PART)
     write(tmp_path / "run.1.bag", bytes(PART) + noise + b"end")
-    with opened_file(tmp_path / "run.1.bag") as packed:
-        assert [packed(number)[0] for number in range(3)] == ["00000.gz", "00001", "00002"]
-        assert packed(0)[1][4:8] == bytes(4)  # gzip's field for the time of day
+    with opened_file(tmp_path / "run.1.bag") as file:
+        assert [packed(file, number)[0].name for number in range(3)] == ["00000.gz", "00001", "00002"]
+        assert packed(file, 0)[1][4:8] == bytes(4)  # gzip's field for the time of day
 
 
 @pytest.mark.parametrize("size", [0, 1, PART, PART + 1, 3 * PART])
@@ -279,19 +279,13 @@ def test_every_gap_is_named(tmp_path, capsys, name, change, words):
 
 def test_a_part_that_unpacks_to_more_than_it_may_is_refused(tmp_path):
     write(tmp_path / "run.1.bag", bytes(PART))
-    with opened_file(tmp_path / "run.1.bag") as packed:
-        name, data = packed(0)
-    whole = manifest(entry("run.1.bag", size=PART, parts={0: Part(name, len(data), plan_sha(data))}))
+    with opened_file(tmp_path / "run.1.bag") as file:
+        part, data = packed(file, 0)
+    whole = manifest(entry("run.1.bag", size=PART, parts={0: part}))
     small = whole.replace(b'"part_size": 1000', b'"part_size": 10')
     with pytest.raises(GapError, match="more than 10 bytes"):
         put_together(lambda wanted: small if wanted == MANIFEST else data, None)
     assert read_manifest(whole)["size"] == PART
-
-
-def plan_sha(data):
-    from robot_control.data_return.parts import sha256
-
-    return sha256(data)
 
 
 # ---- the sender with a remote in memory

@@ -3,18 +3,17 @@
 import hashlib
 import json
 import os
-import random
 import stat
 import subprocess
 import time
 from pathlib import Path
 
 import pytest
-from data_return_system import DAY, PART, WHOLE_BAG, System, use_small_parts, write
+from data_return_system import DAY, WHOLE_BAG, write
 from robot_control.data_return.fetch import verify
-from robot_control.data_return.parts import MANIFEST, MAX_FILE, GapError, put_together, read_manifest
+from robot_control.data_return.parts import MANIFEST, MAX_FILE, GapError, put_together
 from robot_control.data_return.queue_file import QueueFile
-from robot_control.data_return.remote import Remote, Rclone, RemoteError, listed
+from robot_control.data_return.remote import Remote, RemoteError, listed
 from robot_control.data_return.sender import Sender
 from robot_control.data_return.settings import Settings, SettingsError, read_settings, redacted
 
@@ -77,13 +76,13 @@ def test_a_name_that_is_none_is_a_gap_and_writes_nothing(tmp_path, monkeypatch, 
     """As a remote may list it, or a rclone that was replaced."""
     answer = json.dumps([{"Path": f"{each}/{MANIFEST}", "Size": 3} for each in (folder, "good")]).encode()
 
-    def run(_rclone, *words, **_):
+    def run(_remote, *words, **_):
         if words[0] == "copy":
             assert words[-2].endswith(":good")
             put_folder(Path(words[-1]))
         return answer
 
-    monkeypatch.setattr(Rclone, "run", run)
+    monkeypatch.setattr(Remote, "_rclone", run)
     monkeypatch.setattr("robot_control.data_return.fetch.require_rclone", lambda: None)
     assert not verify("far:", "", tmp_path / "target/out")
     assert [path.relative_to(tmp_path) for path in tmp_path.rglob("*") if path.is_file()] == [Path("target/out/good")]
@@ -273,7 +272,13 @@ def test_a_connection_string_works_and_its_password_is_seen_nowhere(tmp_path, mo
         verify(where, no_config, None)
     with pytest.raises(RemoteError, match=r":nosuch,…: rclone failed"):
         verify(f":nosuch,pass={hidden}:x", no_config, None)
-    told = [*said, sender.problem, sender.progress, capsys.readouterr().out, (tmp_path / "queue/queue.json").read_text()]
+    told = [
+        *said,
+        sender.problem,
+        sender.progress,
+        capsys.readouterr().out,
+        (tmp_path / "queue/queue.json").read_text(),
+    ]
     assert ":sftp,…/r1: it does not answer" in said[0] or ":sftp,…: it does not answer" in said[0]
     words = (tmp_path / "words").read_text().replace("serve", "")
     assert hidden not in words.split("--pass", 1)[-1]

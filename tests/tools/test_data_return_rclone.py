@@ -6,9 +6,9 @@ import subprocess
 import time
 
 import pytest
-from robot_control.data_return.remote import InterruptedCallError, Remote, reason
 from robot_control.data_return.fetch import verify
 from robot_control.data_return.queue_file import QueueFile
+from robot_control.data_return.remote import InterruptedCallError, Remote, reason
 from robot_control.data_return.sender import Sender
 from robot_control.data_return.settings import Settings
 
@@ -40,7 +40,9 @@ class System:
         self.reason_to_wait = ""
         self.said = []
         self.queue = QueueFile(tmp_path)
-        self.sender = Sender(self.settings, self.queue, Remote(self.settings, lambda: self.reason_to_wait), self.said.append)
+        self.sender = Sender(
+            self.settings, self.queue, Remote(self.settings, lambda: self.reason_to_wait), self.said.append
+        )
 
     def step(self, now):
         return self.sender.step(now, time.time(), "")

@@ -8,13 +8,14 @@ from __future__ import annotations
 import os
 import stat
 import tempfile
-from collections.abc import Iterator, Mapping, Set
-from contextlib import AbstractContextManager, contextmanager, nullcontext
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager, nullcontext, suppress
 from pathlib import Path, PurePosixPath
 
 from robot_control.common.files import NewFiles, escaped, given_path
 from robot_control.data_return.parts import MANIFEST, MAX_FILE, GapError, put_together, read_manifest
-from robot_control.data_return.remote import PLACE, Rclone, RemoteError, listed, require_rclone
+from robot_control.data_return.remote import Remote, RemoteError, require_rclone
+from robot_control.data_return.settings import Settings
 
 
 def verify(source: str, rclone_config: str, out: Path | None) -> bool:
@@ -23,39 +24,39 @@ def verify(source: str, rclone_config: str, out: Path | None) -> bool:
     Raises:
         RemoteError, OSError: nothing can be read.
     """
-    local = given_path(source)
-    place = _Folder(local) if local.is_dir() else _OnRemote(source, rclone_config)
-    whole = gaps = 0
-    for folder, sizes in sorted(place.folders().items()):
+    local, remote = given_path(source), None
+    if local.is_dir():  # the sizes are seen when the files are read
+        sizes_by_path = {str(path.relative_to(local)): 0 for path in local.rglob("*") if not path.is_dir()}
+    else:
+        require_rclone()
+        remote = Remote(Settings(rclone_config=rclone_config), place=source)
+        sizes_by_path = {path: file.size for path, file in remote.all_files().items()}
+    gaps, folders = 0, dict[str, dict[str, int]]()
+    for path, size in sizes_by_path.items():
+        folder, _, name = path.rpartition("/")
+        folders.setdefault(folder, {})[name] = size
+    for folder, sizes in sorted(folders.items()):
         try:
             names = _names(folder or PurePosixPath(source.rpartition(":")[2]).name)
             if MANIFEST not in sizes:
                 raise GapError(f"no {MANIFEST}, {len(sizes)} parts: it is being sent, or was deleted on the robot")
-            with place.copied(folder, sizes) as copy:
+            with _copied(remote, folder, sizes) if remote else nullcontext(local / folder) as copy:
                 name = _one(copy, out.joinpath(*names) if out else None)
-            whole += 1
             print(escaped(f"whole: {folder or '.'} ({name})"))
         except (GapError, RemoteError, OSError) as error:
             gaps += 1
             print(escaped(f"gap:   {folder or '.'}: {error}"))
-    print(f"{whole} files are whole, {gaps} are not")
+    print(f"{len(folders) - gaps} files are whole, {gaps} are not")
     return gaps == 0
 
 
 def _names(path: str) -> list[str]:
     """The components of a path from outside. Raises GapError: one of them is no name, or names another folder."""
     names = path.split("/")
-    if any(name in ("", ".", "..") or "\0" in name or not _is_for_files(name) for name in names):
-        raise GapError("its path has a part that is no name")
-    return names
-
-
-def _is_for_files(name: str) -> bool:
-    try:
-        os.fsencode(name)
-    except UnicodeEncodeError:  # half of a surrogate pair, as JSON may have it
-        return False
-    return True
+    with suppress(UnicodeEncodeError):  # half of a surrogate pair, as JSON may have it
+        if not {"", ".", ".."} & set(names) and b"\0" not in os.fsencode(path):
+            return names
+    raise GapError("its path has a part that is no name")
 
 
 def _one(copy: Path, out: Path | None) -> str:
@@ -81,53 +82,13 @@ def _content(path: Path) -> bytes:
         return opened.read(MAX_FILE + 1)
 
 
-class _Folder:
-    """Of this machine."""
-
-    def __init__(self, root: Path) -> None:
-        self._root = root
-
-    def folders(self) -> dict[str, dict[str, int]]:
-        """Paths of the folders with files in them, below the root; the files' sizes are not needed."""
-        found = {os.path.relpath(folder, self._root): files for folder, _, files in os.walk(self._root) if files}
-        return {"" if folder == "." else folder: dict.fromkeys(files, 0) for folder, files in found.items()}
-
-    def copied(self, folder: str, _sizes: Mapping[str, int]) -> AbstractContextManager[Path]:
-        """The folder itself."""
-        return nullcontext(self._root / folder)
-
-
-class _OnRemote:
-    """Of rclone's."""
-
-    def __init__(self, source: str, rclone_config: str) -> None:
-        require_rclone()
-        self._rclone = Rclone(source, rclone_config)
-
-    def folders(self) -> dict[str, dict[str, int]]:
-        """Paths of the folders with files in them, below the source, and the sizes of their files."""
-        found = dict[str, dict[str, int]]()
-        answer = self._rclone.run("lsjson", "--recursive", "--files-only", "--no-modtime", f"{PLACE}:")
-        for path, file in listed(answer, "Path").items():
-            folder, _, name = path.rpartition("/")
-            found.setdefault(folder, {})[name] = file.size
-        return found
-
-    @contextmanager
-    def copied(self, folder: str, sizes: Mapping[str, int]) -> Iterator[Path]:
-        """A copy of the files that the manifest names, none of them longer than a part may be."""
-        with tempfile.TemporaryDirectory(prefix="data-return-") as name:
-            copy = Path(name)
-            self._copy(folder, {MANIFEST}, sizes, copy)
-            if (copy / MANIFEST).exists():
-                names = {part.name for part in read_manifest(_content(copy / MANIFEST))["parts"]}
-                self._copy(folder, names, sizes, copy)
-            yield copy
-
-    def _copy(self, folder: str, names: Set[str], sizes: Mapping[str, int], copy: Path) -> None:
-        chosen = [name for name in names & sizes.keys() if sizes[name] <= MAX_FILE]
-        with tempfile.NamedTemporaryFile("w", prefix="data-return-") as file:
-            file.write("\n".join(chosen))
-            file.flush()
-            words = ("copy", "--files-from-raw", file.name, "--no-traverse", f"{PLACE}:{folder}", str(copy))
-            self._rclone.run(*words, size=sum(sizes[name] for name in chosen))
+@contextmanager
+def _copied(remote: Remote, folder: str, sizes: Mapping[str, int]) -> Iterator[Path]:
+    """A copy of the files that the manifest of a folder names, none of them longer than a part may be."""
+    with tempfile.TemporaryDirectory(prefix="data-return-") as name:
+        copy = Path(name)
+        short = {name: size for name, size in sizes.items() if size <= MAX_FILE}
+        remote.copy(folder, {MANIFEST: sizes[MANIFEST]} if MANIFEST in short else {}, copy)
+        parts = {part.name for part in read_manifest(_content(copy / MANIFEST))["parts"]}
+        remote.copy(folder, {name: size for name, size in short.items() if name in parts}, copy)
+        yield copy

@@ -8,8 +8,7 @@ import json
 import os
 import zlib
 from collections.abc import Callable, Iterator, Mapping
-from contextlib import contextmanager
-from functools import partial
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any, BinaryIO
 
@@ -36,36 +35,59 @@ class ChangedError(RuntimeError):
 
 
 @contextmanager
-def opened(path: Path, key: str) -> Iterator[Callable[[int], tuple[str, bytes]]]:
-    """Gives `packed` of the file of this key. What it gave is of this file if the block ends without an exception.
+def opened(path: Path, key: str) -> Iterator[int]:
+    """The descriptor of the file of this key. What was read of it counts if the block ends without an exception.
 
     Raises:
-        ChangedError: the file is another one when it is opened, or after the block.
+        ChangedError: another file has the name, or it changed within the block.
         OSError: it cannot be read.
     """
     try:
         file = os.open(path, os.O_RDONLY | os.O_NOFOLLOW | os.O_NONBLOCK)
     except FileNotFoundError:
-        raise ChangedError(f"{path.name} has another name by now") from None
+        raise ChangedError("it has another name by now") from None
     try:
         before = os.fstat(file)
-        if identity(before) == key:
-            yield partial(packed, file)
+        if identity(before) != key:
+            raise ChangedError("another file has its name by now")
+        yield file
         after = os.fstat(file)
-        if (identity(before), identity(after), after.st_ctime_ns) != (key, key, before.st_ctime_ns):
-            raise ChangedError(f"{path.name} changed while it was read")
+        if after.st_nlink and (identity(after), after.st_ctime_ns) != (key, before.st_ctime_ns):
+            raise ChangedError("it changed while it was read")
     finally:
         os.close(file)
 
 
-def packed(file: int, number: int) -> tuple[str, bytes]:
-    """Name and content of a part of an open file; the same whenever it is packed. Raises OSError."""
+def remove(path: Path, known: os.stat_result) -> None:
+    """Deletes the file of this status, which is open. It first gets a name that nothing else uses.
+
+    Raises:
+        ChangedError: another file has its name by now, and stays, or it was touched.
+        OSError: it cannot be deleted.
+    """
+    if (now := path.lstat()).st_ctime_ns != known.st_ctime_ns or identity(now) != identity(known):
+        raise ChangedError("it was touched before it could be deleted")
+    aside = path
+    while os.path.lexists(aside):
+        aside = aside.with_name(f"_{aside.name}")
+    path.rename(aside)
+    if identity(aside.lstat()) == identity(known):
+        aside.unlink()
+        return
+    with suppress(OSError):  # otherwise it keeps the other name
+        os.link(aside, path, follow_symlinks=False)
+        aside.unlink()
+    raise ChangedError("another file has its name by now")
+
+
+def packed(file: int, number: int) -> tuple[Part, bytes]:
+    """A part of an open file, and its content; the same whenever it is packed. Raises OSError."""
     raw = os.pread(file, PART_BYTES, number * PART_BYTES)
     for tried in (raw[:SAMPLE], raw):
-        short = gzip.compress(tried, compresslevel=1, mtime=0)
-        if len(short) >= HELPS * len(tried):
-            return f"{number:05d}", raw
-    return f"{number:05d}.gz", short
+        data = gzip.compress(tried, compresslevel=1, mtime=0)
+        if len(data) >= HELPS * len(tried):
+            return Part(f"{number:05d}", len(raw), sha256(raw)), raw
+    return Part(f"{number:05d}.gz", len(data), sha256(data)), data
 
 
 def sha256(data: bytes) -> str:
@@ -108,6 +130,13 @@ def read_manifest(data: bytes) -> Mapping[str, Any]:
         if isinstance(error, GapError):
             raise
         raise GapError(f"{MANIFEST} is cut off or damaged") from None
+
+
+def known_parts(data: bytes) -> dict[int, Part]:
+    """The parts of a manifest; empty: it is cut off, or none."""
+    with suppress(GapError):
+        return dict(enumerate(read_manifest(data)["parts"]))
+    return {}
 
 
 def read_part(given: Mapping[str, Any], number: int) -> Part:

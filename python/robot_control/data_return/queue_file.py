@@ -16,7 +16,6 @@ from typing import Any
 from robot_control.common.files import printable, write_durably
 from robot_control.data_return.parts import read_part
 from robot_control.data_return.plan import KINDS, Entry, identity, kind_of
-from robot_control.data_return.removal import is_aside, put_back
 
 NAME = "queue.json"
 SETTLED = 10.0
@@ -25,8 +24,9 @@ NUMBERED_BAG = re.compile(r".*\.\d+\.bag")
 """a bag that telemetry writes no more: run.7.bag, stop.3.bag"""
 HEADER = 4096
 """bytes of a bag that hold its first record"""
-KEY = re.compile(r"\d+-\d+--?\d+")
 TARGET = re.compile(rf"({'|'.join(KINDS)})/(?!\.)[^/\0]+")
+FIRST, LAST = -6e10, 2.5e11
+"""s, the times that a date can show: years 68 to 9892"""
 LONGEST_NAME = 200
 """bytes of a file's name in the name of its folder on the remote, of 255 with time and number"""
 
@@ -93,15 +93,14 @@ class QueueFile:
 def _entry(given: dict[str, Any]) -> Entry:
     """Raises ValueError, KeyError, TypeError, AttributeError: it is none."""
     entry = Entry(**{**given, "parts": {}})
-    if not KEY.fullmatch(entry.key) or not TARGET.fullmatch(entry.target) or entry.kind not in KINDS:
-        raise ValueError(f"key {entry.key}, target {entry.target}")
-    whole = type(entry.size) is int and type(entry.mtime_ns) is int and 0 <= entry.size < 1 << 63
-    if not whole or not isinstance(entry.path, str) or not isinstance(entry.returned, bool):
-        raise TypeError("values of another type")
-    for number, part in given["parts"].items():
-        if not 0 <= int(number) < entry.count:
-            raise ValueError(f"part {int(number)} of {entry.count}")
-        entry.parts[int(number)] = read_part(part, int(number))
+    types = [type(each) for each in (entry.key, entry.path, entry.size, entry.mtime_ns, entry.returned)]
+    good = types == [str, str, int, int, bool] and entry.kind in KINDS and 0 <= entry.size < 1 << 63
+    if not good or not TARGET.fullmatch(entry.target):
+        raise ValueError("a file has values that are none of its")
+    for number in map(int, given["parts"]):
+        if not 0 <= number < entry.count:
+            raise ValueError(f"part {number} of {entry.count}")
+        entry.parts[number] = read_part(given["parts"][str(number)], number)
     return entry
 
 
@@ -109,22 +108,13 @@ def _finished(path: Path, logs: Path, day: float) -> Entry | None:
     """None: it is no file that returns, or not finished."""
     kind = kind_of(path.name)
     with contextlib.suppress(OSError):
-        if is_aside(path):
-            put_back(path)
         status = path.lstat()
         if kind and stat.S_ISREG(status.st_mode) and abs(day - status.st_mtime) >= SETTLED and _is_ended(path):
-            target = f"{kind}/{_time_of(status)}-{_plain(path.name)}"
-            return Entry(
-                identity(status), str(path.relative_to(logs)), kind, status.st_size, status.st_mtime_ns, target
-            )
+            time = datetime.fromtimestamp(min(max(status.st_mtime, FIRST), LAST), UTC)
+            target = f"{kind}/{time:%Y%m%dT%H%M%S.%fZ}-{_plain(path.name)}"
+            name = str(path.relative_to(logs))
+            return Entry(identity(status), name, kind, status.st_size, status.st_mtime_ns, target)
     return None
-
-
-def _time_of(status: os.stat_result) -> str:
-    try:
-        return datetime.fromtimestamp(status.st_mtime, UTC).strftime("%Y%m%dT%H%M%S.%fZ")
-    except (ValueError, OverflowError):  # a year beyond 9999
-        return str(status.st_mtime_ns)
 
 
 def _plain(name: str) -> str:

@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+import contextlib
 import hashlib
 import json
 import os
 import re
 import shutil
 import subprocess
+import tempfile
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -79,88 +81,26 @@ def require_rclone() -> None:
         raise RemoteError("needs Debian's rclone: scripts/setup --data-return")
 
 
-class Rclone:
-    """Calls of rclone in which `PLACE:` is `place`. Neither their command lines nor their errors show its passwords.
+class Remote:
+    """The folder `place` of a remote, by default that of this robot.
 
-    `reason_to_wait` says during a call why it has to end; empty: it goes on.
+    Neither the command lines of rclone nor an error show the passwords that `place` may hold. `reason_to_wait` says
+    during a call why it has to end; empty: it goes on.
     """
 
-    def __init__(
-        self,
-        place: str,
-        config: str,
-        *options: str,
-        reason_to_wait: Callable[[], str] = lambda: "",
-        bandwidth: float = 0,
-    ) -> None:
-        self._shown, self._reason_to_wait = redacted(place), reason_to_wait
-        self._slowest = min(SLOWEST, bandwidth * 0.5e6) if bandwidth else SLOWEST
+    def __init__(self, settings: Settings, reason_to_wait: Callable[[], str] = lambda: "", place: str = "") -> None:
+        self._reason_to_wait, place = reason_to_wait, place or settings.destination
+        self._shown = redacted(place)
+        self._slowest = min(SLOWEST, settings.bandwidth * 0.5e6) if settings.bandwidth else SLOWEST
         self._command = ["setpriv", "--pdeathsig", "KILL", "rclone", "--retries", "1", "--low-level-retries", "1"]
         self._command += ["--transfers", "1", "--checkers", "1", "--timeout", f"{SILENCE}s"]
-        self._command += ["--contimeout", f"{SILENCE}s", "--config", str(given_path(config)), *options]
-        alias = f"RCLONE_CONFIG_{PLACE.upper()}"
-        self._environment = {**os.environ, "GOMAXPROCS": "1"}  # one core at most
-        self._environment |= {f"{alias}_TYPE": "alias", f"{alias}_REMOTE": place}
-
-    def require_permission(self) -> None:
-        """Raises InterruptedCallError: nothing may be sent now."""
-        if why := self._reason_to_wait():
-            raise InterruptedCallError(why)
-
-    def run(self, *words: str, size: int = 0, missing: bytes | None = None) -> bytes:
-        """The output of a call that moves `size` bytes; `missing` where there is no such folder or file.
-
-        Raises:
-            RemoteError, InterruptedCallError.
-        """
-        end = time.monotonic() + 3 * SILENCE + size / self._slowest
-        with subprocess.Popen(
-            [*self._command, *words],
-            stdin=subprocess.DEVNULL,
-            stdout=subprocess.PIPE,
-            stderr=subprocess.PIPE,
-            env=self._environment,
-        ) as process:
-            while True:
-                try:
-                    out, problem = process.communicate(timeout=POLL)
-                    break
-                except subprocess.TimeoutExpired:
-                    try:
-                        self.require_permission()
-                        if time.monotonic() > end:
-                            raise RemoteError(
-                                f"{self._shown}: the link is slower than {self._slowest:.0f} bytes/s"
-                            ) from None
-                    except RuntimeError:
-                        process.kill()
-                        raise
-        if process.returncode in NOT_FOUND and missing is not None:
-            return missing
-        if process.returncode:
-            raise RemoteError(f"{self._shown}: {self._reason(problem.decode(errors='replace'))}")
-        return out
-
-    def _reason(self, problem: str) -> str:
-        why = reason(problem)
-        return "rclone failed" if self._shown.endswith("…") and why.startswith("rclone: ") else why
-
-
-class Remote:
-    """The folder of this robot."""
-
-    def __init__(self, settings: Settings, reason_to_wait: Callable[[], str] = lambda: "") -> None:
-        options = ["--bwlimit", f"{settings.bandwidth * 1e6:.0f}b"] if settings.bandwidth else []
+        self._command += ["--contimeout", f"{SILENCE}s", "--config", str(given_path(settings.rclone_config))]
+        if settings.bandwidth:
+            self._command += ["--bwlimit", f"{settings.bandwidth * 1e6:.0f}b"]
         if settings.ca_file:
-            options += ["--ca-cert", str(given_path(settings.ca_file))]
-        self._rclone = Rclone(
-            settings.destination,
-            settings.rclone_config,
-            *options,
-            reason_to_wait=reason_to_wait,
-            bandwidth=settings.bandwidth,
-        )
-        self.require_permission = self._rclone.require_permission
+            self._command += ["--ca-cert", str(given_path(settings.ca_file))]
+        alias = f"RCLONE_CONFIG_{PLACE.upper()}"
+        self._environment = {**os.environ, "GOMAXPROCS": "1", f"{alias}_TYPE": "alias", f"{alias}_REMOTE": place}
 
     def put(self, source: Path, target: str) -> None:
         """Copies the files of a folder. One with the same hash (without hashes: size) that is there already stays.
@@ -169,29 +109,65 @@ class Remote:
         """
         size = sum(each.stat().st_size for each in source.iterdir())
         options = ("--checksum", "--ignore-checksum", "--no-traverse")
-        self._rclone.run("copy", *options, str(source), f"{PLACE}:{target}", size=size)
+        self._rclone("copy", *options, str(source), f"{PLACE}:{target}", size=size)
+
+    def copy(self, folder: str, sizes: Mapping[str, int], out: Path) -> None:
+        """Copies these files of a folder into a local one."""
+        with tempfile.NamedTemporaryFile("w", prefix="data-return-") as file:
+            file.write("\n".join(sizes))
+            file.flush()
+            words = ("copy", "--files-from-raw", file.name, "--no-traverse", f"{PLACE}:{folder}", str(out))
+            self._rclone(*words, size=sum(sizes.values()))
 
     def files(self, target: str, names: Sequence[str] = (), size: int = 0) -> dict[str, RemoteFile]:
         """The files of a folder whose files have `size` bytes together, or those of them that are named."""
         chosen = [word for name in names for word in ("--include", f"/{name}")]
         words = ("lsjson", "--hash", "--files-only", "--no-modtime", *chosen, f"{PLACE}:{target}")
-        return listed(self._rclone.run(*words, size=size, missing=b"[]"))
+        return listed(self._rclone(*words, size=size, missing=b"[]"))
+
+    def all_files(self) -> dict[str, RemoteFile]:
+        """All files by their paths, without hashes."""
+        return listed(self._rclone("lsjson", "--recursive", "--files-only", "--no-modtime", f"{PLACE}:"), "Path")
 
     def read(self, name: str, size: int) -> bytes:
         """The content of a file that should have this size; of a longer one not more than one byte more."""
-        return self._rclone.run("cat", "--count", str(size + 1), f"{PLACE}:{name}", size=size)
+        return self._rclone("cat", "--count", str(size + 1), f"{PLACE}:{name}", size=size)
 
     def remove(self, name: str) -> None:
         """A file that has another content than was sent."""
-        self._rclone.run("deletefile", f"{PLACE}:{name}")
+        self._rclone("deletefile", f"{PLACE}:{name}")
 
     def used(self) -> int:
-        """Bytes of this robot."""
-        answer = self._rclone.run("size", "--json", f"{PLACE}:", missing=b'{"bytes": 0}')
-        try:
-            return int(json.loads(answer)["bytes"])
-        except (ValueError, KeyError, TypeError) as error:
-            raise RemoteError(f"rclone gives no size: {error}") from None
+        """Bytes of all files."""
+        return int(json.loads(self._rclone("size", "--json", f"{PLACE}:", missing=b'{"bytes": 0}'))["bytes"])
+
+    def require_permission(self) -> None:
+        """Raises InterruptedCallError: nothing may be sent now."""
+        if why := self._reason_to_wait():
+            raise InterruptedCallError(why)
+
+    def _rclone(self, *words: str, size: int = 0, missing: bytes | None = None) -> bytes:
+        end = time.monotonic() + 3 * SILENCE + size / self._slowest
+        quiet, pipe = subprocess.DEVNULL, subprocess.PIPE
+        command = [*self._command, *words]
+        with subprocess.Popen(command, stdin=quiet, stdout=pipe, stderr=pipe, env=self._environment) as process:
+            try:
+                while True:
+                    with contextlib.suppress(subprocess.TimeoutExpired):
+                        out, problem = process.communicate(timeout=POLL)
+                        break
+                    self.require_permission()
+                    if time.monotonic() > end:
+                        raise RemoteError(f"{self._shown}: the link is slower than {self._slowest:.0f} bytes/s")
+            finally:
+                process.kill()
+        if process.returncode in NOT_FOUND and missing is not None:
+            return missing
+        if process.returncode:
+            why = reason(problem.decode(errors="replace"))
+            hidden = self._shown.endswith("…") and why.startswith("rclone: ")
+            raise RemoteError(f"{self._shown}: {'rclone failed' if hidden else why}")
+        return out
 
 
 def listed(answer: bytes, name: str = "Name") -> dict[str, RemoteFile]:
@@ -199,7 +175,7 @@ def listed(answer: bytes, name: str = "Name") -> dict[str, RemoteFile]:
     try:
         files = {}
         for each in json.loads(answer):
-            if not isinstance(each[name], str) or type(each["Size"]) is not int:
+            if (type(each[name]), type(each["Size"])) != (str, int):
                 raise ValueError("a file without name and size")
             files[each[name]] = RemoteFile(each["Size"], *_hash(each.get("Hashes") or {}))
     except (ValueError, KeyError, TypeError, AttributeError, RecursionError) as error:

@@ -115,7 +115,7 @@ def _together(settings: Settings) -> Iterator[str]:
     elif settings.far_side.startswith("-"):
         yield f"far_side = {redacted(settings.far_side)}: begins with -"
     if not ROBOT.fullmatch(settings.name):
-        yield f"robot = {printable(settings.name)}: must be of letters, digits and _ . -, at most 64, without a . before"
+        yield f"robot = {printable(settings.name)}: must be of letters, digits and _ . -, at most 64, not .name"
     for each in settings.hours:
         if not HOURS.fullmatch(each):
             yield f"hours: {printable(each)}: must be as in 22:00-06:00"
