@@ -91,12 +91,12 @@ class Changes:
             yield
 
     def _judge(self, path: Path) -> None:
-        if self._busy or self._logs not in path.parents or os.stat(path).st_nlink > 1:
+        if self._busy or self._logs not in path.parents:
             return
         self._busy = True
-        self.deleted += 1
-        if path.read_bytes() not in self._whole():
-            self.wrong.append(path.name)
+        if path.stat().st_nlink == 1:
+            self.deleted += 1
+            self.wrong += [] if path.read_bytes() in self._whole() else [path.name]
         self._busy = False
 
     def _whole(self) -> Iterator[bytes]:

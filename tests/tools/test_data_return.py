@@ -25,7 +25,7 @@ from robot_control.data_return.fetch import verify
 from robot_control.data_return.main import _print_status
 from robot_control.data_return.node import default_interfaces
 from robot_control.data_return.parts import MANIFEST, GapError, manifest, opened, packed, put_together, read_manifest
-from robot_control.data_return.plan import Conditions, Entry, Part, deletable, next_entry, reason_to_wait
+from robot_control.data_return.plan import Entry, Part, deletable, next_entry, reason_to_wait
 from robot_control.data_return.queue_file import QueueError, QueueFile
 from robot_control.data_return.settings import Settings, SettingsError, read_settings
 
@@ -86,7 +86,7 @@ CHEAP = Settings(metered_interfaces=("wwan*", "ppp*"))
     ],
 )
 def test_it_waits_for_hours_rest_and_a_link_that_costs_nothing(settings, given, words):
-    assert reason_to_wait(settings, Conditions(**{"now": datetime(2026, 1, 1), **given})) == words
+    assert reason_to_wait(settings, **{"now": datetime(2026, 1, 1), **given}) == words
 
 
 def test_default_routes_are_read(tmp_path):

@@ -279,18 +279,15 @@ def test_a_link_that_is_back_is_used_for_all_files(tmp_path):
 )
 def test_a_file_of_any_name_returns_and_can_be_reported(tmp_path, name, folder):
     system = System(tmp_path, {})
-    path = os.path.join(os.fsencode(tmp_path / "logs"), name)
-    os.mkdir(tmp_path / "logs")
-    with open(path, "wb") as file:
-        file.write(WHOLE_BAG + bytes(6 * PART))
-    os.utime(path, (1e9, 1e9))
+    path = tmp_path / "logs" / os.fsdecode(name)
+    write(path, WHOLE_BAG + bytes(6 * PART))
     system.step()
     assert folder in next(iter(system.far.content)).split("Z-")[1]
     values = [KeyValue("progress", system.sender.progress)]
     DiagnosticArray(status=[DiagnosticStatus(1, "", system.sender.problem, "", values)]).serialize(io.BytesIO())
     system.begin()
     system.finish()
-    os.unlink(path)
+    path.unlink()
     system.begin()
     system.step()
     assert all(each.isprintable() for each in system.said)

@@ -10,6 +10,9 @@ import yaml  # type: ignore[import-untyped]
 
 from robot_control.common.files import printable
 
+MAX_OPENED = 200
+"""brackets of a kind in a file; of settings that have a meaning, less than ten"""
+
 
 class SettingsError(ValueError):
     """The settings cannot be used; the message names every problem."""
@@ -24,10 +27,12 @@ def overlaid(paths: Iterable[Path], problems_of: Callable[[Any], Iterable[str]])
     """
     values, problems = dict[str, Any](), list[str]()
     for path in paths:
+        data = path.read_bytes()
         try:
-            tree = yaml.safe_load(path.read_text(encoding="utf-8")) or {}
-        except OSError:
-            raise
+            text = data.decode()
+            if max(map(text.count, "[{")) > MAX_OPENED:  # PyYAML takes the square of their number
+                raise ValueError
+            tree = yaml.safe_load(text) or {}
         except Exception as error:  # PyYAML raises any
             raise SettingsError(f"{path}: is no YAML{_place_of(error)}") from None
         found = [f"{path}: {problem}" for problem in problems_of(tree)]

@@ -13,7 +13,7 @@ from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
 
 from robot_control.common.boundary import boundary, subscribe
 from robot_control.common.topic_sender import Signals
-from robot_control.data_return.plan import Conditions, reason_to_wait
+from robot_control.data_return.plan import reason_to_wait
 from robot_control.data_return.queue_file import QueueFile
 from robot_control.data_return.remote import Remote
 from robot_control.data_return.sender import Sender
@@ -62,7 +62,7 @@ class Node:
         if not self._signals.going_on():
             return "the program ends"
         mode = self._mode if time.monotonic() - self._mode_at < STATUS_SILENCE else ""
-        return reason_to_wait(self._settings, Conditions(datetime.now().astimezone(), mode, default_interfaces()))
+        return reason_to_wait(self._settings, datetime.now().astimezone(), mode, default_interfaces())
 
     def _report(self, _event: object) -> None:
         level = DiagnosticStatus.WARN if self._sender.problem else DiagnosticStatus.OK

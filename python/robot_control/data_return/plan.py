@@ -60,23 +60,6 @@ class Entry:
         """Parts of the file; an empty file has one."""
         return max(1, -(-self.size // PART_BYTES))
 
-    @property
-    def left(self) -> int:
-        """Bytes of the file that are not on the far side yet."""
-        return 0 if self.returned else max(0, self.size - len(self.parts) * PART_BYTES)
-
-
-@dataclass(frozen=True)
-class Conditions:
-    """The facts by which it is decided whether anything is sent now."""
-
-    now: datetime
-    """local time"""
-    mode: str = ""
-    """of robot_status; empty while it is silent"""
-    interfaces: Sequence[str] = ()
-    """of the default routes"""
-
 
 def identity(status: os.stat_result) -> str:
     """Inode, size and time of a file, which a new name leaves as they are."""
@@ -118,13 +101,20 @@ def deletable(entries: Sequence[Entry], quota: float) -> list[Entry]:
     return chosen
 
 
-def reason_to_wait(settings: Settings, given: Conditions) -> str:
-    """Why nothing is sent now; empty: nothing stands against it."""
-    if settings.hours and not any(_within(each, given.now) for each in settings.hours):
+def reason_to_wait(settings: Settings, now: datetime, mode: str = "", interfaces: Sequence[str] = ()) -> str:
+    """Why nothing is sent now; empty: nothing stands against it.
+
+    Args:
+        settings: those of this robot
+        now: local time
+        mode: of robot_status; empty while it is silent
+        interfaces: of the default routes
+    """
+    if settings.hours and not any(_within(each, now) for each in settings.hours):
         return f"outside of hours ({', '.join(settings.hours)})"
-    if settings.only_at_rest and given.mode in ("", "manual", "automatic"):
-        return f"only at rest, and the robot is commanded ({given.mode})" if given.mode else "robot_status is silent"
-    for name in () if settings.metered else given.interfaces:
+    if settings.only_at_rest and mode in ("", "manual", "automatic"):
+        return f"only at rest, and the robot is commanded ({mode})" if mode else "robot_status is silent"
+    for name in () if settings.metered else interfaces:
         if any(fnmatch.fnmatch(name, each) for each in settings.metered_interfaces):
             return f"the link {name} is metered"
     return ""
@@ -148,7 +138,7 @@ def progress(entries: Sequence[Entry], why: str) -> str:
     waiting = [each for each in entries if not each.returned]
     if not waiting:
         return f"all {len(entries)} files are on the far side"
-    left = sum(each.left for each in waiting)
+    left = sum(max(0, each.size - len(each.parts) * PART_BYTES) for each in waiting)
     now = next_entry(waiting)
     sending = f"waits: {why}" if why or now is None else f"{printable(now.path)} {100 * len(now.parts) // now.count} %"
     return f"{sending}; to go: {len(waiting)} files, {left / 1e6:.1f} MB"

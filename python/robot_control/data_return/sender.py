@@ -24,7 +24,7 @@ class _Setback(NamedTuple):
 
     name: str = ""
     why: str = ""
-    count: int = 0
+    failures: int = 0
     again: float = 0.0
 
 
@@ -80,8 +80,8 @@ class Sender:
         why = fit_for_message(in_words(error) if isinstance(error, OSError | RuntimeError) else repr(error))
         if all(why != each.why for each in self._setbacks.values()):
             self._say(f"{name}{why}; tried again, at the latest every {wait_after(99):.0f} s")
-        times = self._setbacks.get(key, _Setback()).count + 1
-        self._setbacks[key] = _Setback(name, why, times, now + wait_after(times))
+        failures = self._setbacks.get(key, _Setback()).failures + 1
+        self._setbacks[key] = _Setback(name, why, failures, now + wait_after(failures))
         self._reason_to_wait = name + why
         self._used, self._scan_at = None, 0.0
 

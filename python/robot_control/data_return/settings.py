@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import re
 import socket
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, fields
 from pathlib import Path
+from typing import Any
 
 from robot_control.blackbox.main import LOGS
 from robot_control.common.file_errors import problems_of
@@ -17,8 +18,16 @@ RCLONE_CONFIG = "~/.config/rclone/rclone.conf"
 """rclone's own place for it"""
 HOURS = re.compile(r"([01]\d|2[0-3]):([0-5]\d)-([01]\d|2[0-3]):([0-5]\d)")
 ROBOT = re.compile(r"(?!\.)[A-Za-z0-9_.-]{1,64}")
-MAX_NUMBER = 1e9
-"""of any setting"""
+RULES: dict[type, tuple[str, Callable[[Any], bool]]] = {
+    bool: ("true or false", lambda value: isinstance(value, bool)),
+    float: (
+        "a number, 0 or more, at most 1e9",
+        lambda value: isinstance(value, int | float) and not isinstance(value, bool) and 0 <= value <= 1e9,
+    ),
+    str: ("a text of characters that print", lambda value: isinstance(value, str) and value.isprintable()),
+    tuple: ("a list of texts", lambda value: isinstance(value, list) and all(isinstance(each, str) for each in value)),
+}
+"""of a setting, by the type of its default"""
 
 
 @dataclass(frozen=True)
@@ -88,19 +97,10 @@ def _wrong_types(tree: object) -> Iterator[str]:
         return
     defaults = {each.name: each.default for each in fields(Settings)}
     for name, value in tree.items():
-        default, text = defaults.get(name), _shown(value)
         if name not in defaults:
             yield f"{_shown(name)}: is unknown; known are {', '.join(defaults)}"
-        elif isinstance(default, tuple):
-            if not isinstance(value, list) or not all(isinstance(each, str) for each in value):
-                yield f"{name} = {text}: must be a list of texts"
-        elif isinstance(default, float):
-            if not isinstance(value, int | float) or isinstance(value, bool) or not 0 <= value <= MAX_NUMBER:
-                yield f"{name} = {text}: must be a number, 0 or more, at most {MAX_NUMBER:g}"
-        elif not isinstance(value, type(default)):
-            yield f"{name} = {text}: must be {'true or false' if isinstance(default, bool) else 'a text'}"
-        elif isinstance(value, str) and not value.isprintable():
-            yield f"{name} = {text}: holds characters that do not print"
+        elif not (rule := RULES[type(defaults[name])])[1](value):
+            yield f"{name} = {_shown(value)}: must be {rule[0]}"
 
 
 def _shown(value: object) -> str:
@@ -121,8 +121,7 @@ def _together(settings: Settings) -> Iterator[str]:
             yield f"hours: {printable(each)}: must be as in 22:00-06:00"
     if 0 < settings.bandwidth < 0.01:
         yield f"bandwidth = {settings.bandwidth:g}: must be 0 (no limit) or at least 0.01 MB/s"
-    remote = ":" in settings.far_side.partition("/")[0]
-    if remote:
+    if ":" in settings.far_side.partition("/")[0] and settings.far_side[0] != ":":
         path, remedy = given_path(settings.rclone_config), "; make it with rclone config"
         yield from problems_of("rclone_config", path, secret=True, remedy=remedy)
     if settings.ca_file:
