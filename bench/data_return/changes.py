@@ -21,7 +21,8 @@ from bench.data_return.virtual_remote import VirtualRemote
 
 PART = 1000
 """bytes, in place of 4 MiB"""
-LONGEST = 5 * PART
+SHORTEST, LONGEST = 2, 5 * PART
+"""bytes; the quota is one byte"""
 FILES = 5
 """that wait at any time"""
 DAY = 2e9
@@ -118,7 +119,7 @@ class Changes:
         return self._logs / f"run.{self._number}.bag"
 
     def _write(self, path: Path, size: int | None = None) -> None:
-        size = self._draw.randint(0, LONGEST) if size is None else size
+        size = self._draw.randint(SHORTEST, LONGEST) if size is None else size
         path.write_bytes(self._draw.randbytes(size))
         os.utime(path, (1e9, 1e9))  # the same for all: time alone proves nothing
 
@@ -141,7 +142,7 @@ class Changes:
                 other.rename(one)
                 aside.rename(other)
             case 1:
-                os.truncate(one, self._draw.randint(0, one.stat().st_size))
+                os.truncate(one, self._draw.randint(SHORTEST, one.stat().st_size))
                 os.utime(one, (1e9, 1e9))
             case 2:
                 one.rename(self._new_name())

@@ -275,7 +275,7 @@ def test_a_connection_string_works_and_its_password_is_seen_nowhere(tmp_path, mo
         verify(where, no_config, None)
     with pytest.raises(RemoteError, match=r":nosuch,…: rclone failed"):
         verify(f":nosuch,pass={hidden}:x", no_config, None)
-    told = [
+    texts = [
         *said,
         sender.problem,
         sender.progress,
@@ -285,7 +285,7 @@ def test_a_connection_string_works_and_its_password_is_seen_nowhere(tmp_path, mo
     assert ":sftp,…/r1: it does not answer" in said[0] or ":sftp,…: it does not answer" in said[0]
     words = (tmp_path / "words").read_text().replace("serve", "")
     assert hidden not in words.split("--pass", 1)[-1]
-    assert not any(hidden in each for each in told)
+    assert not any(hidden in each for each in texts)
 
 
 @needs_rclone
