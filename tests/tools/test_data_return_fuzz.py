@@ -30,6 +30,12 @@ def small_parts(monkeypatch):
     monkeypatch.setattr("os.fsync", lambda _: None)
 
 
+def write_new(path, content):
+    """A file that is written over is flushed by some file systems."""
+    path.unlink(missing_ok=True)
+    path.write_bytes(content)
+
+
 def in_time(take, given):
     """The result of a call, which took no longer than LONGEST."""
     before = time.thread_time()
@@ -95,7 +101,7 @@ def settings_files(tmp_path):
     assert read_settings(path).robot == "amr-07"
 
     def take(mutant):
-        path.write_bytes(mutant)
+        write_new(path, mutant)
         try:
             settings = read_settings(path)
             return settings.destination.startswith(settings.far_side) and settings.logs != settings.queue
@@ -112,7 +118,7 @@ def queues(tmp_path):
     logs = {path: path.read_bytes() for path in (tmp_path / "logs").rglob("*.bag")}
 
     def take(mutant):
-        system.queue.path.write_bytes(mutant)
+        write_new(system.queue.path, mutant)
         queue = QueueFile(system.queue.folder)
         for each in queue.entries.values():
             assert each.target.count("/") == 1
