@@ -36,9 +36,6 @@ class VirtualRemote:
             self.content[name] = data
             self.received += len(data) - len(data) // 2
 
-    def require_permission(self) -> None:
-        """Always granted."""
-
     def files(self, target: str, names: Sequence[str] = (), size: int = 0) -> dict[str, RemoteFile]:
         del size
         self.before()

@@ -26,7 +26,8 @@ def verify(source: str, rclone_config: str, out: Path | None) -> bool:
     """
     local, remote = given_path(source), None
     if local.is_dir():  # the sizes are seen when the files are read
-        sizes_by_path = {str(path.relative_to(local)): 0 for path in local.rglob("*") if not path.is_dir()}
+        files = (Path(folder, name) for folder, _, names in os.walk(local) for name in names)
+        sizes_by_path = {str(path.relative_to(local)): 0 for path in files}
     else:
         require_rclone()
         remote = Remote(Settings(rclone_config=rclone_config), place=source)

@@ -141,11 +141,6 @@ class Remote:
         """Bytes of all files."""
         return int(json.loads(self._rclone("size", "--json", f"{PLACE}:", missing=b'{"bytes": 0}'))["bytes"])
 
-    def require_permission(self) -> None:
-        """Raises InterruptedCallError: nothing may be sent now."""
-        if why := self._reason_to_wait():
-            raise InterruptedCallError(why)
-
     def _rclone(self, *words: str, size: int = 0, missing: bytes | None = None) -> bytes:
         end = time.monotonic() + 3 * SILENCE + size / self._slowest
         quiet, pipe = subprocess.DEVNULL, subprocess.PIPE
@@ -156,7 +151,8 @@ class Remote:
                     with contextlib.suppress(subprocess.TimeoutExpired):
                         out, problem = process.communicate(timeout=POLL)
                         break
-                    self.require_permission()
+                    if why := self._reason_to_wait():
+                        raise InterruptedCallError(why)
                     if time.monotonic() > end:
                         raise RemoteError(f"{self._shown}: the link is slower than {self._slowest:.0f} bytes/s")
             finally:

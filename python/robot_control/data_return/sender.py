@@ -146,7 +146,6 @@ class Sender:
         """Parts of the local file. Raises OSError, and ChangedError at the end."""
         with opened(self._settings.logs / entry.path, entry.key) as file:
             for number in numbers:
-                self._remote.require_permission()
                 yield number, *packed(file, number)
 
     def _proven(self, entry: Entry, known: Mapping[int, Part]) -> set[int]:
