@@ -1,4 +1,4 @@
-"""`scripts/bench data_return`: a bad link with kills of both sides, files that change meanwhile, and the loop's cost."""
+"""`scripts/bench data_return`: a bad link with kills of both sides, files that change meanwhile, cost for the loop."""
 
 from __future__ import annotations
 

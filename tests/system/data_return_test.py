@@ -15,7 +15,7 @@ from system_support import Program, Robot, init_test_node, wait_for
 
 from bench.data_return.server import missing
 
-PATIENCE = 120.0
+PATIENCE = 240.0
 """s; the sender runs only where no other program would"""
 
 

@@ -9,6 +9,7 @@ import os
 import zlib
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager, suppress
+from dataclasses import asdict
 from pathlib import Path
 from typing import Any, BinaryIO
 
@@ -52,7 +53,7 @@ def opened(path: Path, key: str) -> Iterator[int]:
             raise ChangedError("another file has its name by now")
         yield file
         after = os.fstat(file)
-        if after.st_nlink and (identity(after), after.st_ctime_ns) != (key, before.st_ctime_ns):
+        if identity(after) != key or (after.st_nlink and after.st_ctime_ns != before.st_ctime_ns):  # or was deleted
             raise ChangedError("it changed while it was read")
     finally:
         os.close(file)
@@ -97,19 +98,9 @@ def sha256(data: bytes) -> str:
 
 def manifest(entry: Entry) -> bytes:
     """Content of the manifest of a file whose parts are all verified."""
-    parts = [
-        {"name": part.name, "size": part.size, "sha256": part.sha256}
-        for part in (entry.parts[number] for number in range(entry.count))
-    ]
-    content = {
-        "format": FORMAT,
-        "name": entry.path,
-        "size": entry.size,
-        "mtime_ns": entry.mtime_ns,
-        "part_size": PART_BYTES,
-        "parts": parts,
-    }
-    return json.dumps(content, indent=1).encode()
+    content = {"format": FORMAT, "name": entry.path, "size": entry.size, "mtime_ns": entry.mtime_ns}
+    parts = [asdict(entry.parts[number]) for number in range(entry.count)]
+    return json.dumps({**content, "part_size": PART_BYTES, "parts": parts}, indent=1).encode()
 
 
 def read_manifest(data: bytes) -> Mapping[str, Any]:
