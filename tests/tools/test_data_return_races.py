@@ -62,7 +62,7 @@ def rewritten(path, content):
 @pytest.mark.parametrize("steps", [1, 2, 3])
 @pytest.mark.parametrize("hashes", [True, False])
 def test_another_file_of_the_same_name_size_and_time_is_not_taken_for_it(tmp_path, change, steps, hashes):
-    """Where it comes between the parts, before the manifest, or once the file has returned."""
+    """It comes between the parts, before the manifest, or once the file has returned."""
     system = System(tmp_path, {"run.1.bag": some_bytes(6 * PART)}, VirtualRemote(hashes=hashes))
     path, other = tmp_path / "logs/run.1.bag", some_bytes(6 * PART, 2)
     for _ in range(steps):

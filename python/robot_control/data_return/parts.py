@@ -37,7 +37,7 @@ class ChangedError(RuntimeError):
 
 @contextmanager
 def opened(path: Path, key: str) -> Iterator[int]:
-    """The descriptor of the file of this key. What was read of it counts if the block ends without an exception.
+    """The descriptor of the file of this key. A block that ends without an exception has read this file alone.
 
     Raises:
         ChangedError: another file has the name, or it changed within the block.

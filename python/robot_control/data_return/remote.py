@@ -63,7 +63,7 @@ class InterruptedCallError(RuntimeError):
 
 @dataclass(frozen=True)
 class RemoteFile:
-    """What a remote says of a file; kind of hash and hash are empty where it computes none."""
+    """A file of a remote; kind of hash and hash are empty where it computes none."""
 
     size: int
     kind: str = ""

@@ -29,7 +29,7 @@ class _Setback(NamedTuple):
 
 
 class Sender:
-    """Brings the files of the queue to the remote. What fails is tried again later, and longer and longer.
+    """Brings the files of the queue to the remote. A file that fails is tried again later, and later and later.
 
     Meanwhile the other files go on. A failure without a file is that of the queue.
     """
@@ -86,7 +86,7 @@ class Sender:
         self._used, self._scan_at = None, 0.0
 
     def _next(self, now: float) -> Entry | None:
-        """What is deleted, else what is sent next, of those that do not wait after a failure."""
+        """The next file to delete, else to send, of those that do not wait after a failure."""
         entries = list(self._queue.entries.values())
         surplus = deletable(entries, self._settings.local_quota)
         due = [each for each in entries if self._setbacks.get(each.key, _Setback()).again <= now]
@@ -158,7 +158,7 @@ class Sender:
         }
 
     def _send_parts(self, entry: Entry, numbers: list[int]) -> None:
-        """What arrived otherwise, by the hash that the remote computes, else by reading back, is removed there."""
+        """A part that arrived otherwise is removed there; the remote's hash shows it, else reading back."""
         parts = list(self._packed(entry, numbers))
         self._reserve(sum(part.size for _, part, _ in parts))
         self._put(entry.target, {part.name: data for _, part, data in parts})

@@ -66,7 +66,7 @@ class Settings:
 
     @property
     def name(self) -> str:
-        """Of the robot."""
+        """The robot's name."""
         return self.robot or socket.gethostname()
 
 
