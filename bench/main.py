@@ -63,7 +63,7 @@ PARTS = {
     "legs": legs.PARTS,
     "fleet": ("sequences", "orders", "losses", "cost"),
     "navigation": navigation.PARTS,
-    "data_return": ("upload", "cost"),
+    "data_return": ("upload", "changes", "cost"),
 }
 NAMES = MEASURED + JUDGED
 SEED_PROGRAMS = {"limiter": 1_000_000, "release": 10_000, "bags": 10_000}  # seeds; a minute at most on two cores

@@ -1,4 +1,4 @@
-"""`scripts/bench data_return`: files over a bad link with kills of both sides, and what an upload costs the loop."""
+"""`scripts/bench data_return`: a bad link with kills of both sides, files that change meanwhile, cost for the loop."""
 
 from __future__ import annotations
 
@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 from robot_control.data_return.parts import MANIFEST, GapError, put_together, read_manifest
 
+from bench.data_return.changes import Changes
 from bench.data_return.server import KINDS, missing
 from bench.data_return.system import System
 from bench.realtime.chain import CHAIN, ros_master
@@ -33,6 +34,8 @@ STALLS = (1.0, 5.0, 25.0)
 """s; the last one is longer than rclone waits"""
 BANDWIDTH = 2.0
 """MB/s"""
+CHANGES = 1000
+"""of files, each within a call of the sender's"""
 BLOCKS, SECONDS = 7, 15.0
 """of the loop with and without an upload, alternating"""
 
@@ -51,6 +54,8 @@ def bench(parts: Sequence[str], first: int, share: float, programs: Path, say: S
             rows += _upload(kind, first, share, environment, say)
         if "cost" in parts:
             rows += _cost(environment, programs, say)
+    for hashes in (True, False) if "changes" in parts else ():
+        rows += _changes(first, share, say, hashes=hashes)
     return {"bench": "data_return", "rows": rows}, all(
         row["value"] >= row["reference"] if row["name"].startswith("lowest") else row["value"] <= row["reference"]
         for row in rows
@@ -136,6 +141,21 @@ def _upload(kind: str, seed: int, share: float, environment: dict[str, str], say
         bounded(f"{kind}: files not whole on the far side", len(bad), f"of {files.count}", 0),
         bounded(f"{kind}: files deleted early", len(files.wrong), f"with {len(losses) - len(due)} losses", 0),
         bounded(f"{kind}: sent twice", twice, f"%; protocol {100 * (protocol - 1):.1f} %", 10.0),
+    ]
+
+
+def _changes(first: int, share: float, say: Say, *, hashes: bool) -> list[dict[str, Any]]:
+    kind = f"changes, remote {'with' if hashes else 'without'} hashes"
+    count = max(1, round(CHANGES * share))
+    with tempfile.TemporaryDirectory(prefix="data-return-bench-") as folder:
+        changes = Changes(Path(folder), first, hashes=hashes)
+        left = changes.run(count)
+    for name in changes.wrong:
+        say(f"{kind}: {name} was deleted, and the remote lacks it")
+    what = f"of {changes.deleted}, with {count} changes"
+    return [
+        bounded(f"{kind}: files deleted that it lacks", len(changes.wrong), what, 0),
+        bounded(f"{kind}: files that did not return", left, what, 0),
     ]
 
 

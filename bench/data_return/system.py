@@ -15,8 +15,8 @@ from types import TracebackType
 from typing import Self
 
 import yaml  # type: ignore[import-untyped]
-from robot_control.data_return.far_side import FarSide
 from robot_control.data_return.plan import BATCH, PART_BYTES
+from robot_control.data_return.remote import Remote
 from robot_control.data_return.settings import read_settings
 
 from bench.console.process import program
@@ -63,7 +63,7 @@ class System:
         parts.mkdir()
         for number in range(BATCH):
             (parts / str(number)).write_bytes(random.Random(number).randbytes(PART_BYTES))
-        FarSide(self._values).put(parts, "protocol")
+        Remote(self._values).put(parts, "protocol")
         shutil.rmtree(self.far / "r1/protocol")
         return (self.cable.sent - sent) / (BATCH * PART_BYTES)
 

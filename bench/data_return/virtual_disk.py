@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from bench.data_return.virtual_far_side import PowerLoss
+from bench.data_return.virtual_remote import PowerLoss
 
 
 @dataclass

@@ -58,7 +58,10 @@ TEST_F(PermitReport, ACauseOutweighsAWarning) {
 
 class StateReport : public testing::Test {
  protected:
-  StateReport() { state_.base.flags = kStateValid; }
+  StateReport() {
+    state_.head.run = 1;
+    state_.base.flags = kStateValid;
+  }
 
   DiagnosticReport report(std::uint64_t slip_lately = 0) const {
     DiagnosticReport report("state_estimator", "diffbot");
@@ -89,6 +92,14 @@ TEST_F(StateReport, WarnsOfAStateThatIsNotValid) {
   state_.base.flags = 0;
   EXPECT_EQ(report().message().level, static_cast<int>(msg::DiagnosticStatus::WARN));
   EXPECT_THAT(report().message().message, HasSubstr("not valid"));
+}
+
+TEST_F(StateReport, GivesNoDeviationBeforeThereIsAState) {
+  EXPECT_EQ(value_of(report(), "gyro_bias_z_deviation_deg_s"), "0");
+  state_ = {};
+  EXPECT_THAT(report().message().message, HasSubstr("not valid"));
+  EXPECT_EQ(value_of(report(), "gyro_bias_z_deviation_deg_s"), "(none)");
+  EXPECT_EQ(value_of(report(), "radius_ratio_deviation"), "(none)");
 }
 
 TEST_F(StateReport, WarnsOfSlipInWordsAlsoOfAMoment) {

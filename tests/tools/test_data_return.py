@@ -8,28 +8,34 @@ from itertools import pairwise
 from pathlib import Path
 
 import pytest
+from data_return_system import (
+    DAY,
+    OPEN_BAG,
+    PART,
+    WHOLE_BAG,
+    System,
+    check_nothing_is_lost,
+    use_small_parts,
+    write,
+)
 from robot_control.common import files as common_files
 from robot_control.common.files import write_durably
 from robot_control.data_return import plan
 from robot_control.data_return.fetch import verify
+from robot_control.data_return.main import _print_status
 from robot_control.data_return.node import default_interfaces
-from robot_control.data_return.parts import MANIFEST, GapError, manifest, packed, put_together, read_manifest
-from robot_control.data_return.plan import Conditions, Entry, Part, deletable, next_entry, waits
+from robot_control.data_return.parts import MANIFEST, GapError, manifest, opened, packed, put_together, read_manifest
+from robot_control.data_return.plan import Entry, Part, deletable, next_entry, reason_to_wait
 from robot_control.data_return.queue_file import QueueError, QueueFile
-from robot_control.data_return.sender import Sender
 from robot_control.data_return.settings import Settings, SettingsError, read_settings
 
 from bench.data_return.virtual_disk import VirtualDisk
-from bench.data_return.virtual_far_side import PowerLoss, VirtualFarSide
-
-DAY = 2e9  # s; all files are older
-PART = 1000  # bytes, in place of 4 MiB
+from bench.data_return.virtual_remote import PowerLoss, VirtualRemote
 
 
 @pytest.fixture(autouse=True)
 def small_parts(monkeypatch):
-    for module in ("plan", "parts"):
-        monkeypatch.setattr(f"robot_control.data_return.{module}.PART_BYTES", PART)
+    use_small_parts(monkeypatch)
 
 
 def entry(name, kind="runs", at=0, size=10, **fields):
@@ -80,7 +86,7 @@ CHEAP = Settings(metered_interfaces=("wwan*", "ppp*"))
     ],
 )
 def test_it_waits_for_hours_rest_and_a_link_that_costs_nothing(settings, given, words):
-    assert waits(settings, Conditions(**{"now": datetime(2026, 1, 1), **given})) == words
+    assert reason_to_wait(settings, **{"now": datetime(2026, 1, 1), **given}) == words
 
 
 def test_default_routes_are_read(tmp_path):
@@ -133,12 +139,42 @@ def test_an_error_of_the_disk_names_the_file_and_leaves_the_old_content(tmp_path
     assert path.read_text() == "old"
 
 
-def test_a_file_that_is_no_queue_is_refused_and_not_replaced(tmp_path):
-    for text in ("", "[]", '{"files": [{"key": 1}]}', '{"files": 3}'):
-        (tmp_path / "queue.json").write_text(text)
-        with pytest.raises(QueueError, match="is no queue"):
-            QueueFile(tmp_path)
-        assert (tmp_path / "queue.json").read_text() == text
+KNOWN = '{"key": "1-10-1", "path": "a", "kind": "runs", "size": 10, "mtime_ns": 1, "target": %s, "parts": %s, %s}'
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "",
+        "[]",
+        "[" * 100_000,
+        '{"files": [{"key": 1}]}',
+        '{"files": 3}',
+        '{"files": [%s]}' % (KNOWN % ('"runs/../../r2"', "{}", '"returned": true')),
+        '{"files": [%s]}' % (KNOWN % ('"runs/a"', "{}", '"returned": 1')),
+        '{"files": [%s]}' % (KNOWN % ('"runs/a"', "{}", '"returned": true, "size": 1e300')),
+        '{"files": [%s]}'
+        % (KNOWN % ('"runs/a"', '{"7": {"name": "00007", "size": 1, "sha256": ""}}', '"returned": true')),
+        '{"files": [%s]}'
+        % (KNOWN % ('"runs/a"', '{"0": {"name": "../0", "size": 1, "sha256": ""}}', '"returned": true')),
+    ],
+    ids=["empty", "list", "deep", "key", "no list", "target", "type", "size", "number", "name"],
+)
+def test_a_file_that_is_no_queue_is_put_aside_and_all_is_compared_again(tmp_path, text):
+    system = System(tmp_path, {"run.1.bag": b"x" * 10})
+    system.finish()
+    received = system.far.received
+    system.queue.path.write_text(text)
+    with pytest.raises(QueueError, match="is no queue"):
+        _print_status(QueueFile(system.queue.folder))
+    assert system.queue.path.read_text() == text
+    system.begin()
+    assert "is no queue" in system.queue.damage
+    system.queue.lock()
+    assert (system.queue.folder / "queue.damaged").read_text() == text
+    system.finish()
+    assert system.far.received == received
+    system.verify_far_side()
 
 
 def test_one_program_uses_a_queue(tmp_path):
@@ -150,14 +186,9 @@ def test_one_program_uses_a_queue(tmp_path):
 
 # ---- what is finished
 
-OPEN_BAG = b"#ROSBAG V2.0\n" + b"index_pos=" + bytes(8) + b"rows"
-WHOLE_BAG = b"#ROSBAG V2.0\n" + b"index_pos=" + b"\x01" + bytes(7) + b"rows"
 
-
-def write(path, content, at=1e9):
-    path.parent.mkdir(parents=True, exist_ok=True)
-    path.write_bytes(content)
-    os.utime(path, (at, at))
+def opened_file(path):
+    return opened(path, plan.identity(path.stat()))
 
 
 def found(tmp_path, day=DAY):
@@ -205,9 +236,9 @@ def test_a_renamed_run_is_the_same_file(tmp_path):
 def test_parts_are_the_same_whenever_they_are_packed_and_compressed_where_it_helps(tmp_path):
     noise = random.Random(1).randbytes(PART)
     write(tmp_path / "run.1.bag", bytes(PART) + noise + b"end")
-    names = [packed(tmp_path / "run.1.bag", number)[0] for number in range(3)]
-    assert names == ["00000.gz", "00001", "00002"]
-    assert packed(tmp_path / "run.1.bag", 0)[1][4:8] == bytes(4)  # gzip's field for the time of day
+    with opened_file(tmp_path / "run.1.bag") as file:
+        assert [packed(file, number)[0].name for number in range(3)] == ["00000.gz", "00001", "00002"]
+        assert packed(file, 0)[1][4:8] == bytes(4)  # gzip's field for the time of day
 
 
 @pytest.mark.parametrize("size", [0, 1, PART, PART + 1, 3 * PART])
@@ -248,70 +279,16 @@ def test_every_gap_is_named(tmp_path, capsys, name, change, words):
 
 def test_a_part_that_unpacks_to_more_than_it_may_is_refused(tmp_path):
     write(tmp_path / "run.1.bag", bytes(PART))
-    name, data = packed(tmp_path / "run.1.bag", 0)
-    whole = manifest(entry("run.1.bag", size=PART, parts={0: Part(name, len(data), plan_sha(data))}))
+    with opened_file(tmp_path / "run.1.bag") as file:
+        part, data = packed(file, 0)
+    whole = manifest(entry("run.1.bag", size=PART, parts={0: part}))
     small = whole.replace(b'"part_size": 1000', b'"part_size": 10')
     with pytest.raises(GapError, match="more than 10 bytes"):
         put_together(lambda wanted: small if wanted == MANIFEST else data, None)
     assert read_manifest(whole)["size"] == PART
 
 
-def plan_sha(data):
-    from robot_control.data_return.parts import sha256
-
-    return sha256(data)
-
-
-# ---- the sender with a far side in memory
-
-
-class System:
-    """Logs, a queue and a far side; the program can end at any moment and begins again."""
-
-    def __init__(self, tmp_path, files, far=None, **values):
-        self.folder, self.sources = tmp_path, files
-        for number, (name, content) in enumerate(files.items()):
-            write(tmp_path / "logs" / name, content, 1e9 + number)
-        self.settings = Settings(folder=str(tmp_path / "logs"), queue_folder=str(tmp_path / "queue"), **values)
-        self.far = far or VirtualFarSide()
-        self.said = []
-        self.now = 0.0
-        self.begin()
-
-    def begin(self):
-        self.settings.queue.mkdir(exist_ok=True)
-        self.queue = QueueFile(self.settings.queue)
-        self.sender = Sender(self.settings, self.queue, self.far, self.said.append)
-
-    def step(self, waits=""):
-        self.now += 1.0
-        return self.sender.step(self.now, DAY, waits)
-
-    @property
-    def done(self):
-        return bool(self.queue.entries) and all(each.returned for each in self.queue.entries.values())
-
-    def finish(self, steps=2000):
-        for _ in range(steps):
-            self.step()
-            if self.done:
-                return
-        raise AssertionError(self.sender.progress)
-
-    def written(self, folder):
-        for name, data in self.far.files.items():
-            write(folder / name, data)
-        return folder
-
-    def verify_far_side(self):
-        out = {}
-        for name in [name for name in self.far.files if name.endswith(MANIFEST)]:
-            begin = name.removesuffix(MANIFEST)
-            path = self.folder / "one"
-            with path.open("wb") as file:
-                content = put_together(lambda wanted, begin=begin: self.far.files[begin + wanted], file)
-            out[content["name"]] = path.read_bytes()
-        assert out == self.sources
+# ---- the sender with a remote in memory
 
 
 def some_files(seed=1):
@@ -341,19 +318,19 @@ def test_the_program_may_end_before_every_effect(tmp_path, monkeypatch, hashes):
             return lambda *given, **named: (count(), call(*given, **named))[1]
 
         monkeypatch.setattr(os, "fsync", lambda _: None)
-        system = System(folder, files, VirtualFarSide(hashes=hashes, before=count), local_quota=1e-9)
+        system = System(folder, files, VirtualRemote(hashes=hashes, before=count), local_quota=1e-9)
         with monkeypatch.context() as patch:
             for name in ("fsync", "replace"):
                 patch.setattr(os, name, counted(getattr(os, name)))
-            patch.setattr(Path, "unlink", counted(Path.unlink))
+            for name in ("unlink", "rename"):
+                patch.setattr(Path, name, counted(getattr(Path, name)))
             try:
-                system.finish(100)
+                for _ in range(100):
+                    system.step()
             except PowerLoss:
                 left[0] = -2
                 check_nothing_is_lost(system)
                 system.begin()
-            except AssertionError:
-                assert not system.queue.entries  # all returned and deleted
         for _ in range(100):
             system.step()
         check_nothing_is_lost(system)
@@ -365,17 +342,6 @@ def test_the_program_may_end_before_every_effect(tmp_path, monkeypatch, hashes):
     assert lost_at > 30
 
 
-def check_nothing_is_lost(system):
-    """Each file that is no more on the robot is whole on the far side."""
-    for name, content in system.sources.items():
-        path = system.folder / "logs" / name
-        if path.exists():
-            assert path.read_bytes() == content
-            continue
-        (begin,) = {key.rpartition("/")[0] for key in system.far.files if key.split("Z-")[1].startswith(path.name)}
-        assert put_together(lambda wanted, begin=begin: system.far.files[f"{begin}/{wanted}"], None)["name"] == name
-
-
 @pytest.mark.parametrize(("in_batch_time", "parts"), [(0.0, 4), (1.0, 4), (10.5, 10), (100.0, 16)])
 def test_a_batch_lasts_so_long_that_its_start_costs_little_of_the_bandwidth(in_batch_time, parts):
     entry = plan.Entry("key", "run.1.bag", "runs", 100 * plan.PART_BYTES, 0, "runs/run.1.bag")
@@ -385,13 +351,13 @@ def test_a_batch_lasts_so_long_that_its_start_costs_little_of_the_bandwidth(in_b
 
 @pytest.mark.parametrize("hashes", [True, False])
 def test_a_damaged_part_is_sent_again(tmp_path, hashes):
-    system = System(tmp_path, {"run.1.bag": random.Random(1).randbytes(PART)}, VirtualFarSide(hashes=hashes))
+    system = System(tmp_path, {"run.1.bag": random.Random(1).randbytes(PART)}, VirtualRemote(hashes=hashes))
     put = system.far.put
 
     def damaged(source, target):
         put(source, target)
-        for name in system.far.files:
-            system.far.files[name] = bytes(PART)
+        for name in system.far.content:
+            system.far.content[name] = bytes(PART)
         system.far.put = put
 
     system.far.put = damaged
@@ -408,7 +374,7 @@ def test_a_manifest_that_arrived_damaged_is_sent_again_and_nothing_is_deleted_be
     def damaged(source, target):
         put(source, target)
         name = f"{target}/{MANIFEST}"
-        system.far.files[name] = bytes(len(system.far.files[name]))
+        system.far.content[name] = bytes(len(system.far.content[name]))
         system.far.put = put
 
     system.far.put = damaged
@@ -431,7 +397,7 @@ def test_what_was_verified_is_known_after_a_restart(tmp_path):
 def test_a_part_that_the_far_side_has_lost_is_sent_again(tmp_path):
     system = System(tmp_path, {"run.1.bag": random.Random(1).randbytes(2 * PART)})
     system.step()
-    del system.far.files[next(iter(system.far.files))]
+    del system.far.content[next(iter(system.far.content))]
     system.finish()
     system.verify_far_side()
 
@@ -462,7 +428,7 @@ def test_nothing_is_sent_while_it_waits_and_the_reason_is_shown(tmp_path):
     system = System(tmp_path, some_files())
     for _ in range(20):
         assert not system.step("outside of hours")
-    assert system.far.files == {}
+    assert system.far.content == {}
     assert system.sender.progress == "waits: outside of hours; to go: 3 files, 0.0 MB"
 
 

@@ -6,9 +6,9 @@ import subprocess
 import time
 
 import pytest
-from robot_control.data_return.far_side import FarSide, InterruptedCallError, reason
 from robot_control.data_return.fetch import verify
 from robot_control.data_return.queue_file import QueueFile
+from robot_control.data_return.remote import InterruptedCallError, Remote, reason
 from robot_control.data_return.sender import Sender
 from robot_control.data_return.settings import Settings
 
@@ -37,10 +37,12 @@ class System:
             queue_folder=str(tmp_path),
             **values,
         )
-        self.waits = ""
+        self.reason_to_wait = ""
         self.said = []
         self.queue = QueueFile(tmp_path)
-        self.sender = Sender(self.settings, self.queue, FarSide(self.settings, lambda: self.waits), self.said.append)
+        self.sender = Sender(
+            self.settings, self.queue, Remote(self.settings, lambda: self.reason_to_wait), self.said.append
+        )
 
     def step(self, now):
         return self.sender.step(now, time.time(), "")
@@ -94,7 +96,7 @@ def test_a_part_that_is_there_is_not_sent_again_and_a_damaged_one_is(systems, tm
 
 def test_what_is_being_sent_ends_when_nothing_may_be_sent(systems):
     system = systems(bandwidth=0.1)
-    far = FarSide(system.settings, lambda: "only at rest")
+    far = Remote(system.settings, lambda: "only at rest")
     began = time.monotonic()
     with pytest.raises(InterruptedCallError, match="only at rest"):
         far.put(system.logs, "x")

@@ -12,11 +12,11 @@ from robot_control.common.file_errors import in_words
 from robot_control.common.files import escaped, fit_for_message, given_path
 from robot_control.common.ros_node import running_node
 from robot_control.common.settings_files import SettingsError
-from robot_control.data_return.far_side import FarSideError, require_rclone
 from robot_control.data_return.fetch import verify
 from robot_control.data_return.node import Node, lower_priority
 from robot_control.data_return.plan import progress
 from robot_control.data_return.queue_file import QueueError, QueueFile
+from robot_control.data_return.remote import RemoteError, require_rclone
 from robot_control.data_return.settings import RCLONE_CONFIG, Settings, read_settings
 from robot_control.installed_files import share_file
 
@@ -32,7 +32,7 @@ def main() -> int:
             _print_status(QueueFile(settings.queue))
         else:
             _run(settings)
-    except (SettingsError, QueueError, FarSideError, OSError) as error:
+    except (SettingsError, QueueError, RemoteError, OSError) as error:
         sys.exit(f"data_return.py: {fit_for_message(in_words(error))}")
     return 0
 
@@ -41,6 +41,8 @@ def _run(settings: Settings) -> None:
     require_rclone()
     queue = QueueFile(settings.queue)
     queue.lock()
+    if queue.damage:
+        print(f"data_return.py: {fit_for_message(queue.damage)}: all is compared with the far side", file=sys.stderr)
     queue.save()  # a queue that cannot be written is a message before anything runs
     lower_priority()
     with running_node("data_return") as signals:
@@ -48,6 +50,8 @@ def _run(settings: Settings) -> None:
 
 
 def _print_status(queue: QueueFile) -> None:
+    if queue.damage:
+        raise QueueError(queue.damage)
     for each in queue.entries.values():
         state = "returned" if each.returned else f"{100 * len(each.parts) // each.count} %"
         print(escaped(f"{state:>8}  {each.size / 1e6:9.1f} MB  {each.path}"))
@@ -57,7 +61,7 @@ def _print_status(queue: QueueFile) -> None:
 def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(
         prog="data_return.py",
-        description="Brings finished runs, incidents and reports to a far side of rclone's, in parts that are verified "
+        description="Brings finished runs, incidents and reports to a remote of rclone's, in parts that are verified "
         "there, and puts them together on the other side.",
         epilog="run and status take --config FILE, which is laid over the installed config/data_return.yaml",
     )

@@ -11,10 +11,11 @@ from pathlib import Path
 import rospy
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
 
+from robot_control.common.boundary import boundary, subscribe
 from robot_control.common.topic_sender import Signals
-from robot_control.data_return.far_side import FarSide
-from robot_control.data_return.plan import Conditions, waits
+from robot_control.data_return.plan import reason_to_wait
 from robot_control.data_return.queue_file import QueueFile
+from robot_control.data_return.remote import Remote
 from robot_control.data_return.sender import Sender
 from robot_control.data_return.settings import Settings
 from robot_control.msg import RobotStatus
@@ -39,16 +40,19 @@ class Node:
     def __init__(self, settings: Settings, queue: QueueFile, signals: Signals) -> None:
         self._settings, self._signals = settings, signals
         self._mode, self._mode_at = "", -PERIOD
-        self._sender = Sender(settings, queue, FarSide(settings, self._why_not), rospy.logwarn)
+        self._sender = Sender(settings, queue, Remote(settings, self._why_not), rospy.logwarn)
         self._name = rospy.get_name()
-        rospy.Subscriber("robot_status", RobotStatus, self._receive, queue_size=1)
+        subscribe("robot_status", RobotStatus, self._receive, queue_size=1)
         self._diagnostics = rospy.Publisher("/diagnostics", DiagnosticArray, queue_size=1)
         rospy.Timer(rospy.Duration(PERIOD), self._report)
 
     def run(self) -> None:
         """Until a signal."""
         while self._signals.going_on():
-            if not self._sender.step(time.monotonic(), time.time(), self._why_not()):
+            again = False
+            with boundary.crossing("a pass"):
+                again = self._sender.step(time.monotonic(), time.time(), self._why_not())
+            if not again:
                 time.sleep(PERIOD)
 
     def _receive(self, message: RobotStatus) -> None:
@@ -58,15 +62,16 @@ class Node:
         if not self._signals.going_on():
             return "the program ends"
         mode = self._mode if time.monotonic() - self._mode_at < STATUS_SILENCE else ""
-        return waits(self._settings, Conditions(datetime.now().astimezone(), mode, default_interfaces()))
+        return reason_to_wait(self._settings, datetime.now().astimezone(), mode, default_interfaces())
 
     def _report(self, _event: object) -> None:
         level = DiagnosticStatus.WARN if self._sender.problem else DiagnosticStatus.OK
-        message = self._sender.problem or "ok"
         values = [KeyValue("progress", self._sender.progress)]
-        report = DiagnosticArray(status=[DiagnosticStatus(level, self._name.lstrip("/"), message, "", values)])
+        status = DiagnosticStatus(level, self._name.lstrip("/"), self._sender.problem or "ok", "", values)
+        report = DiagnosticArray(status=[status])
         report.header.stamp = rospy.Time.now()
-        self._diagnostics.publish(report)
+        with boundary.crossing("a report"):
+            self._diagnostics.publish(report)
 
 
 def default_interfaces(routes: Path = ROUTES) -> list[str]:
@@ -75,4 +80,4 @@ def default_interfaces(routes: Path = ROUTES) -> list[str]:
         lines = [line.split() for line in routes.read_text().splitlines()[1:]]
     except OSError:
         return []
-    return [words[0] for words in lines if words[1] == "00000000"]
+    return [words[0] for words in lines if words[1:2] == ["00000000"]]

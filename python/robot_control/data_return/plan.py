@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import fnmatch
+import os
 import re
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from datetime import datetime
 
+from robot_control.common.files import printable
 from robot_control.data_return.settings import HOURS, Settings
 
 KINDS = ("incidents", "reports", "runs")
@@ -40,7 +42,7 @@ class Entry:
     """A finished file."""
 
     key: str
-    """of the file's inode, size and time, so that telemetry may rename it"""
+    """`identity` of the file, so that telemetry may rename it"""
     path: str
     """below the folder of logs, now"""
     kind: str
@@ -51,29 +53,17 @@ class Entry:
     parts: dict[int, Part] = field(default_factory=dict)
     """those verified, until the file is returned"""
     returned: bool = False
-    """the manifest was read back, and all parts were there"""
+    """the remote had all parts of the file, and the manifest was read back"""
 
     @property
     def count(self) -> int:
         """Parts of the file; an empty file has one."""
         return max(1, -(-self.size // PART_BYTES))
 
-    @property
-    def left(self) -> int:
-        """Bytes of the file that are not on the far side yet."""
-        return 0 if self.returned else max(0, self.size - len(self.parts) * PART_BYTES)
 
-
-@dataclass(frozen=True)
-class Conditions:
-    """The facts by which it is decided whether anything is sent now."""
-
-    now: datetime
-    """local time"""
-    mode: str = ""
-    """of robot_status; empty while it is silent"""
-    interfaces: Sequence[str] = ()
-    """of the default routes"""
+def identity(status: os.stat_result) -> str:
+    """Inode, size and time of a file, which a new name leaves as they are."""
+    return f"{status.st_ino}-{status.st_size}-{status.st_mtime_ns}"
 
 
 def kind_of(name: str) -> str | None:
@@ -105,19 +95,26 @@ def deletable(entries: Sequence[Entry], quota: float) -> list[Entry]:
     excess = sum(each.size for each in entries) - quota * GB
     chosen = []
     for each in sorted(entries, key=lambda e: (e.mtime_ns, e.key)) if quota else ():
-        if each.returned and excess > 0 and not each.path.endswith(CURRENT):
+        if each.returned and excess > 0 and each.path.rpartition("/")[2] != CURRENT:
             chosen.append(each)
             excess -= each.size
     return chosen
 
 
-def waits(settings: Settings, given: Conditions) -> str:
-    """Why nothing is sent now; empty: nothing stands against it."""
-    if settings.hours and not any(_within(each, given.now) for each in settings.hours):
+def reason_to_wait(settings: Settings, now: datetime, mode: str = "", interfaces: Sequence[str] = ()) -> str:
+    """Why nothing is sent now; empty: nothing stands against it.
+
+    Args:
+        settings: those of this robot
+        now: local time
+        mode: of robot_status; empty while it is silent
+        interfaces: of the default routes
+    """
+    if settings.hours and not any(_within(each, now) for each in settings.hours):
         return f"outside of hours ({', '.join(settings.hours)})"
-    if settings.only_at_rest and given.mode in ("", "manual", "automatic"):
-        return f"only at rest, and the robot is commanded ({given.mode})" if given.mode else "robot_status is silent"
-    for name in () if settings.metered else given.interfaces:
+    if settings.only_at_rest and mode in ("", "manual", "automatic"):
+        return f"only at rest, and the robot is commanded ({mode})" if mode else "robot_status is silent"
+    for name in () if settings.metered else interfaces:
         if any(fnmatch.fnmatch(name, each) for each in settings.metered_interfaces):
             return f"the link {name} is metered"
     return ""
@@ -141,7 +138,7 @@ def progress(entries: Sequence[Entry], why: str) -> str:
     waiting = [each for each in entries if not each.returned]
     if not waiting:
         return f"all {len(entries)} files are on the far side"
-    left = sum(each.left for each in waiting)
+    left = sum(max(0, each.size - len(each.parts) * PART_BYTES) for each in waiting)
     now = next_entry(waiting)
-    sending = f"waits: {why}" if why or now is None else f"{now.path} {100 * len(now.parts) // now.count} %"
+    sending = f"waits: {why}" if why or now is None else f"{printable(now.path)} {100 * len(now.parts) // now.count} %"
     return f"{sending}; to go: {len(waiting)} files, {left / 1e6:.1f} MB"

@@ -11,17 +11,24 @@ import stat
 from dataclasses import asdict
 from datetime import UTC, datetime
 from pathlib import Path
+from typing import Any
 
-from robot_control.common.files import write_durably
-from robot_control.data_return.plan import Entry, Part, kind_of
+from robot_control.common.files import printable, write_durably
+from robot_control.data_return.parts import read_part
+from robot_control.data_return.plan import KINDS, Entry, identity, kind_of
 
 NAME = "queue.json"
 SETTLED = 10.0
 """s without a change after which a file without an end of its own counts as finished"""
-PUT_ASIDE = re.compile(r".*\.\d+\.bag")
+NUMBERED_BAG = re.compile(r".*\.\d+\.bag")
 """a bag that telemetry writes no more: run.7.bag, stop.3.bag"""
 HEADER = 4096
 """bytes of a bag that hold its first record"""
+TARGET = re.compile(rf"({'|'.join(KINDS)})/(?!\.)[^/\0]+")
+FIRST, LAST = -6e10, 2.5e11
+"""s, the times that a date can show: years 68 to 9892"""
+LONGEST_NAME = 200
+"""bytes of a file's name in the name of its folder on the remote, of 255 with time and number"""
 
 
 class QueueError(ValueError):
@@ -32,26 +39,34 @@ class QueueFile:
     """The entries, by key. Once `save` has returned, they are never lost."""
 
     def __init__(self, folder: Path) -> None:
-        """Raises OSError, QueueError."""
+        """Raises OSError."""
         self.folder = folder
         self.path = folder / NAME
         self.entries: dict[str, Entry] = {}
-        if self.path.exists():
+        self.damage = ""
+        """why the file is no queue; empty: it is one, or there is none"""
+        with contextlib.suppress(FileNotFoundError):
             try:
-                for each in json.loads(self.path.read_text(encoding="utf-8"))["files"]:
-                    parts = {int(number): Part(**part) for number, part in each.pop("parts").items()}
-                    self.entries[each["key"]] = Entry(**each, parts=parts)
-            except (ValueError, KeyError, TypeError, AttributeError) as error:
-                raise QueueError(f"{self.path} is no queue of data_return.py ({error}); move it away") from None
+                files = [_entry(each) for each in json.loads(self.path.read_bytes())["files"]]
+                self.entries = {each.key: each for each in files}
+            except (ValueError, KeyError, TypeError, AttributeError, RecursionError) as error:
+                self.damage = f"{self.path} is no queue of data_return.py ({printable(str(error))})"
 
     def lock(self) -> None:
-        """Holds the folder until the program ends. Raises OSError, QueueError: another one holds it."""
+        """Holds the folder until the program ends; a damaged queue is put aside there.
+
+        Raises:
+            OSError.
+            QueueError: another program holds it.
+        """
         self.folder.mkdir(parents=True, exist_ok=True)
         self._lock = os.open(self.folder, os.O_RDONLY)
         try:
             fcntl.flock(self._lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except BlockingIOError:
             raise QueueError(f"another data_return.py uses {self.folder}; end it, or set queue_folder") from None
+        if self.damage:
+            self.path.replace(self.path.with_suffix(".damaged"))
 
     def save(self) -> None:
         """Raises OSError."""
@@ -64,15 +79,29 @@ class QueueFile:
             OSError: the queue cannot be written.
         """
         found = {each.key: each for path in logs.rglob("*") if (each := _finished(path, logs, day))}
-        lost = [each for key, each in self.entries.items() if key not in found and not each.returned]
-        entries = {key: self.entries.get(key, each) for key, each in found.items()}
-        for key, each in entries.items():
-            each.path = found[key].path
-        changed = entries.keys() != self.entries.keys()
-        self.entries = entries
+        missing = [each for key, each in self.entries.items() if key not in found and not each.returned]
+        for key, each in found.items():
+            if (known := self.entries.get(key)) is not None:
+                each.target, each.parts, each.returned = known.target, known.parts, known.returned
+        changed = found.keys() != self.entries.keys()
+        self.entries = found
         if changed:
             self.save()
-        return lost
+        return missing
+
+
+def _entry(given: dict[str, Any]) -> Entry:
+    """Raises ValueError, KeyError, TypeError, AttributeError: it is none."""
+    entry = Entry(**{**given, "parts": {}})
+    types = [type(each) for each in (entry.key, entry.path, entry.size, entry.mtime_ns, entry.returned)]
+    good = types == [str, str, int, int, bool] and entry.kind in KINDS and 0 <= entry.size < 1 << 63
+    if not good or not TARGET.fullmatch(entry.target):
+        raise ValueError("a file has values that are none of its")
+    for number in map(int, given["parts"]):
+        if not 0 <= number < entry.count:
+            raise ValueError(f"part {number} of {entry.count}")
+        entry.parts[number] = read_part(given["parts"][str(number)], number)
+    return entry
 
 
 def _finished(path: Path, logs: Path, day: float) -> Entry | None:
@@ -81,16 +110,22 @@ def _finished(path: Path, logs: Path, day: float) -> Entry | None:
     with contextlib.suppress(OSError):
         status = path.lstat()
         if kind and stat.S_ISREG(status.st_mode) and abs(day - status.st_mtime) >= SETTLED and _is_ended(path):
-            key = f"{status.st_ino}-{status.st_size}-{status.st_mtime_ns}"
-            stamp = datetime.fromtimestamp(status.st_mtime, UTC).strftime("%Y%m%dT%H%M%S.%fZ")
-            target = f"{kind}/{stamp}-{path.name}"
-            return Entry(key, str(path.relative_to(logs)), kind, status.st_size, status.st_mtime_ns, target)
+            time = datetime.fromtimestamp(min(max(status.st_mtime, FIRST), LAST), UTC)
+            target = f"{kind}/{time:%Y%m%dT%H%M%S.%fZ}-{_plain(path.name)}"
+            name = str(path.relative_to(logs))
+            return Entry(identity(status), name, kind, status.st_size, status.st_mtime_ns, target)
     return None
 
 
+def _plain(name: str) -> str:
+    """The name with characters that every remote takes; the manifest has the whole one."""
+    plain = "".join(c if c.isalnum() or c in "._- " else "_" for c in name)
+    return plain.encode()[-LONGEST_NAME:].decode(errors="ignore")
+
+
 def _is_ended(path: Path) -> bool:
-    """A bag that is being written has no index yet; one that telemetry has put aside stays as it is."""
-    if path.suffix != ".bag" or PUT_ASIDE.fullmatch(path.name):
+    """A bag that is being written has no index yet; one that telemetry has numbered stays as it is."""
+    if path.suffix != ".bag" or NUMBERED_BAG.fullmatch(path.name):
         return True
     with path.open("rb") as file:
         header = file.read(HEADER)

@@ -100,15 +100,15 @@ void report_state(DiagnosticReport& report, const StateFrame& state, std::uint64
                   const Programs& programs) {
   constexpr std::uint64_t kLost = kStateNoGyro | kStateNoAccelerometer | kStateNoLeftEncoder | kStateNoRightEncoder;
   if ((state.base.flags & kStateValid) == 0) report.warn("pose and twist are not valid");
+  if (state.head.run == 0) return;  // There is no state yet; a deviation of zero would say that its value is known.
   if ((state.base.flags & kLost) != 0) report.warn(sentences_of(kStateFlagNames, state.base.flags & kLost, programs));
   if ((slip_lately | state.wheeled.slip) != 0) {
     report.warn("slip: " + sentences_of(kSlipReasonNames, slip_lately | state.wheeled.slip, programs));
   } else if ((state.base.flags & kStateSlip) != 0) {
     report.warn("slip: wheels and inertial sensors disagree");
   }
-  if ((state.base.flags & kStateDegraded) != 0) {
+  if ((state.base.flags & kStateDegraded) != 0)
     report.warn("odometry is degraded: " + sentences_of(kDegradedReasonNames, state.base.degraded, programs));
-  }
   report.value("cycle", state.head.cycle);
   report.value("flags", names_of(kStateFlagNames, state.base.flags));
   report.value("degraded", names_of(kDegradedReasonNames, state.base.degraded));
