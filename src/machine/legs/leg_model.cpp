@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <set>
 #include <sstream>
 
@@ -19,6 +20,7 @@ namespace {
 constexpr double kBothWays = 0.5;   // rad by which a knee must bend to either side to bend both ways
 constexpr double kShortest = 1e-4;  // m, of thigh and shank
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
+constexpr double kTurns = 4 * std::numbers::pi;  // rad, at most either way, of a joint of a leg that has end stops
 
 using Chain = std::array<std::size_t, kLegJoints>;
 
@@ -137,6 +139,11 @@ double bend_of(const RigidBodies& robot, const LegGeometry& geometry, const Chai
 }
 
 void require_limits(const RigidBodies& robot, const BodyJoint& joint) {
+  if (const double end = std::max(std::abs(joint.lower), std::abs(joint.upper)); end > kTurns && end <= 360) {
+    refuse(robot.source, joint_element(joint.name),
+           "its range of " + number(joint.lower) + " to " + number(joint.upper) + " rad looks like degrees",
+           "Give lower and upper in rad");
+  }
   if (joint.effort_limit > 0 && joint.velocity_limit > 0) return;
   refuse(robot.source, joint_element(joint.name),
          std::string("a joint of a leg without ") + (joint.effort_limit > 0 ? "velocity" : "effort") + " limit",
@@ -199,6 +206,7 @@ LegModel read_legs(const RobotDescription& description, const MachineParameters&
   model.hash = hash.value();
   const Belly belly = belly_of(*bodies, places);
   model.belly = belly.height;
+  model.lying_pitch = std::atan2(belly.down.x(), -belly.down.z());
   for (std::size_t i = 0; i < kLegs; ++i) {
     for (const std::size_t index : places[i]) {
       const RigidBody& body = bodies->bodies[index];

@@ -378,9 +378,11 @@ void Walker::swing(const State& state, const WalkInput& input, const WalkingBody
     const std::size_t joint = kLegJoints * leg + i;
     const auto axis = static_cast<Eigen::Index>(i);
     const double limit = effort_limits_[joint];
+    const JointRange& range = kinematics.range(i);
+    const double angle = std::min(std::max(solution.angles[axis], range.lower + kFromEnd), range.upper - kFromEnd);
     out.joints[joint] = {.mode = JointMode::kImpedance,
-                         .position = solution.angles[axis],
-                         .velocity = rates[axis],
+                         .position = angle,
+                         .velocity = angle == solution.angles[axis] ? rates[axis] : 0,
                          .stiffness = tuning_.stiffness,
                          .damping = tuning_.damping,
                          .effort = std::clamp(efforts[axis], -limit, limit)};

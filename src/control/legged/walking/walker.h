@@ -21,7 +21,7 @@
 ///             its joints and kOfLength of its leg's length (walking_speed.h), or no farther than it is. A foot that landed
 ///             for another twist bounds it by that
 ///   swing     the foot follows swing.h to its foothold (foothold.h) with the impedance of standing, and the efforts
-///             M q̈ + h of its own leg
+///             M q̈ + h of its own leg. Each joint stays kFromEnd away from the ends of its range
 ///
 /// If a plan fails, the last forces stay for up to kFailures plans (kReasonNoPlan).
 
