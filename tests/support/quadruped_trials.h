@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <random>
 #include <string>
 
@@ -78,6 +79,17 @@ inline LeaningWalk leaning_walk(const LegModel& model, const Parameters& paramet
   result.stopped = robot.permit().causes != 0;
   result.causes = robot.causes();
   return result;
+}
+
+/// Returns the robot with first joints that need 0.6 of their torque for half of the weight, as in a trot in place.
+inline LegModel with_weak_hips(LegModel robot) {
+  for (std::size_t leg = 0; leg < kLegs; ++leg) {
+    const LegKinematics& kinematics = robot.legs[leg].kinematics;
+    const double lever = std::abs(kinematics.position(robot.legs[leg].lying).y() - kinematics.geometry().hip.y());
+    double& limit = robot.joints[kLegJoints * leg].effort_limit;
+    limit = std::min(limit, robot.mass * 9.81 / 2 * lever / 0.6);
+  }
+  return robot;
 }
 
 /// Returns a scene whose ground rises by `slope` rad towards `heading` from the robot, in a file of this folder.

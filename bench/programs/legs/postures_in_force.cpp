@@ -14,14 +14,7 @@ void leaning_walks(const LegModel& model, std::uint64_t seed, WorstValues& worst
 }
 
 void weak_hips(const LegModel& model, std::uint64_t seed, WorstValues& worst) {
-  LegModel weak = model;
-  for (std::size_t leg = 0; leg < kLegs; ++leg) {
-    const LegKinematics& kinematics = model.legs[leg].kinematics;
-    const double lever = std::abs(kinematics.position(model.legs[leg].lying).y() - kinematics.geometry().hip.y());
-    JointModel& hip = weak.joints[kLegJoints * leg];
-    hip.effort_limit = std::min(hip.effort_limit, model.mass * 9.81 / 2 * lever / 0.6);
-  }
-  const LeaningWalk walk = leaning_walk(weak, walking_parameters(seed), false);
+  const LeaningWalk walk = leaning_walk(with_weak_hips(model), walking_parameters(seed), false);
   worst.add("stopped walks with weak hips", walk.stopped ? 1 : 0, "runs");
   if (walk.stopped)
     std::fprintf(stderr, "%s, seed %llu: %s\n", model.name.c_str(), static_cast<unsigned long long>(seed),
