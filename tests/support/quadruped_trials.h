@@ -1,5 +1,6 @@
 #pragma once
-/// Trials of robots on legs that a benchmark repeats often and a test once: walks with poses, and standing up on slopes.
+/// Trials of robots on legs that a benchmark repeats often and a test once: walks with poses, and standing up on
+/// slopes.
 
 #include <algorithm>
 #include <cmath>
@@ -15,7 +16,7 @@ namespace robot_control {
 struct LeaningWalk {
   bool stopped = false;
   std::string causes;
-  double joint_speed = 0;   ///< of the limit, the largest one
+  double joint_speed = 0;    ///< of the limit, the largest one
   double beyond_range = -1;  ///< rad, of a joint; negative: it stayed within
 };
 
@@ -37,29 +38,9 @@ inline LeaningWalk leaning_walk(const LegModel& model, const Parameters& paramet
       const auto& truth = robot.truth().joints[i];
       result.joint_speed = std::max(result.joint_speed, std::abs(truth.velocity) / joint.velocity_limit);
       if (joint.range)
-        result.beyond_range = std::max(
-            {result.beyond_range, truth.position - joint.range->upper, joint.range->lower - truth.position});
+        result.beyond_range =
+            std::max({result.beyond_range, truth.position - joint.range->upper, joint.range->lower - truth.position});
     }
-  };
-  const auto old = robot.after_step;
-  double worst_speed = 0.9, worst_range = 0; bool said = false;
-  robot.after_step = [&] {
-    old();
-    const auto& c = robot.command();
-    const auto show = [&](const char* what, std::size_t i) {
-      const auto& t = robot.truth().joints[i];
-      std::fprintf(stderr, " %s t %.3f joint %zu q %.3f dq %.2f cmd %.3f (%.0f) gait %d phase %.2f twist %.2f %.2f %.2f body %.3f %.3f %.3f reasons %llx stance %.2f q %.3f %.3f tilt %.3f effort %.2f\n", what, robot.loop.time(), i, t.position, t.velocity, c.joints[i].position, c.joints[i].stiffness, (int)c.legged.gait, c.legged.gait_phase, c.twist_limited.linear[0], c.twist_limited.linear[1], c.twist_limited.angular[2], c.legged.body[2], c.legged.body[3], c.legged.body[4], (unsigned long long)c.reasons, c.legged.stance[i/3], robot.truth().pose_world.position[2], 0.0, robot.tilt_now(), t.effort / model.joints[i].effort_limit);
-    };
-    for (std::size_t i = 0; i < kLegsJoints; ++i) {
-      const auto& t = robot.truth().joints[i];
-      const JointModel& joint = model.joints[i];
-      if (std::abs(t.velocity) / joint.velocity_limit > worst_speed + 0.02) worst_speed = std::abs(t.velocity) / joint.velocity_limit, show("speed", i);
-      if (joint.range && std::max(t.position - joint.range->upper, joint.range->lower - t.position) > worst_range + 0.002)
-        worst_range = std::max(t.position - joint.range->upper, joint.range->lower - t.position), show("range", i);
-    }
-    if (!said && robot.permit().causes != 0) said = true, show("stop", 0);
-    static int n = 0;
-    if (std::getenv("TRACE") && ++n % 50 == 0) show("trace", 2);
   };
   if (poses) {
     Request lean = stance(kStanceStay);
@@ -116,12 +97,6 @@ inline SlopeTrial stand_up_on(const LegModel& model, Parameters parameters, doub
   const TemporaryFolder folder;
   parameters.plant.scene = sloping_scene(folder, slope, heading);
   QuadrupedLoop robot(model, parameters);
-  bool said = false;
-  robot.after_step = [&] {
-    if (said || robot.permit().causes == 0) return;
-    said = true;
-    std::fprintf(stderr, "  t %.3f phase %d tilt %.3f estimated up %.3f %.3f\n", robot.loop.time(), (int)robot.command().legged.phase, robot.tilt_now(), pitch_of(robot.state().base.attitude), roll_of(robot.state().base.attitude));
-  };
   robot.wait(2.0);
   robot.clear();
   robot.run(6.0, stance(kStanceStand));

@@ -14,8 +14,8 @@
 namespace robot_control {
 
 inline constexpr std::uint64_t kReasonTooSteep = 1u << 25;
-inline constexpr double kMaxSlope = 0.25;  ///< rad
-inline constexpr double kLevelSlope = 0.06;     ///< rad
+inline constexpr double kMaxSlope = 0.25;    ///< rad
+inline constexpr double kLevelSlope = 0.06;  ///< rad
 
 /// Returns the vertical, upwards, in the axes of the ground.
 inline Eigen::Vector3d vertical_over_ground(const Quaternion& attitude, double lying_pitch) noexcept {

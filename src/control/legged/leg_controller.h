@@ -34,9 +34,10 @@
 ///
 /// The stance frame has its origin where that of the base was when it began to rise. Its x axis shows ahead, its z axis
 /// up from the ground, whose slope the attitude gave while the robot lay (ground_slope.h). The centre of gravity stands
-/// amid the feet along the vertical. On a slope that is too steep the robot stays lying (kReasonTooSteep). Let aᵢ be the feet, p the body's position and R its rotation in it. The feet in the base's axes are
-/// Rᵀ(aᵢ − p), and the joint angles are those of LegKinematics::inverse. A ball as a foot rolls: aᵢ moves with
-/// ωᵢ × (0, 0, r), ωᵢ the rate of the shank.
+/// amid the feet along the vertical. On a slope that is too steep the robot stays lying (kReasonTooSteep). Let aᵢ be
+/// the feet, p the body's position and R its rotation in it. The feet in the base's axes are Rᵀ(aᵢ − p), and the joint
+/// angles are those of LegKinematics::inverse. A ball as a foot rolls: aᵢ moves with ωᵢ × (0, 0, r), ωᵢ the rate of the
+/// shank.
 ///
 /// Each joint gets an impedance about its angle. The feed-forward is the effort of the whole robot's motion along its
 /// reference, M a + h − Jᵀ f (leg_dynamics.h). The feet that stand give the force and the moment that moving the body
@@ -141,13 +142,13 @@ class LegController {
     std::array<double, 2> home{};       ///< m, x and y of the standing body: its centre of gravity is amid its feet
     Walker::State walk;
     TwistLimiter::State twist;
-    std::array<TrackedAxis, 3> carried{};  ///< of CarriedBody: the body that walks
-    CarriedBody lean_wanted{};             ///< what was requested last, within the ranges
-    CarriedBody lean_target{};             ///< what the legs carry of it on the spot
-    CarriedTwist carried_twist;            ///< of the last cycle
-    std::uint64_t gait = 0;                ///< GaitName, the last one that was chosen
-    std::uint64_t lies_next = 0;           ///< 1: it lies down when the walk has ended
-    double idle = 0;                       ///< s without a request of motion
+    std::array<TrackedAxis, 3> carried{};            ///< of CarriedBody: the body that walks
+    CarriedBody lean_wanted{};                       ///< what was requested last, within the ranges
+    CarriedBody lean_target{};                       ///< what the legs carry of it on the spot
+    CarriedTwist carried_twist;                      ///< of the last cycle
+    std::uint64_t gait = 0;                          ///< GaitName, the last one that was chosen
+    std::uint64_t lies_next = 0;                     ///< 1: it lies down when the walk has ended
+    double idle = 0;                                 ///< s without a request of motion
     std::array<double, kLeggedDofs> velocity{};      ///< of the reference, in the order of leg_dynamics.h
     std::array<double, kLeggedDofs> acceleration{};  ///< of the reference, through a low pass
   };
@@ -211,8 +212,8 @@ class LegController {
   std::array<JointRange, kLegsJoints> joint_ranges_;
   std::array<AxisBounds, kLegsJoints> joint_motion_;
   std::array<double, kLegsJoints> joint_steps_{};  ///< rad, of a cycle at the speed limit
-  double ground_;   ///< m, height of the ground below the base of a robot that lies level
-  double nominal_;  ///< m, height of the standing body above one that lies level
+  double ground_;       ///< m, height of the ground below the base of a robot that lies level
+  double nominal_;      ///< m, height of the standing body above one that lies level
   double lying_pitch_;  ///< rad
   std::array<AxisBounds, 6> body_motion_;
   double lie_down_after_;  ///< s; 0: never

@@ -14,7 +14,7 @@ constexpr double kTrotFrom = 0.4;     // m/s, of the feet (docs/evidence/derivat
 constexpr double kTrotUntil = 0.3;    // m/s, likewise
 constexpr double kPlaced = 0.1;       // of the leg length, of the feet at the end of a walk
 constexpr double kInPlace = 3;        // s, after which a walk ends wherever the feet are
-constexpr double kCarriedPart = 0.5;  // of the ranges of a standing body
+constexpr double kCarriedPart = 0.5;  // of the ranges and speeds of a standing body
 constexpr double kOnTheSpot = 0.75;   // of what the legs can, in a pose: the rest is for a twist
 constexpr double kLessLean = 0.7;     // of a pose that they do not carry on the spot
 constexpr double kNominal = 0.0005;   // m, rad: a body this near to the nominal pose is in it
@@ -50,7 +50,8 @@ bool LegController::walks(const Request& request) const noexcept {
   return request.mode == kStanceStay && (parts_of(request) & kWalk) != 0;
 }
 
-/// Begins to walk once the legs carry the body on the spot; until then it moves towards its nominal pose.
+/// Begins to walk once the body is within its ranges, and the legs carry it on the spot. Until then it moves towards
+/// its nominal pose.
 void LegController::begin_walk(const ControlInput& input) noexcept {
   if (!usable(input)) return;
   const std::array<double, 3> nominal_pose{nominal_, 0, 0};
@@ -58,7 +59,10 @@ void LegController::begin_walk(const ControlInput& input) noexcept {
     state_.carried[i] = state_.body[kZ + i];
     state_.carried[i].value -= nominal_pose[i];
   }
-  if (const CarriedBody body = carried_body(); !nominal(body) && used({}, body, GaitName::kTrot) > 1) return;
+  const CarriedBody body = carried_body();
+  const bool in_range =
+      std::abs(body[0]) <= kCarriedPart * tuning_.bob && std::hypot(body[1], body[2]) <= kCarriedPart * tuning_.lean;
+  if (!nominal(body) && !(in_range && used({}, body, GaitName::kTrot) <= 1)) return;
   state_.twist = {};
   state_.gait = static_cast<std::uint64_t>(GaitName::kStand);
   walker_.begin(state_.walk, *input.sensors, *input.state);
@@ -92,6 +96,7 @@ void LegController::walk(const ControlInput& input, const Request& request, Comm
                .height = state_.carried[0].value,
                .roll = state_.carried[1].value,
                .pitch = state_.carried[2].value,
+               .rates = {state_.carried[0].speed, state_.carried[1].speed, state_.carried[2].speed},
                .gait = gait};
   for (double& axis : to.twist) axis /= std::max(1.0, used_part(target, speeds));
   const double carried = carried_part(to.twist, gait);
@@ -197,9 +202,8 @@ double LegController::carried_part(const WalkingTwist& twist, GaitName wanted) n
   if (now.same(state_.carried_twist)) return state_.carried_twist.part;
   const auto carries = [&](double part) {
     const WalkingTwist tried{part * twist[0], part * twist[1], part * twist[2]};
-    return std::ranges::all_of(now.bodies, [&](const CarriedBody& body) {
-      return nominal(body) || used(tried, body, wanted) <= 1;
-    });
+    return std::ranges::all_of(
+        now.bodies, [&](const CarriedBody& body) { return nominal(body) || used(tried, body, wanted) <= 1; });
   };
   double step = 0.5;
   now.part = carries(1) ? 1 : 0;
@@ -226,7 +230,8 @@ void LegController::carry(const Request& request, GaitName wanted, std::uint64_t
     }
   }
   if (state_.lean_target != to) reasons |= kReasonOutOfReach;
-  const std::array bounds{body_motion_[kZ], body_motion_[kRoll], body_motion_[kPitch]};
+  const std::array bounds{paced(body_motion_[kZ], kCarriedPart), paced(body_motion_[kRoll], kCarriedPart),
+                          paced(body_motion_[kPitch], kCarriedPart)};
   const WalkingTwist twist{state_.twist.axes[0].speed, state_.twist.axes[1].speed, state_.twist.axes[2].speed};
   const CarriedBody before = carried_body();
   std::array<TrackedAxis, 3> next = state_.carried;

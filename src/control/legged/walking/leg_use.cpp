@@ -33,9 +33,9 @@ LegUse::LegUse(const LegModel& robot, const NominalStance& stance) noexcept
 LegUse::Place LegUse::place_of(const CarriedBody& body) noexcept {
   if (body[1] == 0 && body[2] == 0) return {.height = body[0]};
   using Axis = Eigen::AngleAxisd;
-  return {.back = (Axis(-body[1], Eigen::Vector3d::UnitX()) * Axis(-body[2], Eigen::Vector3d::UnitY()))
-                      .toRotationMatrix(),
-          .height = body[0]};
+  return {
+      .back = (Axis(-body[1], Eigen::Vector3d::UnitX()) * Axis(-body[2], Eigen::Vector3d::UnitY())).toRotationMatrix(),
+      .height = body[0]};
 }
 
 Eigen::Vector3d LegUse::placed(std::size_t leg, const WalkingTwist& twist, const CarriedBody& body) const noexcept {
@@ -76,8 +76,7 @@ double LegUse::swinging(const Gait& gait, const WalkingTwist& twist, const Carri
     for (int i = 0; i <= samples; ++i) {
       const double swung = static_cast<double>(i) / samples;
       const SwingPoint point = swing_point(from, to, foot.z() + gait.lift, swung, time);
-      part = std::max(
-          part, needed_at(leg, at, point.place + swung * time * velocity, point.velocity + velocity, 0));
+      part = std::max(part, needed_at(leg, at, point.place + swung * time * velocity, point.velocity + velocity, 0));
     }
   }
   return part;

@@ -23,7 +23,7 @@ namespace robot_control {
 inline constexpr double kOfJointSpeed = 0.85;
 inline constexpr double kOfLength = 0.95;
 inline constexpr double kOfWeight = 0.76;  ///< times 1.27 is 0.97 (walker.cpp)
-inline constexpr double kFromEnd = 0.03;   ///< rad
+inline constexpr double kFromEnd = 0.05;   ///< rad
 
 /// Height in m, roll and pitch in rad of a body that walks, from the nominal pose.
 using CarriedBody = std::array<double, 3>;
@@ -61,7 +61,7 @@ class LegUse {
                    double force) const noexcept;
 
   std::array<LegKinematics, kLegs> legs_;
-  std::array<double, kLegsJoints> speeds_{};  ///< rad/s, limits
+  std::array<double, kLegsJoints> speeds_{};   ///< rad/s, limits
   std::array<double, kLegsJoints> efforts_{};  ///< N·m, of torques that count as the speed limit
   std::array<Eigen::Vector3d, kLegs> feet_{};  ///< m, nominal
   Eigen::Vector3d centre_;                     ///< m, of gravity

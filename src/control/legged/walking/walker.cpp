@@ -255,7 +255,7 @@ void Walker::plan(State& state, const WalkInput& input, const WalkingBody& body)
   to.speed << body.rate, body.moves;
   to.target << input.roll + state.ground[2], input.pitch - state.ground[1], state.ahead[2], state.ahead[0],
       state.ahead[1], height_ + input.height;
-  to.target_speed << 0, 0, input.twist[2], input.twist[0], input.twist[1], 0;
+  to.target_speed << input.rates[1], input.rates[2], input.twist[2], input.twist[0], input.twist[1], input.rates[0];
   to.steps = std::min(kPlanSteps, static_cast<std::size_t>(5 / gait.duty));
   const double step = plan_parameters_.horizon / static_cast<double>(to.steps);
   for (std::size_t leg = 0; leg < kLegs; ++leg) {

@@ -49,6 +49,7 @@ struct WalkInput {
   WalkingTwist twist{};                  ///< limited
   double height = 0;                     ///< m, of the body from the nominal one
   double roll = 0, pitch = 0;            ///< rad
+  std::array<double, 3> rates{};         ///< m/s, rad/s, of height, roll and pitch
   GaitName gait = GaitName::kStand;      ///< wanted; kStand ends the walk
 };
 

@@ -39,16 +39,14 @@ Speeds walking_speeds(const LegModel& robot, const NominalStance& stance, const 
     speeds[i].fill(kMinSpeed);
     if (gaits[i].duty >= 1) continue;
     for (std::size_t axis = 0; axis < speeds[i].size(); ++axis)
-      speeds[i][axis] =
-          largest(axis, [&](const WalkingTwist& twist) { return legs.steady(gaits[i], twist); });
+      speeds[i][axis] = largest(axis, [&](const WalkingTwist& twist) { return legs.steady(gaits[i], twist); });
   }
   for (std::size_t next = 0; next < gaits.size(); ++next) {
     for (std::size_t last = 0; last < gaits.size(); ++last) {
       if (gaits[next].duty >= 1 || gaits[last].duty >= 1) continue;
       for (std::size_t axis = 0; axis < speeds[next].size(); ++axis) {
-        const double change = largest(axis, [&](const WalkingTwist& twist) {
-          return legs.changing(gaits[last], gaits[next], twist);
-        });
+        const double change =
+            largest(axis, [&](const WalkingTwist& twist) { return legs.changing(gaits[last], gaits[next], twist); });
         double& slower = speeds[last][axis] < speeds[next][axis] ? speeds[last][axis] : speeds[next][axis];
         slower = std::min(slower, change);
       }
