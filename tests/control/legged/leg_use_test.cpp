@@ -18,10 +18,10 @@ struct LegUseTest : testing::Test {
 };
 
 TEST_F(LegUseTest, IsThatOfTheSameStanceInAnotherPose) {
-  constexpr double kHeight = 0.02;
+  constexpr double kHeight = 0.01;
   NominalStance raised = stance;
   for (Eigen::Vector3d& foot : raised.feet) foot.z() -= kHeight;
-  const WalkingTwist twist{0.8, 0, 0};
+  const WalkingTwist twist{0.6, 0, 0};
   EXPECT_NEAR(LegUse(robot, raised).steady(trot, twist), steady(twist, {kHeight, 0, 0}), 1e-12);
 }
 

@@ -432,19 +432,16 @@ TEST(LegWalk, AsksForNoMoreSpeedThanTheLegsCarryInThePoseInForce) {
   EXPECT_NEAR(legs.speed(0), 1.5, 1e-6);
   const LegUse use(legs.robot(), nominal_stance(legs.robot()));
   const Gait trot = gait_of(legs.robot(), nominal_stance(legs.robot()), kGaits[number(GaitName::kTrot)]);
-  request.posture.height = 0.4 * tuning.bob;
-  bool waited = false;
-  legs.legs.request(request);
-  for (double time = 0; time < 2; time += kCycle) {
-    const double height = legs.legs.out.legged.body[2];
-    EXPECT_LE(use.steady(trot, {legs.speed(0), 0, 0}, {height, 0, 0}), kOfJointSpeed + 0.01) << time;
-    legs.step();
-    waited = waited || legs.legs.out.legged.body[2] <= height;
-  }
-  EXPECT_LT(legs.speed(0), 1.4);
+  request.posture = {.height = 0.4 * tuning.bob, .pitch = 0.08};
+  legs.run(3, request);
+  EXPECT_LT(legs.speed(0), 1.45);
   EXPECT_GT(legs.speed(0), 0.3);
-  EXPECT_NE(legs.legs.out.reasons & kReasonLegSpeed, 0u);
-  EXPECT_NEAR(legs.legs.out.legged.body[2], request.posture.height, 1e-3);
+  const CarriedBody body{request.posture.height, 0, request.posture.pitch};
+  EXPECT_LE(use.steady(trot, {legs.speed(0), 0, 0}, body, 8), kOfJointSpeed + 1e-9);
+  EXPECT_GT(use.steady(trot, {1.06 * legs.speed(0), 0, 0}, body, 8), kOfJointSpeed);
+  EXPECT_EQ(legs.legs.out.reasons & ~std::uint64_t{kReasonAccelerationLimited}, std::uint64_t{kReasonLegSpeed});
+  EXPECT_NEAR(legs.legs.out.legged.body[2], body[0], 1e-3);
+  EXPECT_NEAR(legs.legs.out.legged.body[4], body[2], 1e-3);
 }
 
 TEST(LegWalk, BeginsWithThePoseInWhichItStands) {

@@ -31,11 +31,12 @@ LegUse::LegUse(const LegModel& robot, const NominalStance& stance) noexcept
 }
 
 LegUse::Place LegUse::place_of(const CarriedBody& body) noexcept {
-  if (body[1] == 0 && body[2] == 0) return {.height = body[0]};
+  if (body == CarriedBody{}) return {};
   using Axis = Eigen::AngleAxisd;
   return {
       .back = (Axis(-body[1], Eigen::Vector3d::UnitX()) * Axis(-body[2], Eigen::Vector3d::UnitY())).toRotationMatrix(),
-      .height = body[0]};
+      .height = body[0],
+      .from_end = kFromEnd};
 }
 
 Eigen::Vector3d LegUse::placed(std::size_t leg, const WalkingTwist& twist, const CarriedBody& body) const noexcept {
@@ -58,7 +59,8 @@ double LegUse::needed_at(std::size_t leg, const Place& body, const Eigen::Vector
     const auto axis = static_cast<Eigen::Index>(i);
     const std::size_t joint = kLegJoints * leg + i;
     const JointRange& range = kinematics.range(i);
-    if ((*angles)[axis] < range.lower + kFromEnd || (*angles)[axis] > range.upper - kFromEnd) return kOutOfReach;
+    if ((*angles)[axis] < range.lower + body.from_end || (*angles)[axis] > range.upper - body.from_end)
+      return kOutOfReach;
     part = std::max({part, std::abs(rates[axis]) / speeds_[joint], std::abs(efforts[axis]) / efforts_[joint]});
   }
   return part;

@@ -4,8 +4,8 @@
 ///   speed   |q̇| of a joint, of its velocity limit, during stance and swing (swing.h)
 ///   torque  |Jᵀ f| of a joint, of kOfWeight/kOfJointSpeed of its effort limit. f is the weight, on as many feet as
 ///           the gait leaves on the ground at least, at the ends and in the middle of a stance
-///   reach   infinite where a leg stretches beyond kOfLength of its length, or a joint comes nearer to an end of its
-///           range than kFromEnd
+///   reach   infinite where a leg stretches beyond kOfLength of its length, or a joint leaves its range, in other poses
+///           than the nominal one less kFromEnd
 ///
 /// The largest of these is at most kOfJointSpeed where the legs carry the body. A trot puts 1.27 times an equal share
 /// of the weight on a foot at its peak (leg_tuning.h). The centre of gravity stays above the middle of the feet.
@@ -52,6 +52,7 @@ class LegUse {
   struct Place {
     Eigen::Matrix3d back = Eigen::Matrix3d::Identity();  ///< level axes → those of the base
     double height = 0;                                   ///< m
+    double from_end = 0;                                 ///< rad, of joints from the ends of their ranges
   };
   static Place place_of(const CarriedBody& body) noexcept;
   /// Returns where a foot stands in the middle of its stance (foothold.h).
