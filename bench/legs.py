@@ -44,6 +44,9 @@ PARTS = (
     "faults",
     "walking_hours",
     "walking_silent",
+    "leaning_walks",
+    "weak_hips",
+    "slopes",
 )
 SEEDS = {
     "postures": 8,
@@ -60,6 +63,9 @@ SEEDS = {
     "disturbances": 24,
     "faults": 20,
     "walking_hours": 12,
+    "leaning_walks": 84,
+    "weak_hips": 50,
+    "slopes": 8,
 }
 """of each robot; others have one"""
 OWN_ROBOT = ("cost", "walking_cost", "pose", "circle", "odometry", "contact", "trot", "gaits")
@@ -146,6 +152,12 @@ BOUNDS = {
     "touchdowns not found in 15 ms": 2,  # %
     "swing taken for a stance": 2,  # %
     "no touchdown": 0,
+    "stopped walks with ": 0,
+    "joint speed of walks with poses": 1,
+    "joint beyond its range in walks with poses": 0,  # rad
+    "neither stands nor refuses on ": 0,
+    "turned over on ": 0,
+    "stops on ": 0,
 }
 """largest value of each figure, by the beginning of its name"""
 BOTH_WAYS = ("NEES of",)
@@ -162,6 +174,7 @@ WITHOUT_BOUND = (
     "neither, ",
     "mean error of",
     "error of height",
+    "stands on ",
 )
 """beginnings of figures that are measured alone"""
 

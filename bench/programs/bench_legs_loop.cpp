@@ -38,7 +38,10 @@ constexpr NamedRow kRows[] = {{"postures", postures},
                               {"walking_hours", walking_hours},
                               {"walking_silent", walking_silent},
                               {"walking_cost", walking_cost},
-                              {"walking_replayed", walking_replayed}};
+                              {"walking_replayed", walking_replayed},
+                              {"leaning_walks", leaning_walks},
+                              {"weak_hips", weak_hips},
+                              {"slopes", slopes}};
 
 int run(int argc, char** argv) {
   const auto found = std::find_if(std::begin(kRows), std::end(kRows),

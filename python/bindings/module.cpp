@@ -130,9 +130,10 @@ MujocoPlantParameters without_errors(MujocoPlantParameters parameters) {
 
 /// Places the robot in the scene and waits for rest. Returns how far it leans in rad and the share of its weight on the
 /// drive wheels, or on the legs. `unloaded` names the drive wheels that carry nothing, and the bodies that touch the
-/// ground instead.
+/// ground instead. Throws ParameterError as Robot::require_drivable.
 py::dict stand(const Parameters& parameters) {
   const std::unique_ptr<MachineModel> robot = machine_of(parameters);
+  compose(parameters, *robot)->require_drivable();
   MujocoPlant plant(*robot, without_errors(parameters.plant), parameters.loop.period());
   plant.start();
   TruthFrame truth;

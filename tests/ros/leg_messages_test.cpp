@@ -86,5 +86,15 @@ TEST(LegMessages, ARefusalSaysWhoHoldsThePermission) {
   EXPECT_EQ(no_permission(true, permit, robot, {.kind = kLeggedKind}), "");
 }
 
+TEST(SlopeWords, HaveTheMeasuredSlopeAndTheLargestOne) {
+  LegModel robot;
+  StateFrame state;
+  state.base.attitude = {0, std::sin(0.15), 0, std::cos(0.15)};
+  EXPECT_EQ(slope_words(kReasonOutOfReach, state, robot), "");
+  EXPECT_EQ(slope_words(kReasonTooSteep, state, robot), " (by 17.2 deg, at most 14.3 deg)");
+  robot.lying_pitch = 0.1;
+  EXPECT_EQ(slope_words(kReasonTooSteep, state, robot), " (by 11.5 deg, at most 14.3 deg)");
+}
+
 }  // namespace
 }  // namespace robot_control

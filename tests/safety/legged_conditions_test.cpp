@@ -97,6 +97,22 @@ TEST_F(LeggedConditionsTest, AJointThatLeavesItsWindowMovesUntilTheRobotStandsAg
   EXPECT_FALSE(conditions_.moving());
 }
 
+/// Go2 lies with 0.1 rad on level ground, and with 0.45 rad on a slope of 20°.
+TEST_F(LeggedConditionsTest, ALyingRobotIsTiltedTooFarFromTwiceTheLimitOn) {
+  const auto tilted = [&](LegPhase phase, double tilt) {
+    conditions_.enter_run();
+    command_.legged.phase = phase;
+    const double seen = run(0.2, [&](double) {
+      sensors_.imu.linear_acceleration[1] = 9.81 * std::sin(tilt);
+      sensors_.imu.linear_acceleration[2] = 9.81 * std::cos(tilt);
+    });
+    return seen < 0.2;
+  };
+  EXPECT_TRUE(tilted(LegPhase::kStanding, 0.45));
+  EXPECT_FALSE(tilted(LegPhase::kLying, 0.45));
+  EXPECT_TRUE(tilted(LegPhase::kLying, 0.9));
+}
+
 TEST_F(LeggedConditionsTest, AJointWithoutAnAngleMoves) {
   sensors_.joints[11].position = std::numeric_limits<double>::quiet_NaN();
   run(0.002);

@@ -70,6 +70,13 @@ void walking_hours(const LegModel& model, std::uint64_t seed, WorstValues& worst
 /// The controller is silent for 5 … 19 cycles at 200 phases of a trot of 1.0 m/s.
 void walking_silent(const LegModel& model, std::uint64_t seed, WorstValues& worst);
 
+/// Random walks at full speed with random poses of the body (support/quadruped_trials.h).
+void leaning_walks(const LegModel& model, std::uint64_t seed, WorstValues& worst);
+/// The same without poses, with first joints that need 0.6 of their torque for half of the weight.
+void weak_hips(const LegModel& model, std::uint64_t seed, WorstValues& worst);
+/// A robot that lies on slopes of 10, 15 and 20° is to stand up. The seed chooses one of eight headings.
+void slopes(const LegModel& model, std::uint64_t seed, WorstValues& worst);
+
 inline constexpr double kPi = 3.14159265358979323846;
 inline constexpr double kSway = 0.5;            ///< Hz
 inline constexpr double kTurnedOver = kPi / 3;  ///< rad

@@ -16,7 +16,7 @@ from robot_control.inspect.report import report
 
 
 def main(arguments: list[str] | None = None) -> None:
-    """Prints the report; exits with 1 and one message when the robot is refused, or does not stand."""
+    """Prints the report; exits with 1 and one message when the robot is refused, does not stand or cannot be driven."""
     options = _parser().parse_args(arguments)
 
     fallen = None
@@ -34,7 +34,9 @@ def main(arguments: list[str] | None = None) -> None:
         try:
             robot["standing"] = stand(options.file, options.params)
         except DriverError as error:
-            fallen = error
+            fallen = f"it does not stand: {error}"
+        except ParameterError as error:
+            fallen = f"it cannot be driven: {error}"
     except (RobotError, ParameterError, DriverError, OSError, ValueError) as error:
         sys.exit(f"inspect_robot.py: {fit_for_message(in_words(error))}")
     print(_json(robot) if options.json else report(robot))
@@ -42,7 +44,7 @@ def main(arguments: list[str] | None = None) -> None:
         if written is not None:
             print(escaped(f"wrote {written}"), file=sys.stderr)
     if fallen is not None:
-        sys.exit(f"inspect_robot.py: understood, but it does not stand: {fit_for_message(str(fallen))}")
+        sys.exit(f"inspect_robot.py: understood, but {fit_for_message(fallen)}")
 
 
 def _parser() -> argparse.ArgumentParser:

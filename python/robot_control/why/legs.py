@@ -3,7 +3,7 @@
 from robot_control.why.answer import Answer, Verdict
 from robot_control.why.state import Facts, speeds
 
-REFUSALS = {"refused": "", "not_standing": "standing", "not_lying": "lying", "out_of_reach": ""}
+REFUSALS = {"refused": "", "not_standing": "standing", "not_lying": "lying", "out_of_reach": "", "too_steep": ""}
 """Reason why a request is not executed → the posture that it needs."""
 LIMITS = ("no_plan", "leg_speed", "speed_limited", "permit_slow", "timed_out", "stale")
 """Reasons why a walk differs from what is requested, or ends."""

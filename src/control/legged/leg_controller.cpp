@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "control/legged/body_bounds.h"
+#include "control/legged/ground_slope.h"
 #include "control/legged/own_gaits.h"
 #include "control/legged/walking/walking_speed.h"
 
@@ -25,21 +26,6 @@ double smooth(double part) noexcept {
   return s * s * (3 - 2 * s);
 }
 
-/// Makes the lean of roll and pitch together at most `range`, and notes if it was beyond.
-void limit_lean(double& roll, double& pitch, double range, std::uint64_t& reasons) noexcept {
-  const double lean = std::hypot(roll, pitch);
-  if (lean <= range) return;
-  reasons |= kReasonOutOfReach;
-  roll *= range / lean;
-  pitch *= range / lean;
-}
-
-/// Returns `value` within ± `range`, and notes if it was beyond.
-double within(double value, double range, std::uint64_t& reasons) noexcept {
-  if (std::abs(value) > range) reasons |= kReasonOutOfReach;
-  return std::clamp(value, -range, range);
-}
-
 void approach(double& value, double target, double step) noexcept {
   value += std::clamp(target - value, -step, step);
 }
@@ -53,10 +39,12 @@ LegController::LegController(const LegModel& robot, const LegControllerParameter
       tuning_(leg_tuning(robot)),
       ground_(robot.belly),
       nominal_(nominal_height(robot)),
+      lying_pitch_(robot.lying_pitch),
       body_motion_(body_bounds(robot)),
       lie_down_after_(parameters.lie_down_after),
       limiter_(twist_limits(parameters)),
       walker_(robot, all_gaits(parameters.gaits), parameters.friction, period),
+      leg_use_(robot, nominal_stance(robot)),
       state_(CommandWatch(parameters.request_timeout, period, kExecutable)) {
   const NominalStance stance = nominal_stance(robot);
   fastest_ = walking_speeds(robot, stance, walker_.gaits());
@@ -140,7 +128,7 @@ bool LegController::advance(const Request& request, const ControlInput& input, s
   const bool up = request.mode == kStanceStand || walks(request);
   switch (state_.phase) {
     case LegPhase::kLying:
-      if (!up && request.mode != kStanceJoints) return false;
+      if (up ? !stands_up_here(input, reasons) : request.mode != kStanceJoints) return false;
       for (std::size_t i = 0; i < kLegsJoints; ++i)
         state_.from[i] = state_.angles[i] = input.sensors->joints[i].position;
       state_.joints.begin(state_.from);
@@ -149,7 +137,7 @@ bool LegController::advance(const Request& request, const ControlInput& input, s
     case LegPhase::kJoints:
       move_joints(request, reasons);
       state_.from = state_.angles;
-      if (up) enter(LegPhase::kGathering, 0);
+      if (up && stands_up_here(input, reasons)) enter(LegPhase::kGathering, 0);
       if (down) enter(LegPhase::kLying, 0);
       return false;
     case LegPhase::kGathering:
@@ -221,6 +209,17 @@ void LegController::move_joints(const Request& request, std::uint64_t& reasons) 
   for (std::size_t i = 0; i < kLegsJoints; ++i) state_.angles[i] = state_.joints.axes[i].value;
 }
 
+/// Measures the slope of the ground. Returns false where it is too steep to stand up.
+bool LegController::stands_up_here(const ControlInput& input, std::uint64_t& reasons) noexcept {
+  state_.up = {0, 0, 1};
+  if (input.state == nullptr || (input.state->base.flags & kStateValid) == 0) return true;
+  const Eigen::Vector3d up = vertical_over_ground(input.state->base.attitude, lying_pitch_);
+  const bool steep = up.z() < std::cos(kMaxSlope);
+  if (steep) reasons |= kReasonTooSteep;
+  if (up.z() < std::cos(kLevelSlope)) state_.up = {up.x(), up.y(), up.z()};
+  return !steep;
+}
+
 void LegController::gather() noexcept {
   double time = kMinTime;
   for (std::size_t i = 0; i < kLegsJoints; ++i)  // the smooth way is 1.5 times as fast in its middle
@@ -266,7 +265,7 @@ void LegController::stand(const Request& request, std::uint64_t& reasons) noexce
     state_.foot = {};
     state_.foot_target = {};
   }
-  if (state_.lifted == kLegs) {
+  if (state_.lifted == kLegs && !walks(request)) {
     choose_pose(request, reasons);
   } else {
     state_.held = {};
@@ -291,7 +290,7 @@ void LegController::choose_pose(const Request& request, std::uint64_t& reasons) 
                    to.roll,
                    to.pitch,
                    within(to.yaw, tuning_.lean, reasons)};
-    limit_lean(state_.held[kRoll], state_.held[kPitch], tuning_.lean, reasons);
+    limit_lean(state_.held[kRoll], state_.held[kPitch], reasons);
   } else if (state_.follows != 0) {
     const std::array<double, 3> nominal{state_.home[0], state_.home[1], nominal_};
     state_.held = stopping_place(state_.body, body_motion_);
@@ -309,7 +308,8 @@ Eigen::Vector2d LegController::above_support() const noexcept {
     if (leg != state_.lifted) three += place / (kLegs - 1);
   }
   if (state_.lifted != kLegs) middle += kShift * (three - middle);
-  return middle - Eigen::Vector2d(state_.centre[0], state_.centre[1]);
+  const double height = nominal_ - ground_ + state_.centre[2];  // of the centre of gravity
+  return middle - Map(state_.centre.data()).head<2>() + height / state_.up[2] * Map(state_.up.data()).head<2>();
 }
 
 /// Returns x and y of the body in m to which the request adds.

@@ -28,11 +28,16 @@
 ///
 /// A twist lets the robot stand up and walk (walking/walker.h). It ends the walk with a zero. Another gait begins when
 /// its legs carry the body at the twist of then. Until then the twist is limited by both gaits (walking_speed.h).
+/// While it walks, height, roll and pitch of the request are carried within half of their ranges, as far as the legs
+/// carry them on the spot (walking/leg_use.h). The twist is limited to what they carry in the pose in force and in the
+/// requested one. The body waits before a pose in which they do not carry the twist of now.
 ///
-/// The stance frame has its origin where that of the base was when it began to rise. It is level, and its x axis shows
-/// ahead. Let aᵢ be the feet, p the body's position and R its rotation in it. The feet in the base's axes are
-/// Rᵀ(aᵢ − p), and the joint angles are those of LegKinematics::inverse. A ball as a foot rolls: aᵢ moves with
-/// ωᵢ × (0, 0, r), ωᵢ the rate of the shank.
+/// The stance frame has its origin where that of the base was when it began to rise. Its x axis shows ahead, its z axis
+/// up from the ground, whose slope the attitude gave while the robot lay (ground_slope.h). The centre of gravity stands
+/// amid the feet along the vertical. On a slope that is too steep the robot stays lying (kReasonTooSteep). Let aᵢ be
+/// the feet, p the body's position and R its rotation in it. The feet in the base's axes are Rᵀ(aᵢ − p), and the joint
+/// angles are those of LegKinematics::inverse. A ball as a foot rolls: aᵢ moves with ωᵢ × (0, 0, r), ωᵢ the rate of the
+/// shank.
 ///
 /// Each joint gets an impedance about its angle. The feed-forward is the effort of the whole robot's motion along its
 /// reference, M a + h − Jᵀ f (leg_dynamics.h). The feet that stand give the force and the moment that moving the body
@@ -60,6 +65,7 @@
 #include "control/legged/leg_controller_parameters.h"
 #include "control/legged/leg_tuning.h"
 #include "control/legged/tracked_axis.h"
+#include "control/legged/walking/leg_use.h"
 #include "control/legged/walking/twist_limiter.h"
 #include "control/legged/walking/walker.h"
 #include "control/legged/walking/walking_speed.h"
@@ -94,6 +100,19 @@ class LegController {
   /// The body in the stance frame: x, y, height above one that lies level in m, roll, pitch, yaw in rad.
   using Pose = std::array<double, 6>;
 
+  /// What the legs carry of a twist, in two poses and two gaits.
+  struct CarriedTwist {
+    WalkingTwist twist{};
+    std::array<CarriedBody, 2> bodies{};
+    std::array<std::uint64_t, 2> gaits{};  ///< GaitName
+    double part = 1;                       ///< 0 … 1
+
+    /// Returns whether the part is that of the same twist, poses and gaits.
+    bool same(const CarriedTwist& other) const noexcept {
+      return twist == other.twist && bodies == other.bodies && gaits == other.gaits;
+    }
+  };
+
   struct State {
     explicit State(const CommandWatch& empty) : watch(empty) {}
 
@@ -118,14 +137,18 @@ class LegController {
     std::array<TrackedAxis, 3> foot{};  ///< m, of the lifted foot from its place
     Vector3 foot_target{};              ///< m
     std::array<double, kLegs> share{};  ///< of foot_forces.h
-    std::array<double, 2> centre{};     ///< m, x and y of the centre of gravity in the base's axes
+    Vector3 centre{};                   ///< m, of gravity, in the base's axes
+    Vector3 up{0, 0, 1};                ///< the vertical in the stance frame
     std::array<double, 2> home{};       ///< m, x and y of the standing body: its centre of gravity is amid its feet
     Walker::State walk;
     TwistLimiter::State twist;
-    std::array<TrackedAxis, 3> carried{};  ///< height, roll and pitch of the body that walks, from the nominal pose
-    std::uint64_t gait = 0;                ///< GaitName, the last one that was chosen
-    std::uint64_t lies_next = 0;           ///< 1: it lies down when the walk has ended
-    double idle = 0;                       ///< s without a request of motion
+    std::array<TrackedAxis, 3> carried{};            ///< of CarriedBody: the body that walks
+    CarriedBody lean_wanted{};                       ///< what was requested last, within the ranges
+    CarriedBody lean_target{};                       ///< what the legs carry of it on the spot
+    CarriedTwist carried_twist;                      ///< of the last cycle
+    std::uint64_t gait = 0;                          ///< GaitName, the last one that was chosen
+    std::uint64_t lies_next = 0;                     ///< 1: it lies down when the walk has ended
+    double idle = 0;                                 ///< s without a request of motion
     std::array<double, kLeggedDofs> velocity{};      ///< of the reference, in the order of leg_dynamics.h
     std::array<double, kLeggedDofs> acceleration{};  ///< of the reference, through a low pass
   };
@@ -146,12 +169,16 @@ class LegController {
   bool carries(GaitName gait, const WalkingTwist& twist) const noexcept;
   double time_scale() const noexcept;
   double pace_of(const WalkingTwist& twist) const noexcept;
-  void carry(const Request& request, std::uint64_t& reasons) noexcept;
+  CarriedBody carried_body() const noexcept;
+  double used(const WalkingTwist& twist, const CarriedBody& body, GaitName wanted) const noexcept;
+  double carried_part(const WalkingTwist& twist, GaitName wanted) noexcept;
+  void carry(const Request& request, GaitName wanted, std::uint64_t& reasons) noexcept;
   void stand_here(const ControlInput& input) noexcept;
   void pause() noexcept;
   void report(CommandFrame& out) const noexcept;
   void enter(LegPhase phase, double elapsed) noexcept;
   void move_joints(const Request& request, std::uint64_t& reasons) noexcept;
+  bool stands_up_here(const ControlInput& input, std::uint64_t& reasons) noexcept;
   void gather() noexcept;
   void rise(double elapsed, std::uint64_t& reasons) noexcept;
   void stand(const Request& request, std::uint64_t& reasons) noexcept;
@@ -173,6 +200,8 @@ class LegController {
   double margin() const noexcept;
   Pose pose() const noexcept;
   static Eigen::Matrix3d rotation(const Pose& pose) noexcept;
+  static double within(double value, double range, std::uint64_t& reasons) noexcept;
+  void limit_lean(double& roll, double& pitch, std::uint64_t& reasons) const noexcept;
   Eigen::Vector3d foot_in_base(std::size_t leg, const Pose& pose, const Eigen::Matrix3d& turned) const noexcept;
   double lying(std::size_t joint) const noexcept;
 
@@ -183,12 +212,14 @@ class LegController {
   std::array<JointRange, kLegsJoints> joint_ranges_;
   std::array<AxisBounds, kLegsJoints> joint_motion_;
   std::array<double, kLegsJoints> joint_steps_{};  ///< rad, of a cycle at the speed limit
-  double ground_;   ///< m, height of the ground below the base of a robot that lies level
-  double nominal_;  ///< m, height of the standing body above one that lies level
+  double ground_;       ///< m, height of the ground below the base of a robot that lies level
+  double nominal_;      ///< m, height of the standing body above one that lies level
+  double lying_pitch_;  ///< rad
   std::array<AxisBounds, 6> body_motion_;
   double lie_down_after_;  ///< s; 0: never
   TwistLimiter limiter_;
   Walker walker_;
+  LegUse leg_use_;
   Speeds fastest_;            ///< by GaitName
   double foot_distance_ = 0;  ///< m, of the farthest foot from the centre of gravity
   State state_;

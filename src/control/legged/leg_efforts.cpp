@@ -24,7 +24,7 @@ LeggedMotion LegController::reference_motion(const Eigen::Matrix3d& turned,
   motion.angular =
       state_.body[3].speed * Eigen::Vector3d::UnitX() +
       turned.transpose() * (state_.body[4].speed * yawed.col(1) + state_.body[5].speed * Eigen::Vector3d::UnitZ());
-  motion.gravity = -kGravity * turned.row(2).transpose();
+  motion.gravity = -kGravity * (turned.transpose() * Eigen::Map<const Eigen::Vector3d>(state_.up.data()));
   return motion;
 }
 
@@ -34,7 +34,7 @@ void LegController::write(const std::array<double, kLegsJoints>& rates, CommandF
   const LeggedMotion motion = reference_motion(turned, rates);
   LeggedEquations equations;
   dynamics_.step(motion, equations);
-  state_.centre = {equations.centre_of_gravity.x(), equations.centre_of_gravity.y()};
+  for (std::size_t i = 0; i < 3; ++i) state_.centre[i] = equations.centre_of_gravity[static_cast<Eigen::Index>(i)];
   accelerate(motion);
   const Vector efforts = equations.mass * Eigen::Map<const Vector>(state_.acceleration.data()) + equations.bias;
   FootForcesInput load{.share = state_.share, .up = turned.row(2)};

@@ -18,6 +18,24 @@ using Map = Eigen::Map<const Eigen::Vector3d>;
 
 }  // namespace
 
+/// Returns `value` within ± `range`, and notes if it was beyond.
+double LegController::within(double value, double range, std::uint64_t& reasons) noexcept {
+  if (std::abs(value) > range) reasons |= kReasonOutOfReach;
+  return std::clamp(value, -range, range);
+}
+
+/// Makes the lean of roll and pitch together, from the vertical, at most the range or the slope, and notes if it was
+/// beyond.
+void LegController::limit_lean(double& roll, double& pitch, std::uint64_t& reasons) const noexcept {
+  const double slope_roll = std::asin(state_.up[1]), slope_pitch = -std::asin(state_.up[0]);
+  const double lean = std::hypot(roll + slope_roll, pitch + slope_pitch);
+  const double range = std::max(tuning_.lean, std::hypot(slope_roll, slope_pitch));
+  if (lean <= range) return;
+  reasons |= kReasonOutOfReach;
+  roll = (roll + slope_roll) * range / lean - slope_roll;
+  pitch = (pitch + slope_pitch) * range / lean - slope_pitch;
+}
+
 /// Moves the body towards a pose. Returns true where it has arrived.
 bool LegController::move(const Pose& target, std::uint64_t& reasons) noexcept {
   const bool moves = stopping_time(state_.body, body_motion_) > 0;

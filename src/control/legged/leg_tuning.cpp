@@ -1,10 +1,11 @@
 #include "control/legged/leg_tuning.h"
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
-#include "control/legged/walking/walking_speed.h"
 #include "machine/gravity.h"
 
 namespace robot_control {
@@ -30,6 +31,21 @@ double standing_height(const LegModel& robot) noexcept {
   return height * robot.leg_length();
 }
 
+/// Returns the largest part of its speed limit that a joint of this leg needs at this place and upward speed of its foot
+/// in m and m/s; 0 where the leg does not reach it.
+double needed_speed(const LegModel& robot, std::size_t leg, const Eigen::Vector3d& place, double upward) noexcept {
+  const LegKinematics& kinematics = robot.legs[leg].kinematics;
+  const std::optional<LegAngles> angles = kinematics.reached(place);
+  if (!angles) return 0;
+  Eigen::Vector3d foot;
+  const Eigen::Vector3d rates = kinematics.jacobian(*angles, foot).inverse().col(2) * upward;
+  double part = 0;
+  for (std::size_t i = 0; i < kLegJoints; ++i)
+    part = std::max(part,
+                    std::abs(rates[static_cast<Eigen::Index>(i)]) / robot.joints[kLegJoints * leg + i].velocity_limit);
+  return part;
+}
+
 /// Returns the time in s in which the body rises above its feet, and no joint is faster than kOfLimit of its limit.
 double fastest_rise(const LegModel& robot) noexcept {
   constexpr int kParts = 20;
@@ -42,8 +58,7 @@ double fastest_rise(const LegModel& robot) noexcept {
     for (int i = 1; i < kParts; ++i) {
       const double s = static_cast<double>(i) / kParts;
       foot.z() = lies - s * s * (3 - 2 * s) * way;
-      const double part = needed_speed(robot, leg, foot, {0, 0, -6 * s * (1 - s) * way});
-      if (std::isfinite(part)) time = std::max(time, part / kOfLimit);
+      time = std::max(time, needed_speed(robot, leg, foot, -6 * s * (1 - s) * way) / kOfLimit);
     }
   }
   return time;

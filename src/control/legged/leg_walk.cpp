@@ -14,7 +14,12 @@ constexpr double kTrotFrom = 0.4;     // m/s, of the feet (docs/evidence/derivat
 constexpr double kTrotUntil = 0.3;    // m/s, likewise
 constexpr double kPlaced = 0.1;       // of the leg length, of the feet at the end of a walk
 constexpr double kInPlace = 3;        // s, after which a walk ends wherever the feet are
-constexpr double kCarriedPart = 0.5;  // of the ranges of a standing body
+constexpr double kCarriedPart = 0.5;  // of the ranges and speeds of a standing body
+constexpr double kOnTheSpot = 0.75;   // of what the legs can, in a pose: the rest is for a twist
+constexpr double kLessLean = 0.7;     // of a pose that they do not carry on the spot
+constexpr double kNominal = 0.0005;   // m, rad: a body this near to the nominal pose is in it
+constexpr int kCarriedHalvings = 5;   // down to this part of a twist, 2⁻⁵
+constexpr int kUseSamples = 8;        // of a swing: joints are fastest after 2, 4 and 6 of them
 constexpr std::uint64_t kEmergencies = kReasonTimedOut | kReasonRefused | kReasonManySenders | kReasonPermitRamp;
 
 bool rests(const WalkingTwist& twist) noexcept {
@@ -26,6 +31,10 @@ double used_part(const WalkingTwist& twist, const WalkingTwist& capable) noexcep
   double used = 0;
   for (std::size_t i = 0; i < twist.size(); ++i) used += std::abs(twist[i]) / capable[i];
   return used;
+}
+
+bool nominal(const CarriedBody& body) noexcept {
+  return std::ranges::all_of(body, [](double axis) { return std::abs(axis) < kNominal; });
 }
 
 bool usable(const ControlInput& input) noexcept {
@@ -41,13 +50,19 @@ bool LegController::walks(const Request& request) const noexcept {
   return request.mode == kStanceStay && (parts_of(request) & kWalk) != 0;
 }
 
+/// Begins to walk once the body is within its ranges, and the legs carry it on the spot. Until then it moves towards
+/// its nominal pose.
 void LegController::begin_walk(const ControlInput& input) noexcept {
   if (!usable(input)) return;
-  const std::array<double, 3> nominal{nominal_, 0, 0};
-  for (std::size_t i = 0; i < nominal.size(); ++i) {
+  const std::array<double, 3> nominal_pose{nominal_, 0, 0};
+  for (std::size_t i = 0; i < nominal_pose.size(); ++i) {
     state_.carried[i] = state_.body[kZ + i];
-    state_.carried[i].value -= nominal[i];
+    state_.carried[i].value -= nominal_pose[i];
   }
+  const CarriedBody body = carried_body();
+  const bool in_range =
+      std::abs(body[0]) <= kCarriedPart * tuning_.bob && std::hypot(body[1], body[2]) <= kCarriedPart * tuning_.lean;
+  if (!nominal(body) && !(in_range && used({}, body, GaitName::kTrot) <= 1)) return;
   state_.twist = {};
   state_.gait = static_cast<std::uint64_t>(GaitName::kStand);
   walker_.begin(state_.walk, *input.sensors, *input.state);
@@ -74,17 +89,20 @@ void LegController::walk(const ControlInput& input, const Request& request, Comm
   }
   const GaitName gait = choose_gait(request, target);
   const WalkingTwist speeds = capable(gait);
-  carry(request, out.reasons);
+  carry(request, gait, out.reasons);
   WalkInput to{.sensors = input.sensors,
                .state = input.state,
                .twist = target,
                .height = state_.carried[0].value,
                .roll = state_.carried[1].value,
                .pitch = state_.carried[2].value,
+               .rates = {state_.carried[0].speed, state_.carried[1].speed, state_.carried[2].speed},
                .gait = gait};
   for (double& axis : to.twist) axis /= std::max(1.0, used_part(target, speeds));
+  const double carried = carried_part(to.twist, gait);
+  for (double& axis : to.twist) axis *= carried;
   const double part = walker_.part_in_reach(state_.walk, to);
-  if (part < 1) {
+  if (carried * part < 1) {
     for (std::size_t i = 0; i < target.size(); ++i) target[i] = part * to.twist[i];
     out.reasons |= kReasonLegSpeed;
   }
@@ -161,17 +179,70 @@ double LegController::pace_of(const WalkingTwist& twist) const noexcept {
   return std::hypot(twist[0], twist[1]) + std::abs(twist[2]) * foot_distance_;
 }
 
-/// Moves height, roll and pitch towards the requested ones.
-void LegController::carry(const Request& request, std::uint64_t& reasons) noexcept {
-  const std::array<double, 3> wanted{request.posture.height, request.posture.roll, request.posture.pitch};
-  const std::array<double, 3> range{kCarriedPart * tuning_.bob, kCarriedPart * tuning_.lean,
-                                    kCarriedPart * tuning_.lean};
-  std::array<double, 3> target{};
-  for (std::size_t i = 0; i < target.size(); ++i) {
-    target[i] = std::clamp(wanted[i], -range[i], range[i]);
-    if (target[i] != wanted[i]) reasons |= kReasonOutOfReach;
+CarriedBody LegController::carried_body() const noexcept {
+  return {state_.carried[0].value, state_.carried[1].value, state_.carried[2].value};
+}
+
+/// Returns what the gait in force and the wanted one use of what the legs can, at this twist in this pose.
+double LegController::used(const WalkingTwist& twist, const CarriedBody& body, GaitName wanted) const noexcept {
+  double used = 0;
+  for (const std::uint64_t gait : {static_cast<std::uint64_t>(wanted), state_.walk.gait}) {
+    if (walker_.gaits()[gait].duty >= 1 || (used > 0 && gait == static_cast<std::uint64_t>(wanted))) continue;
+    used = std::max(used, leg_use_.steady(walker_.gaits()[gait], twist, body, kUseSamples) / kOfJointSpeed);
   }
-  track(state_.carried, target, {body_motion_[kZ], body_motion_[kRoll], body_motion_[kPitch]}, period_);
+  return used;
+}
+
+/// Returns the largest part of a twist that the legs carry in the pose in force and in its target. The nominal pose is
+/// that of walking_speed.h.
+double LegController::carried_part(const WalkingTwist& twist, GaitName wanted) noexcept {
+  CarriedTwist now{.twist = twist,
+                   .bodies = {carried_body(), state_.lean_target},
+                   .gaits = {static_cast<std::uint64_t>(wanted), state_.walk.gait}};
+  if (now.same(state_.carried_twist)) return state_.carried_twist.part;
+  const auto carries = [&](double part) {
+    const WalkingTwist tried{part * twist[0], part * twist[1], part * twist[2]};
+    return std::ranges::all_of(
+        now.bodies, [&](const CarriedBody& body) { return nominal(body) || used(tried, body, wanted) <= 1; });
+  };
+  double step = 0.5;
+  now.part = carries(1) ? 1 : 0;
+  for (int i = 0; i < kCarriedHalvings && (now.part < 1); ++i, step /= 2)
+    if (carries(now.part + step)) now.part += step;
+  state_.carried_twist = now;
+  return now.part;
+}
+
+/// Moves height, roll and pitch towards the requested ones.
+void LegController::carry(const Request& request, GaitName wanted, std::uint64_t& reasons) noexcept {
+  CarriedBody to{within(request.posture.height, kCarriedPart * tuning_.bob, reasons), request.posture.roll,
+                 request.posture.pitch};
+  const double lean = std::hypot(to[1], to[2]), range = kCarriedPart * tuning_.lean;
+  if (lean > range) {
+    reasons |= kReasonOutOfReach;
+    for (double* axis : {&to[1], &to[2]}) *axis *= range / lean;
+  }
+  if (to != state_.lean_wanted) {
+    state_.lean_wanted = state_.lean_target = to;
+    for (int i = 0; i < kCarriedHalvings && !nominal(state_.lean_target); ++i) {
+      if (used({}, state_.lean_target, wanted) <= kOnTheSpot) break;
+      for (double& axis : state_.lean_target) axis *= kLessLean;
+    }
+  }
+  if (state_.lean_target != to) reasons |= kReasonOutOfReach;
+  const std::array bounds{paced(body_motion_[kZ], kCarriedPart), paced(body_motion_[kRoll], kCarriedPart),
+                          paced(body_motion_[kPitch], kCarriedPart)};
+  const WalkingTwist twist{state_.twist.axes[0].speed, state_.twist.axes[1].speed, state_.twist.axes[2].speed};
+  const CarriedBody before = carried_body();
+  std::array<TrackedAxis, 3> next = state_.carried;
+  track(next, state_.lean_target, bounds, period_);
+  const CarriedBody after{next[0].value, next[1].value, next[2].value};
+  const double uses = nominal(after) || after == before ? 0 : used(twist, after, wanted);
+  if (uses > 1 && uses > used(twist, before, wanted)) {
+    brake(state_.carried, bounds, period_);
+  } else {
+    state_.carried = next;
+  }
 }
 
 /// Holds the body from now on by the angles of its joints, on the feet where they are. It will lie amid them.
@@ -194,7 +265,9 @@ void LegController::stand_here(const ControlInput& input) noexcept {
   state_.share.fill(1);
   state_.lifted = kLegs;
   state_.angles = body.angles;
-  state_.centre = {body.equations.centre_of_gravity.x(), body.equations.centre_of_gravity.y()};
+  const Eigen::Vector3d& centre = body.equations.centre_of_gravity;
+  state_.centre = {centre.x(), centre.y(), centre.z()};
+  state_.up = {0, 0, 1};
   const Eigen::Vector2d middle = above_support();
   state_.home = {middle.x(), middle.y()};
   state_.held = {};

@@ -22,6 +22,7 @@ constexpr double kBothWays = 0.5;   // rad by which a knee must bend to either s
 constexpr double kStanding = 0.7;   // of the leg length, as high as most robots stand (leg_tuning.h)
 constexpr double kShortest = 1e-4;  // m, of thigh and shank
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
+constexpr double kTurns = 4 * std::numbers::pi;  // rad, at most either way, of a joint of a leg that has end stops
 
 using Chain = std::array<std::size_t, kLegJoints>;
 
@@ -152,6 +153,11 @@ double bend_of(const RigidBodies& robot, const LegGeometry& geometry, const Chai
 }
 
 void require_limits(const RigidBodies& robot, const BodyJoint& joint) {
+  if (const double end = std::max(std::abs(joint.lower), std::abs(joint.upper)); end > kTurns && end <= 360) {
+    refuse(robot.source, joint_element(joint.name),
+           "its range of " + number(joint.lower) + " to " + number(joint.upper) + " rad looks like degrees",
+           "Give lower and upper in rad");
+  }
   if (joint.effort_limit > 0 && joint.velocity_limit > 0) return;
   refuse(robot.source, joint_element(joint.name),
          std::string("a joint of a leg without ") + (joint.effort_limit > 0 ? "velocity" : "effort") + " limit",
@@ -223,6 +229,7 @@ LegModel read_legs(const RobotDescription& description, const MachineParameters&
            "Give it a <collision>");
   }
   model.belly = belly.height;
+  model.lying_pitch = std::atan2(belly.down.x(), -belly.down.z());
   for (std::size_t i = 0; i < kLegs; ++i) {
     for (const std::size_t index : places[i]) {
       const RigidBody& body = bodies->bodies[index];

@@ -36,6 +36,7 @@ struct LegModel : MachineModel {
   std::array<Leg, kLegs> legs;  ///< by LegPlace; joint j of leg i is joints[3 i + j]
   double rotor_inertia = 0;     ///< kg·m², of each joint (LegParameters)
   double belly = 0;             ///< m, height of the body's lowest point in the base's axes
+  double lying_pitch = 0;       ///< rad, of the body on level ground: it rests on its lowest point (lying_posture.h)
 
   /// Returns the angles of leg `leg` among those of all joints.
   static LegAngles angles_of(const std::array<double, kLegsJoints>& all, std::size_t leg) noexcept {

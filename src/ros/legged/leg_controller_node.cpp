@@ -297,8 +297,11 @@ class LegControllerNode final : public CommandedNode {
     const std::lock_guard lock(input_mutex_);
     input_.withdraw(mode, loop_ns());
     store();
+    StateFrame state;
+    process().states().newest(state);
     return "the posture has not begun to change within 1 s: " +
-           sentences_of(kCommandReasonNames, command.reasons, programs());
+           sentences_of(kCommandReasonNames, command.reasons, programs()) +
+           slope_words(command.reasons, state, leg_model_of(robot()));
   }
 
   InputTopic<BoundedBodyPose> body_pose_{"body_pose", 1};

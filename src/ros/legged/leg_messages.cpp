@@ -1,8 +1,13 @@
 #include "ros/legged/leg_messages.h"
 
+#include <algorithm>
+#include <cmath>
 #include <limits>
+#include <numbers>
 
+#include "control/legged/ground_slope.h"
 #include "control/legged/own_gaits.h"
+#include "parameters/block.h"
 #include "ros/messages/status_messages.h"
 #include "ros/reports/name_list.h"
 #include "signals/names.h"
@@ -96,6 +101,13 @@ msg::LegState leg_state(const LegReport& report, const LegModel& robot, ros::Tim
     message.effort.push_back(command.joints[i].effort);
   }
   return message;
+}
+
+std::string slope_words(std::uint64_t reasons, const StateFrame& state, const LegModel& robot) {
+  if ((reasons & kReasonTooSteep) == 0) return "";
+  const double up = vertical_over_ground(state.base.attitude, robot.lying_pitch).z();
+  const auto degrees = [](double angle) { return shortest(std::round(angle * 1800 / std::numbers::pi) / 10) + " deg"; };
+  return " (by " + degrees(std::acos(std::clamp(up, -1.0, 1.0))) + ", at most " + degrees(kMaxSlope) + ")";
 }
 
 std::string no_permission(bool found, const Permit& permit, const MachineModel& robot, const Programs& programs) {

@@ -85,6 +85,9 @@ struct LegReport {
 /// Fills everything but the senders and the chosen gait.
 msg::LegState leg_state(const LegReport& report, const LegModel& robot, ros::Time stamp);
 
+/// Returns the measured slope of the ground in words where it is a reason; else "".
+std::string slope_words(std::uint64_t reasons, const StateFrame& state, const LegModel& robot);
+
 /// Returns why no motion is permitted, and what to do, or "" if it is. `found` says whether there is a live permit.
 std::string no_permission(bool found, const Permit& permit, const MachineModel& robot, const Programs& programs);
 

@@ -1,5 +1,6 @@
 /// Lying, standing up, lying down, and what interrupts them.
 
+#include "control/legged/ground_slope.h"
 #include "control/legged/ideal_legs.h"
 
 namespace robot_control {
@@ -37,6 +38,43 @@ TEST(LyingLegs, BrakeAllJointsUntilARequestToStandUp) {
   legs.step(stance_of(kStanceStand));
   EXPECT_EQ(legs.out.legged.phase, LegPhase::kGathering);
   EXPECT_EQ(legs.out.reasons, 0u);
+}
+
+/// The attitude of a robot whose ground rises by `slope` rad ahead.
+Quaternion uphill(double slope) {
+  return {0, std::sin(-slope / 2), 0, std::cos(-slope / 2)};
+}
+
+TEST(LyingLegs, StayLyingWhereTheGroundSlopesTooMuch) {
+  IdealLegs legs(lopsided());
+  legs.has_estimate = true;
+  legs.estimate.base.flags = kStateValid;
+  legs.estimate.base.attitude = uphill(kMaxSlope + 0.001);
+  legs.step(stance_of(kStanceStand));
+  EXPECT_EQ(legs.out.legged.phase, LegPhase::kLying);
+  EXPECT_EQ(legs.out.reasons, std::uint64_t{kReasonHolding} | kReasonTooSteep);
+  legs.estimate.base.attitude = {1, 0, 0, 0};  // on its back
+  legs.step();
+  EXPECT_EQ(legs.out.reasons, std::uint64_t{kReasonHolding} | kReasonTooSteep);
+  legs.estimate.base.attitude = uphill(kMaxSlope - 0.001);
+  legs.step();
+  EXPECT_EQ(legs.out.legged.phase, LegPhase::kGathering);
+  EXPECT_EQ(legs.out.reasons, 0u);
+}
+
+/// So each foot bears the same on a slope as on level ground.
+TEST(RisingLegs, PutTheCentreOfGravityAmidTheFeetAlongTheVertical) {
+  constexpr double kSlope = 0.2;
+  IdealLegs legs(lopsided());
+  legs.has_estimate = true;
+  legs.estimate.base.flags = kStateValid;
+  legs.estimate.base.attitude = uphill(kSlope);
+  legs.run(4.0, stance_of(kStanceStand));
+  ASSERT_EQ(legs.out.legged.phase, LegPhase::kStanding);
+  const IdealLegs level = standing();
+  const double height = -level.foot_in_base(0).z() + level.at_rest().centre_of_gravity.z();
+  EXPECT_NEAR(legs.centre().x() - level.centre().x(), height * std::tan(kSlope), 1e-3);
+  EXPECT_NEAR(legs.centre().y() - level.centre().y(), 0, 1e-3);
 }
 
 TEST(LyingLegs, NameInputsThatTheyUseAndThoseThatTheyLack) {

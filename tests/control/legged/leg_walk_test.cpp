@@ -419,8 +419,29 @@ TEST(LegWalk, CarriesTheBodyWithinHalfOfItsRanges) {
   legs.run(1.5, request);
   EXPECT_EQ(legs.legs.out.reasons, std::uint64_t{kReasonOutOfReach});
   EXPECT_NEAR(legs.legs.out.legged.body[2], -0.5 * tuning.bob, 1e-4);
-  EXPECT_NEAR(legs.legs.out.legged.body[3], -0.5 * tuning.lean, 1e-4);
-  EXPECT_NEAR(legs.legs.out.legged.body[4], 0.5 * tuning.lean, 1e-4);
+  EXPECT_NEAR(legs.legs.out.legged.body[3], -0.5 * tuning.lean / std::sqrt(2), 1e-4);
+  EXPECT_NEAR(legs.legs.out.legged.body[4], 0.5 * tuning.lean / std::sqrt(2), 1e-4);
+}
+
+/// A raised body stretches the legs, which then carry less speed.
+TEST(LegWalk, AsksForNoMoreSpeedThanTheLegsCarryInThePoseInForce) {
+  WalkingLegs legs = ready();
+  const LegTuning tuning = leg_tuning(legs.robot());
+  Request request = twist_of(1.5, 0, 0, mode_of(GaitName::kTrot));
+  legs.run(2, request);
+  EXPECT_NEAR(legs.speed(0), 1.5, 1e-6);
+  const LegUse use(legs.robot(), nominal_stance(legs.robot()));
+  const Gait trot = gait_of(legs.robot(), nominal_stance(legs.robot()), kGaits[number(GaitName::kTrot)]);
+  request.posture = {.height = 0.4 * tuning.bob, .pitch = 0.08};
+  legs.run(3, request);
+  EXPECT_LT(legs.speed(0), 1.45);
+  EXPECT_GT(legs.speed(0), 0.3);
+  const CarriedBody body{request.posture.height, 0, request.posture.pitch};
+  EXPECT_LE(use.steady(trot, {legs.speed(0), 0, 0}, body, 8), kOfJointSpeed + 1e-9);
+  EXPECT_GT(use.steady(trot, {1.06 * legs.speed(0), 0, 0}, body, 8), kOfJointSpeed);
+  EXPECT_EQ(legs.legs.out.reasons & ~std::uint64_t{kReasonAccelerationLimited}, std::uint64_t{kReasonLegSpeed});
+  EXPECT_NEAR(legs.legs.out.legged.body[2], body[0], 1e-3);
+  EXPECT_NEAR(legs.legs.out.legged.body[4], body[2], 1e-3);
 }
 
 TEST(LegWalk, BeginsWithThePoseInWhichItStands) {

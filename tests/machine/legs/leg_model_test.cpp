@@ -217,6 +217,12 @@ TEST_F(LegRefusals, NameABodyWithoutAShape) {
               HasSubstr("<link name=\"trunk\">: a robot on legs lies on its body, which has no shape"));
 }
 
+TEST_F(LegRefusals, NameARangeThatLooksLikeDegrees) {
+  EXPECT_THAT(refusal(body_ + replaced(legs_, R"(lower="-2.7" upper="-0.9")", R"(lower="-155" upper="-52")")),
+              HasSubstr("_calf_joint\">: its range of -155 to -52 rad looks like degrees"));
+  EXPECT_EQ(refusal(body_ + replaced(legs_, R"("-9.42" upper="9.42")", R"("-10000" upper="10000")")), "accepted");
+}
+
 TEST_F(LegRefusals, NameAFootWithoutAShape) {
   EXPECT_THAT(refusal(body_ + without(legs_, collision("<sphere radius=\"0.02\"/>"))),
               HasSubstr("_calf\">: the leg that ends here has no shape"));

@@ -255,7 +255,7 @@ void Walker::plan(State& state, const WalkInput& input, const WalkingBody& body)
   to.speed << body.rate, body.moves;
   to.target << input.roll + state.ground[2], input.pitch - state.ground[1], state.ahead[2], state.ahead[0],
       state.ahead[1], height_ + input.height;
-  to.target_speed << 0, 0, input.twist[2], input.twist[0], input.twist[1], 0;
+  to.target_speed << input.rates[1], input.rates[2], input.twist[2], input.twist[0], input.twist[1], input.rates[0];
   to.steps = std::min(kPlanSteps, static_cast<std::size_t>(5 / gait.duty));
   const double step = plan_parameters_.horizon / static_cast<double>(to.steps);
   for (std::size_t leg = 0; leg < kLegs; ++leg) {
@@ -378,9 +378,11 @@ void Walker::swing(const State& state, const WalkInput& input, const WalkingBody
     const std::size_t joint = kLegJoints * leg + i;
     const auto axis = static_cast<Eigen::Index>(i);
     const double limit = effort_limits_[joint];
+    const JointRange& range = kinematics.range(i);
+    const double angle = std::min(std::max(solution.angles[axis], range.lower + kFromEnd), range.upper - kFromEnd);
     out.joints[joint] = {.mode = JointMode::kImpedance,
-                         .position = solution.angles[axis],
-                         .velocity = rates[axis],
+                         .position = angle,
+                         .velocity = angle == solution.angles[axis] ? rates[axis] : 0,
                          .stiffness = tuning_.stiffness,
                          .damping = tuning_.damping,
                          .effort = std::clamp(efforts[axis], -limit, limit)};

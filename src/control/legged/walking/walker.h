@@ -21,7 +21,7 @@
 ///             its joints and kOfLength of its leg's length (walking_speed.h), or no farther than it is. A foot that landed
 ///             for another twist bounds it by that
 ///   swing     the foot follows swing.h to its foothold (foothold.h) with the impedance of standing, and the efforts
-///             M q̈ + h of its own leg
+///             M q̈ + h of its own leg. Each joint stays kFromEnd away from the ends of its range
 ///
 /// If a plan fails, the last forces stay for up to kFailures plans (kReasonNoPlan).
 
@@ -50,6 +50,7 @@ struct WalkInput {
   WalkingTwist twist{};                  ///< limited
   double height = 0;                     ///< m, of the body from the nominal one
   double roll = 0, pitch = 0;            ///< rad
+  std::array<double, 3> rates{};         ///< m/s, rad/s, of height, roll and pitch
   GaitName gait = GaitName::kStand;      ///< wanted; kStand ends the walk
 };
 

@@ -3,36 +3,25 @@
 ///
 ///   gait   that of gait.h, scaled. Its lift is lower where a step in place would need more than kOfLift of the speed
 ///          limit of a joint
-///   speed  the largest one of the body at which each leg stretches to at most kOfLength of its length, and each joint
-///          has at most kOfJointSpeed of its speed limit, during stance and swing (swing.h). A leg that is nearly
-///          straight does not push the body on. That holds either way, for a steady walk and for the first stance after
+///   speed  the largest one of the body at which the legs need at most kOfJointSpeed of what they can (leg_use.h). A
+///          leg that is nearly straight does not push the body on. That holds either way, for a steady walk and for the first stance after
 ///          a change of gaits: a foot that ended a stance may have to bear for a whole one. The slower gait of a change
 ///          bounds its speed until the other one has lasted for a period. To the front and back no gait is faster than
 ///          1.7 m/s √(l/kReferenceLeg): beyond it a trot loses its balance (docs/evidence/legs.md)
 
-#include <Eigen/Core>
 #include <vector>
 
 #include "control/legged/gait.h"
 #include "control/legged/nominal_stance.h"
+#include "control/legged/walking/leg_use.h"
 #include "control/legged/walking/twist_limiter.h"
 #include "machine/legs/leg_model.h"
 
 namespace robot_control {
 
 inline constexpr double kOfLift = 0.35;
-inline constexpr double kOfJointSpeed = 0.85;
-inline constexpr double kOfLength = 0.95;
 
 Gait gait_of(const LegModel& robot, const NominalStance& stance, const Gait& reference) noexcept;
-
-/// Returns the largest part of its speed limit that a joint of this leg needs at this place and velocity of its foot in
-/// m and m/s; infinite where the leg does not reach it with kOfLength of its length.
-double needed_speed(const LegModel& robot, std::size_t leg, const Eigen::Vector3d& place,
-                    const Eigen::Vector3d& velocity) noexcept;
-
-/// Returns the velocity in m/s of a foot that stands on the ground, below a body with this twist.
-Eigen::Vector3d velocity_below(const Eigen::Vector3d& foot, const WalkingTwist& twist) noexcept;
 
 using Speeds = std::vector<WalkingTwist>;
 

@@ -93,7 +93,7 @@ void BodyConditions::shake(bool felt) noexcept {
 }
 
 void BodyConditions::step(const SensorFrame& sensors, std::uint64_t elapsed, double forward_speed, bool moving,
-                          ActiveCauses& out) noexcept {
+                          ActiveCauses& out, double tilt_factor) noexcept {
   Eigen::Vector3d rate = Eigen::Vector3d::Zero();
   const bool turned = sample(sensors, kValidGyro, sensors.imu.angular_velocity, rate);
   const bool felt = sample(sensors, kValidAccelerometer, sensors.imu.linear_acceleration, *force_);
@@ -114,7 +114,9 @@ void BodyConditions::step(const SensorFrame& sensors, std::uint64_t elapsed, dou
   const auto update = [&](ConditionWatch& watch, bool beyond, double value) {
     out.update(watch, {.beyond = beyond, .value = value, .limit = watch.limit()}, elapsed);
   };
-  update(tilt_, attitude_.known() && tilt > tilt_.limit(), tilt);
+  const double tilt_limit = tilt_factor * tilt_.limit();
+  tilt_.step({.beyond = attitude_.known() && tilt > tilt_limit, .value = tilt, .limit = tilt_limit}, elapsed);
+  out.add(tilt_);
   update(tip_over_, attitude_.known() && tilt > tip_tilt_ && tilt_rate > tip_over_.limit(), tilt_rate);
   update(free_fall_, felt && force() < free_fall_.limit(), force());
   update(lift_, carried_ < lift_.limit(), carried_);

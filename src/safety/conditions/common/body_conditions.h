@@ -56,9 +56,9 @@ class BodyConditions {
   void enter_run() noexcept;
 
   /// Once per cycle; `elapsed` cycles since the last one, ≥ 1. `forward_speed` in m/s is 0 where it is not known. Adds
-  /// the active causes to `out`.
-  void step(const SensorFrame& sensors, std::uint64_t elapsed, double forward_speed, bool moving,
-            ActiveCauses& out) noexcept;
+  /// the active causes to `out`. The limit of tilt is multiplied by `tilt_factor`.
+  void step(const SensorFrame& sensors, std::uint64_t elapsed, double forward_speed, bool moving, ActiveCauses& out,
+            double tilt_factor = 1) noexcept;
 
   // Intermediates of the last step.
   const Attitude& attitude() const noexcept { return attitude_; }

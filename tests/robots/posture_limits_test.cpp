@@ -1,0 +1,54 @@
+/// What the legs carry in the pose, on the slope and with the torques in force.
+
+#include "robots/quadruped_fixture.h"
+#include "support/quadruped_trials.h"
+
+namespace robot_control {
+namespace {
+
+Parameters field_parameters(std::uint64_t seed) {
+  Parameters parameters = QuadrupedLoop::parameters(seed, ErrorLevel::kDataSheet);
+  parameters.plant.contact_sensors = false;
+  return parameters;
+}
+
+class PostureLimits : public testing::TestWithParam<std::string> {};
+
+/// Without a bound for the pose in force, quadbot is stopped with seed 33 and has 1.02 of a joint's speed with seed 43;
+/// anymal is stopped with seeds 3 and 13.
+TEST_P(PostureLimits, APoseWithinItsRangeLetsNoWalkBeStoppedAndNoJointLeaveItsLimits) {
+  for (const std::uint64_t seed : {3u, 13u, 33u, 43u}) {
+    const LeaningWalk walk = leaning_walk(legged_robot(GetParam()), field_parameters(seed));
+    EXPECT_FALSE(walk.stopped) << seed << walk.causes;
+    EXPECT_LE(walk.joint_speed, 1) << seed;
+    EXPECT_LE(walk.beyond_range, 0) << seed;
+  }
+}
+
+TEST_P(PostureLimits, ARobotOnASlopeStandsUpOrRefuses) {
+  const LegModel robot = legged_robot(GetParam());
+  for (const double degrees : {10, 15, 20}) {
+    for (const std::uint64_t eighth : {0u, 2u, 5u}) {
+      const double slope = degrees * std::numbers::pi / 180,
+                   heading = static_cast<double>(eighth) * std::numbers::pi / 4;
+      const SlopeTrial trial = stand_up_on(robot, field_parameters(eighth), slope, heading);
+      EXPECT_TRUE(trial.stands || trial.refuses) << degrees << " " << eighth << trial.causes;
+      EXPECT_FALSE(trial.stopped) << degrees << " " << eighth << trial.causes;
+      EXPECT_TRUE(trial.stands || degrees > 12) << eighth;
+      EXPECT_TRUE(trial.refuses || degrees < 18) << eighth;
+    }
+  }
+}
+
+TEST_P(PostureLimits, HipsThatCarryTheWeightLimitTheTwist) {
+  const LegModel weak = with_weak_hips(legged_robot(GetParam()));
+  for (const std::uint64_t seed : {1u, 9u, 18u}) {
+    const LeaningWalk walk = leaning_walk(weak, field_parameters(seed), false);
+    EXPECT_FALSE(walk.stopped) << seed << walk.causes;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Robots, PostureLimits, testing::ValuesIn(legged_robots()), robot_name);
+
+}  // namespace
+}  // namespace robot_control
