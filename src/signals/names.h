@@ -120,6 +120,8 @@ inline constexpr auto kCommandReasonNames = std::to_array<BitName>({
      "reach", "request less speed"},
     {kReasonNoPlan, "no_plan", "the forces of the feet have no solution: the last ones are in force for up to three plans, "
      "then the robot stands", "look for a jump of odom, and compare mass and inertia of the URDF with the robot"},
+    {kReasonTooSteep, "too_steep", "the ground slopes more than robots on legs stand up on",
+     "set the robot down where the ground slopes less; on such ground, look at the IMU"},
 });
 
 inline constexpr auto kRequestPartNames = std::to_array<BitName>({

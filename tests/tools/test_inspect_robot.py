@@ -2,6 +2,7 @@
 
 import json
 import os
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -226,6 +227,8 @@ def test_a_robot_whose_knees_are_too_weak_is_refused_as_by_the_loop(tmp_path):
     weak = tmp_path / "weak.urdf"
     weak.write_text(re.sub(r'effort="[0-9.]+"', 'effort="3"', (ROOT / "urdf/quadbot.urdf").read_text()))
     done = inspect(weak)
+    from robot_control import ClosedLoop
+
     with pytest.raises(ValueError, match="for half of the weight") as refused:
         ClosedLoop(urdf=str(weak))
     assert done.returncode == 1

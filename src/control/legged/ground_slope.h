@@ -13,7 +13,6 @@
 
 namespace robot_control {
 
-inline constexpr std::uint64_t kReasonTooSteep = 1u << 25;
 inline constexpr double kMaxSlope = 0.25;    ///< rad
 inline constexpr double kLevelSlope = 0.06;  ///< rad
 

@@ -26,13 +26,14 @@ enum class LegPhase : std::uint64_t {
   kWalking = 6
 };
 
-/// Bits 20 to 24 of CommandFrame::reasons.
+/// Bits 20 to 25 of CommandFrame::reasons.
 enum LeggedReason : std::uint64_t {
   kReasonOutOfReach = 1u << 20,   ///< The pose is beyond the ranges of the legs.
   kReasonNotStanding = 1u << 21,  ///< A pose or a foot is requested, and it does not stand.
   kReasonNotLying = 1u << 22,     ///< Joints are requested, and it does not lie.
   kReasonLegSpeed = 1u << 23,     ///< The legs do not carry the body faster.
   kReasonNoPlan = 1u << 24,       ///< The forces of the feet have no solution: the last ones are in force.
+  kReasonTooSteep = 1u << 25,     ///< It lies on a slope on which it does not stand up.
 };
 
 /// These numbers say what is asked of each foot, by LegPlace. 0: it shall not bear. 0.5: it stands without a gait. Else

@@ -23,7 +23,7 @@ namespace robot_control {
 inline constexpr double kOfJointSpeed = 0.85;
 inline constexpr double kOfLength = 0.95;
 inline constexpr double kOfWeight = 0.76;  ///< times 1.27 is 0.97 (walker.cpp)
-inline constexpr double kFromEnd = 0.05;   ///< rad
+inline constexpr double kFromEnd = 0.03;   ///< rad
 
 /// Height in m, roll and pitch in rad of a body that walks, from the nominal pose.
 using CarriedBody = std::array<double, 3>;
