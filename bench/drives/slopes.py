@@ -1,7 +1,8 @@
 """On a slope a robot stops and stays at a zero request: slopes, rates, headings and both kinds of drives.
 
 At 20 and 30 Hz the wheel loops do not find the load of a steep slope in the time of a drive. So the drive itself may be
-faster than its command, and the planned distance is that of the speed at which it was.
+faster than its command, and the planned distance is that of the speed at which it was. The safety monitor may have
+stopped it before.
 """
 
 from __future__ import annotations
@@ -73,7 +74,8 @@ def stop_on(slope: float, rate: int, heading: float, wheel_command: str, speed: 
     was = max(abs(speed), abs(float(before["truth_linear"][-1])))
     stands = bool(np.abs(log["truth_linear"][-round(1 / loop.period) :]).max() < STANDS)
     planned = loop.stop_distance(was) if speed else 0.0
-    return Stop(way - planned, stands, int(np.bitwise_or.reduce(log["permit_causes"].astype(np.int64))))
+    causes = np.bitwise_or.reduce(log["permit_causes"].astype(np.int64)) & ~int(before["permit_causes"][-1])
+    return Stop(way - planned, stands, int(causes))
 
 
 def worst(slopes: Sequence[float], rates: Sequence[int], headings: int, wheel_command: str) -> list[dict[str, Any]]:
