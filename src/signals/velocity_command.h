@@ -85,8 +85,8 @@ inline std::size_t logged_joints(const Request& request) noexcept {
   return any ? kRequestJoints : 0;
 }
 
-/// Values of VelocityCommand::contested: the command has no sender and is neither a request nor the end of a silence;
-/// a message of its sender was refused because it was NaN or infinite.
+/// Values of VelocityCommand::contested. A command with kNoMessage has no sender, and is neither a request nor the end
+/// of a silence. With kNotFiniteMessage, a message of its sender was refused because it was NaN or infinite.
 inline constexpr std::uint64_t kNoMessage = 2, kNotFiniteMessage = 3;
 
 /// Returns how many seconds without a message count as a zero request; `timeout` is cmd_vel_timeout in s, 0 if messages

@@ -76,7 +76,7 @@ struct Sender {
   }
 };
 
-/// What a connection, or a service, has requested since the last withdrawal. Its numbers occur in no other one.
+/// The request of a connection, or of a service, since the last withdrawal. Its numbers occur in no other one.
 struct Statement {
   std::string process, topic;
   Request request;
@@ -127,7 +127,7 @@ class Sequence {
   virtual void tune() {}
 
   /// Makes a message of motion.
-  virtual void ask(const Sender&, ArrivedCommand& to) { to.twist.linear[0] = 0.5; }
+  virtual void request_motion(const Sender&, ArrivedCommand& to) { to.twist.linear[0] = 0.5; }
 
   /// Returns whether a sender sends nothing for a while.
   virtual bool rests(const Sender&) { return false; }
@@ -454,7 +454,7 @@ class Sequence {
                            .stamp_ns = 0,
                            .part = sender.part};
     const Message message = std::exchange(sender.zero_first, false) ? Message::kZero : sender.message;
-    if (message == Message::kMotion || message == Message::kAgedMotion) ask(sender, arrived);
+    if (message == Message::kMotion || message == Message::kAgedMotion) request_motion(sender, arrived);
     if (message == Message::kNotFinite) spoil(arrived);
     if (message == Message::kStale) arrived.stamp_ns = 1;
     // The clock of the senders' stamps jumps at random.
@@ -695,7 +695,7 @@ class LeggedSequence final : public Sequence {
   std::unique_ptr<MonitorLaw> make_monitor() const override { return robot_.make_monitor(); }
   bool moves() const override { return driver_->trace().gate.verdict != GateVerdict::kBrake; }
 
-  void ask(const Sender& sender, ArrivedCommand& to) override {
+  void request_motion(const Sender& sender, ArrivedCommand& to) override {
     const double number = 1e-9 * static_cast<double>(++asked_);  // no two requests are the same
     const std::uint64_t kind = now_ < undisturbed_ ? 0 : random_() % 6;
     if (sender.part == StatedPart::kPose) {
@@ -714,7 +714,7 @@ class LeggedSequence final : public Sequence {
     }
   }
 
-  /// Of three processes that request something all the time, none is released.
+  /// Three processes that request something all the time would never be released.
   bool rests(const Sender& sender) override { return sender.name != "/a" && !chance(3); }
 
   void spoil(ArrivedCommand& to) override {

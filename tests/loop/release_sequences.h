@@ -4,8 +4,8 @@
 /// their connections. Publishers of e_stop come and go; cmd_vel_timeouts change; emergency stops and resets are
 /// requested. A restart builds the node's classes again on the channels of their predecessors, with an empty inbox. In
 /// a third of the sequences the senders are two sources of a list with a lock, whose timeouts are short, long or none.
-/// A robot on legs has three processes: one sends twists and poses, one sends twists, poses, feet and joints over one
-/// connection, one sends poses; set_posture and set_gait are called. Its request_timeout is 0, 0.05 or 1.25 s.
+/// A robot on legs has three processes. One sends twists and poses, one sends poses, and one sends twists, poses, feet
+/// and joints over one connection. set_posture and set_gait are called. Its request_timeout is 0, 0.05 or 1.25 s.
 ///
 /// The judge knows only what was sent, which stamps were refused, and what was started. With T = the shorter of
 /// cmd_vel_timeout and the one before it, in cycles:

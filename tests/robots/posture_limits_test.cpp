@@ -1,4 +1,4 @@
-/// What the legs carry in the pose, on the slope and with the torques in force.
+/// The limits of robots on legs in the pose, on the slope and with the torques in force.
 
 #include "robots/quadruped_fixture.h"
 #include "support/quadruped_trials.h"
@@ -14,8 +14,8 @@ Parameters field_parameters(std::uint64_t seed) {
 
 class PostureLimits : public testing::TestWithParam<std::string> {};
 
-/// Without a bound for the pose in force, quadbot is stopped with seed 33 and has 1.02 of a joint's speed with seed 43;
-/// anymal is stopped with seeds 3 and 13.
+/// Without a bound for the pose in force, quadbot is stopped with seed 33 and has 1.02 of a joint's speed with seed 43.
+/// Without it anymal is stopped with seeds 3 and 13.
 TEST_P(PostureLimits, APoseWithinItsRangeLetsNoWalkBeStoppedAndNoJointLeaveItsLimits) {
   for (const std::uint64_t seed : {3u, 13u, 33u, 43u}) {
     const LeaningWalk walk = leaning_walk(legged_robot(GetParam()), field_parameters(seed));

@@ -37,7 +37,7 @@ TEST_F(GateConditionsTest, AGateThatBrakesInSpiteOfThePermitIsRefusingAfterLossC
   EXPECT_EQ(permit_.evidence[0].value, static_cast<double>(kLoss));
 }
 
-// What it did not find in time was late.
+// The frame that it did not find in time was late.
 TEST_F(GateConditionsTest, AGateThatFindsNoPermitOrNoCommandInTimeNamesWhatIsLate) {
   for (const auto& [reason, cause] :
        {std::pair{kGateNoCommand, kCauseCommandStale}, std::pair{kGatePermitExpired, kCauseMonitorLate},

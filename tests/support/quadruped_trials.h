@@ -49,8 +49,8 @@ inline LeaningWalk leaning_walk(const LegModel& model, const Parameters& paramet
   }
   for (int part = 0; part < 4 && robot.permit().causes == 0; ++part) {
     const std::size_t full = random() % fastest.size();
-    const double way = random() % 2 == 0 ? 1 : -1;
-    const auto speed = [&](std::size_t axis) { return axis == full ? way * fastest[axis] : within(fastest[axis]); };
+    const double sign = random() % 2 == 0 ? 1 : -1;
+    const auto speed = [&](std::size_t axis) { return axis == full ? sign * fastest[axis] : within(fastest[axis]); };
     Request request{.twist = {.linear = {speed(0), speed(1), 0}, .angular = {0, 0, speed(2)}}, .posture = {}};
     if (poses)
       request.posture = {

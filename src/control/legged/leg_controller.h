@@ -28,9 +28,9 @@
 ///
 /// A twist lets the robot stand up and walk (walking/walker.h). It ends the walk with a zero. Another gait begins when
 /// its legs carry the body at the twist of then. Until then the twist is limited by both gaits (walking_speed.h).
-/// While it walks, height, roll and pitch of the request are carried within half of their ranges, as far as the legs
-/// carry them on the spot (walking/leg_use.h). The twist is limited to what they carry in the pose in force and in the
-/// requested one. The body waits before a pose in which they do not carry the twist of now.
+/// While it walks, the body takes height, roll and pitch of the request within half of their ranges. It takes no more
+/// than the legs carry on the spot (walking/leg_use.h). The twist is limited to what they carry in the pose in force
+/// and in the requested one. The body waits before a pose in which they do not carry the twist of now.
 ///
 /// The stance frame has its origin where that of the base was when it began to rise. Its x axis shows ahead, its z axis
 /// up from the ground, whose slope the attitude gave while the robot lay (ground_slope.h). The centre of gravity stands
@@ -100,7 +100,7 @@ class LegController {
   /// The body in the stance frame: x, y, height above one that lies level in m, roll, pitch, yaw in rad.
   using Pose = std::array<double, 6>;
 
-  /// What the legs carry of a twist, in two poses and two gaits.
+  /// The part of a twist that the legs carry, in two poses and two gaits.
   struct CarriedTwist {
     WalkingTwist twist{};
     std::array<CarriedBody, 2> bodies{};

@@ -31,8 +31,8 @@ double standing_height(const LegModel& robot) noexcept {
   return height * robot.leg_length();
 }
 
-/// Returns the largest part of its speed limit that a joint of this leg needs at this place and upward speed of its foot
-/// in m and m/s; 0 where the leg does not reach it.
+/// Returns the largest part of its speed limit that a joint needs while the foot is at `place` [m] and moves upward
+/// [m/s]. It is 0 where the leg does not reach it.
 double needed_speed(const LegModel& robot, std::size_t leg, const Eigen::Vector3d& place, double upward) noexcept {
   const LegKinematics& kinematics = robot.legs[leg].kinematics;
   const std::optional<LegAngles> angles = kinematics.reached(place);
@@ -54,11 +54,11 @@ double fastest_rise(const LegModel& robot) noexcept {
     const LegGeometry& geometry = robot.legs[leg].kinematics.geometry();
     Eigen::Vector3d foot = robot.legs[leg].kinematics.position(robot.legs[leg].lying);
     const double lies = robot.belly + robot.legs[leg].foot_radius;
-    const double way = lies - (geometry.hip.z() + geometry.upper.z() - standing_height(robot));
+    const double rise = lies - (geometry.hip.z() + geometry.upper.z() - standing_height(robot));
     for (int i = 1; i < kParts; ++i) {
       const double s = static_cast<double>(i) / kParts;
-      foot.z() = lies - s * s * (3 - 2 * s) * way;
-      time = std::max(time, needed_speed(robot, leg, foot, -6 * s * (1 - s) * way) / kOfLimit);
+      foot.z() = lies - s * s * (3 - 2 * s) * rise;
+      time = std::max(time, needed_speed(robot, leg, foot, -6 * s * (1 - s) * rise) / kOfLimit);
     }
   }
   return time;

@@ -11,7 +11,7 @@
 /// travel. A sample that is missing, not finite, impossible or old is not used; the next good one brings the travel of
 /// the gap. A difference is impossible above 2 · velocity_limit times the time passed, plus kEncoderSlack; without a
 /// limit, kFastestWheel replaces 2 · velocity_limit. A jump to zero is impossible, too, if readings that were held up
-/// do not explain it, with the tracked speed q̇ and the time t since the last reading:
+/// do not explain it. With the tracked speed q̇ and the time t since the last reading, it is one where
 ///
 ///   |q| ≤ kEncoderSlack + |q̇|·t   and   |q − qₗₐₛₜ − q̇·t| > kNewZero + |q̇|·(t + gap),   later > kNewZero
 ///

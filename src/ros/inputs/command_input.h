@@ -12,8 +12,8 @@
 ///      the command of another sender stays in force;
 ///   4. its connection (motion_requests.h): motion is refused while the connection is revoked.
 ///
-/// The command in force has one sender, one time and one end. Twist and pose of one process are parts of it: a twist
-/// keeps the pose that the same process sent within the timeout, and a pose keeps its twist, with the twist's time.
+/// The command in force has one sender, one time and one end. Twist and pose of one process are parts of it. A twist
+/// keeps the pose that the same process sent within the timeout. A pose keeps its twist, with the twist's time.
 /// While a twist is in force, a pose of another process is refused (VelocityCommand::crowded). Every other message
 /// replaces the whole.
 ///

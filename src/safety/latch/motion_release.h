@@ -14,8 +14,8 @@
 ///            the request in force is other than zero
 /// Once released, motion stays released until the next start.
 ///
-/// **Evidence for a reset.** It exists in cycle k if the current command frame reports that every part of the request
-/// in force is zero, and one of
+/// **Evidence for a reset.** It exists in cycle k if the current command frame reports a request of zeros alone, and
+/// one of
 ///   zero     a zero request was received after the last gap, and only zero requests since then
 ///   silence  as above, after the last gap
 /// A *gap* is a start, a cycle without a current command frame, or a cycle that the monitor skipped. Messages and

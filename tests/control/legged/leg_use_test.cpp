@@ -18,11 +18,11 @@ struct LegUseTest : testing::Test {
 };
 
 TEST_F(LegUseTest, IsThatOfTheSameStanceInAnotherPose) {
-  constexpr double kHeight = 0.01;
+  constexpr double kRaised = 0.01;
   NominalStance raised = stance;
-  for (Eigen::Vector3d& foot : raised.feet) foot.z() -= kHeight;
+  for (Eigen::Vector3d& foot : raised.feet) foot.z() -= kRaised;
   const WalkingTwist twist{0.6, 0, 0};
-  EXPECT_NEAR(LegUse(robot, raised).steady(trot, twist), steady(twist, {kHeight, 0, 0}), 1e-12);
+  EXPECT_NEAR(LegUse(robot, raised).steady(trot, twist), steady(twist, {kRaised, 0, 0}), 1e-12);
 }
 
 TEST_F(LegUseTest, IsInfiniteWhereALegReachesItsFootNoMore) {

@@ -4,8 +4,8 @@
 /// gyro (wrong_state.h), and tell whether the joints stand. Joints stand while every one stays within kWindow of its
 /// angle for kStandingTime.
 ///
-/// A robot that lies on its body falls from no slope on which it rests: twice the limit of tilt counts, so that a robot
-/// on its side or back is still named.
+/// A robot that lies on its body falls from no slope on which it rests. Twice the limit of tilt counts then, and a
+/// robot on its side or back is still named.
 ///
 ///   moving    a joint left its window, or its angle is not known; until the robot stands again
 ///   standing  all joints are inside for kStandingTime

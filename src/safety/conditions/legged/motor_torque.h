@@ -1,10 +1,11 @@
 #pragma once
 /// A MotorTorque measures how often a motor gives another torque than its commands demand.
 ///
-/// The commands of now, of kLate and of 2 kLate ago, rounded to whole cycles but 0, demand torques at the measured
-/// angle and speed of this cycle and of the one before. They span a range. A torque is wrong if it is outside by more
-/// than kOfDemand of the range's end and kOfEffort of the effort limit. All of these torques are means over kMean,
-/// because measured speeds come in steps. The result w is the part of the last cycles in which the torque was wrong:
+/// Three commands demand torques at the measured angle and speed of this cycle and of the one before. They are those of
+/// now, of kLate and of 2 kLate ago, rounded to whole cycles but 0. They span a range. A torque is wrong if it is
+/// outside by more than kOfDemand of the range's end and kOfEffort of the effort limit. All of these torques are means
+/// over kMean, because measured speeds come in steps. The result w is the part of the last cycles in which the torque
+/// was wrong:
 ///
 ///   w += T/kTime (1 − w), or T/kTime (0 − w)      T: period
 ///
