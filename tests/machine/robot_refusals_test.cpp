@@ -262,7 +262,7 @@ TEST(RobotRefusals, TooManyShapes) {
   std::string shapes;
   for (int i = 0; i < 60000; ++i) shapes += collision("<box size=\"0.1 0.1 0.1\"/>");
   EXPECT_THAT(refusal_of(robot_of(two_wheels() + link("heap", shapes))),
-              HasSubstr("60002 shapes. At most 4000 are read"));
+              HasSubstr("60003 shapes. At most 4000 are read"));
 }
 
 TEST(RobotRefusals, AnAxisWithoutDirection) {

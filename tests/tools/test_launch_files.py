@@ -142,7 +142,7 @@ def test_the_end_of_telemetry_ends_a_simulation_that_shall_be_logged_and_nothing
 def test_respawn_starts_again_all_but_what_ends_the_launch():
     nodes = config_of("sim.launch", "telemetry:=true", "respawn:=true").nodes
     assert {node.name for node in nodes if not node.respawn} == {"mujoco_plant", "telemetry"}
-    assert not any(node.respawn for node in config_of("sim.launch").nodes)
+    assert {node.name for node in config_of("sim.launch").nodes if node.respawn} == {"robot_status"}
 
 
 def test_the_transforms_inside_the_robot_can_be_left_to_another_node():

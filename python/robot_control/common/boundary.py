@@ -172,7 +172,7 @@ def opened(sealed: Any, not_finite: Collection[str] = ()) -> Any:
         message = sealed.kind().deserialize(data)
     except (genpy.DeserializationError, UnicodeError, ValueError, TypeError, MemoryError, OverflowError) as error:
         raise UnfitError(f"is no {sealed.kind._type}: {str(error)[:100]}") from None
-    require_finite(message, MAY_BE_INFINITE.union(not_finite))
+    require_fit(message, MAY_BE_INFINITE.union(not_finite))
     with contextlib.suppress(AttributeError):
         message._connection_header = sealed._connection_header
     return message
@@ -194,19 +194,17 @@ def unsealed(kind: type, not_finite: Collection[str] = ()) -> type:
     return type(kind.__name__, (kind,), {"__slots__": kind.__slots__, "deserialize": deserialize})  # type: ignore[attr-defined]
 
 
-def require_finite(message: Any, except_: Collection[str] = (), path: str = "") -> None:
+def require_fit(message: Any, may_be_infinite: Collection[str] = (), path: str = "") -> None:
     """Raises UnfitError, with the field, where a number of a message is NaN or infinite, or a text has a zero byte."""
     for name, kind in zip(message.__slots__, message._slot_types, strict=True):
-        if name in except_:
-            continue
         value, where = getattr(message, name), f"{path}{name}"
         element, is_array = kind.partition("[")[0], "[" in kind
-        if element in FLOATS:
+        if element in FLOATS and name not in may_be_infinite:
             if not (all(map(math.isfinite, value)) if is_array else math.isfinite(value)):
                 raise UnfitError(f"{where} must be finite")
         elif element == "string":
             if "\0" in ("".join(value) if is_array else value):
                 raise UnfitError(f"{where} must have no zero byte")
-        elif "/" in element:
+        elif "/" in element and name not in may_be_infinite:
             for each in value if is_array else (value,):
-                require_finite(each, except_, f"{where}.")
+                require_fit(each, may_be_infinite, f"{where}.")

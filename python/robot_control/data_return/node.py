@@ -44,7 +44,7 @@ class Node:
         self._name = rospy.get_name()
         subscribe("robot_status", RobotStatus, self._receive, queue_size=1)
         self._diagnostics = rospy.Publisher("/diagnostics", DiagnosticArray, queue_size=1)
-        rospy.Timer(rospy.Duration(PERIOD), self._report)
+        rospy.Timer(rospy.Duration(PERIOD), self._report, reset=True)
 
     def run(self) -> None:
         """Until a signal."""

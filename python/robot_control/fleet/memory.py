@@ -57,6 +57,9 @@ class Memory:
         with self._lock:
             content = self._content | values | {"headers": self._reserved}
             text = json.dumps(content)
+            if len(text) > MAX_FILE // 2:  # what is read at the next start has a bound
+                self.problem = f"{len(text)} bytes are more than {MAX_FILE // 2}"
+                return self.problem
             try:
                 write_durably(self.path, f"{digest_of(text.encode()).decode()}\n{text}")
                 self._content, self.problem = content, ""

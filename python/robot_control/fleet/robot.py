@@ -76,8 +76,8 @@ class RosRobot:
         self._tf = Tf() if settings.localization else None
         self._static = rospy.Publisher("tf_static", TFMessage, queue_size=1, latch=True)
         subscribe_odometry(self._receive_odometry)
-        subscribe("safety_status", SafetyStatus, self._receive_safety, not_finite=("speed_limit",), queue_size=1)
-        subscribe("robot_status", RobotStatus, self._receive_status, not_finite=("odometry_confidence",), queue_size=1)
+        subscribe("safety_status", SafetyStatus, self._receive_safety, queue_size=1)
+        subscribe("robot_status", RobotStatus, self._receive_status, queue_size=1)
         subscribe("battery_state", BatteryState, self._receive_battery, not_finite=UNMEASURED, queue_size=1)
         self._client = actionlib.ActionClient(ACTION, GuardedAction)
         self._handles: list[actionlib.ClientGoalHandle] = []  # of goals that have not ended, the present one last

@@ -32,10 +32,6 @@ CAUSE_DELAY = 0.3
 """s by which the cause of a stop may follow the refusal that it leads to: they come from two nodes"""
 
 
-MEASURED = ("wanted", "actual", "error", "effort", "load", "slip")
-"""fields of drive_state and leg_state in which NaN stands for nothing measured"""
-
-
 def subscribe_odometry(receive: Callable[[Odometry], None]) -> rospy.Subscriber:
     """Messages of odom whose pose is a place, and whose speeds are some."""
 
@@ -67,8 +63,8 @@ class Robot:
         self.refused_at = math.inf  # s, since when the controller awaits a zero from this program after a stop
         self.masked_by = ""
         subscribe_odometry(self._receive_odometry)
-        subscribe("drive_state", DriveState, self._receive_state, not_finite=MEASURED, queue_size=1, tcp_nodelay=True)
-        subscribe("leg_state", LegState, self._receive_refusal, not_finite=MEASURED, queue_size=1, tcp_nodelay=True)
+        subscribe("drive_state", DriveState, self._receive_state, queue_size=1, tcp_nodelay=True)
+        subscribe("leg_state", LegState, self._receive_refusal, queue_size=1, tcp_nodelay=True)
 
     @property
     def frames(self) -> tuple[str, str]:

@@ -10,6 +10,8 @@ from pathlib import Path
 from robot_control.common.files import InputFileError, check_input, listed
 
 COLUMNS = ("x", "y", "yaw", "speed")
+APART = 1e-4
+"""m; a point that is nearer to the one before is left out"""
 MAX_POINTS = 100_000
 """points"""
 MAX_FILE = 1 << 24
@@ -56,7 +58,7 @@ def checked(points: Sequence[Waypoint]) -> list[Waypoint]:
             raise PathError(f"point {number} of the path turns at {point.turn_speed:g} rad/s: it must be above zero")
     kept: list[Waypoint] = []
     for point in points:
-        if kept and math.hypot(point.x - kept[-1].x, point.y - kept[-1].y) < 1e-4:
+        if kept and math.hypot(point.x - kept[-1].x, point.y - kept[-1].y) < APART:
             kept[-1] = replace(kept[-1], yaw=point.yaw if point.yaw is not None else kept[-1].yaw)
         else:
             kept.append(point)

@@ -87,8 +87,10 @@ class Services:
         """Takes back the topic's level if it was raised here. The service may overtake the topic: a reset that is then
         refused is called once more.
         """
+        if self._e_stop_at is not None:
+            self._answers.put(Answer("e_stop_reset", accepted=False, text="the emergency stop is not answered yet"))
+            return
         attempts = 1
-        self._e_stop_at = None
         if self._topic_said_true:
             self._topic.publish(Bool(data=False))
             self._topic_said_true = False
@@ -106,7 +108,7 @@ class Services:
                 continue
             if answer.service == E_STOP:
                 self._e_stop_at = None
-            elif not answer.accepted and not self._topic_said_true:
+            elif not answer.accepted and not self._topic_said_true and self._e_stop_at is None:
                 # A restarted safety_monitor holds the topic true for a publisher that it does not know and that is
                 # silent.
                 self._topic.publish(Bool(data=False))

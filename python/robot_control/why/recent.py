@@ -33,6 +33,8 @@ class Recent(Generic[Value]):
             rows = self._senders[sender] = self._senders.pop(sender, {})
             rows.pop(name, None)
             rows[name] = now, value
+            while now - next(iter(rows.values()))[0] >= self._life:
+                del rows[next(iter(rows))]
             for table, bound in ((rows, MAX_NAMES), (self._senders, MAX_SENDERS)):
                 if len(table) > bound:
                     del table[next(iter(table))]

@@ -53,6 +53,7 @@ inline LegModel sized(double part) {
     for (Eigen::Vector3d* length : {&geometry.hip, &geometry.upper, &geometry.lower, &geometry.foot}) *length *= part;
     leg.kinematics = LegKinematics(geometry);
   }
+  for (std::size_t i = 0; i < kLegsJoints; ++i) robot.joints[i].effort_limit *= part;  // its weight is the same
   return robot;
 }
 

@@ -19,7 +19,7 @@ from robot_control.fleet.v2.messages import Message, RefusedError
 from robot_control.fleet.v2.order import NONE, Edge, Node, Place
 from robot_control.path.follower import FollowParameters
 from robot_control.path.pieces import CORNER
-from robot_control.path.waypoints import JUMP
+from robot_control.path.waypoints import APART, JUMP
 
 SAME_HEADING = math.radians(2.0)
 """rad between two orientations that count as one"""
@@ -101,8 +101,7 @@ def way_of(edge: Edge, begin: Place, end: Place) -> Way:
         for place, point in ((begin, points[0]), (end, points[-1])):
             if math.dist((place.x, place.y), point) > max(END_GAP, place.deviation_xy):
                 raise refused("trajectory", f"must begin and end within {END_GAP:g} m of the nodes")
-    kept = [points[0]]
-    kept += [b for a, b in pairwise(points) if b != a]
+    kept = [points[0], *(b for a, b in pairwise(points) if math.dist(a, b) > APART)]
     way = Way(tuple(kept), 1, raw.get("maxSpeed", 0.0), raw.get("maxRotationSpeed", 0.0))
     if way.length < SHORTEST:
         if raw.get("orientationType") == "GLOBAL":

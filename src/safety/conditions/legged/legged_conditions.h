@@ -71,7 +71,8 @@ class LeggedConditions {
     }
     if (standing()) moving_ = false;
     const LegPhase phase = input.command != nullptr ? input.command->legged.phase : LegPhase::kLying;
-    body_conditions_.step(sensors, elapsed, 0, moving_, out, phase == LegPhase::kLying ? kOfLying : 1);
+    const bool lies = input.command != nullptr && phase == LegPhase::kLying;
+    body_conditions_.step(sensors, elapsed, 0, moving_, out, lies ? kOfLying : 1);
     downward_force_.step(body_conditions_.along_z(), phase, elapsed, out);
     wrong_state_.step(input.state, body_conditions_.rate(), elapsed, out);
     joint_conditions_.step(input, elapsed, out);
