@@ -206,7 +206,8 @@ void end_log(ClosedLoop& loop) {
 
 void bind_run_bag(py::module_& module) {
   py::register_exception<LogError>(module, "RunLogError", PyExc_OSError);
-  py::register_exception<TraceError>(module, "TraceError", PyExc_ValueError);
+  const py::object& trace_error = py::register_exception<TraceError>(module, "TraceError", PyExc_ValueError);
+  py::register_exception<NoTraceError>(module, "NoTraceError", trace_error);
   module.def("read_run_bag", read_run_bag, py::arg("path"), py::arg("names"));
   module.def(
       "read_run_header", [](const std::string& path) { return header_of(TraceReader(path).header()); },

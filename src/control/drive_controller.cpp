@@ -284,15 +284,19 @@ void DriveController::learn_ground_friction() noexcept {
   for (std::size_t i = 0; i < loops_.size(); ++i) loops_[i].move_to_feed_forward(more * ground_friction_.strain(i));
 }
 
+double DriveController::faster_rim(const PlanarTwist& twist) const noexcept {
+  const SidePair rims = kinematics_.rim_speeds(twist);
+  return std::max(std::abs(rims.left), std::abs(rims.right));
+}
+
 bool DriveController::leaves_stop(bool stops, bool planned_rest) noexcept {
   const bool begins = !stops || (planned_rest && rest_time_ == 0);
   rest_time_ = planned_rest ? rest_time_ + periods_ * period_ : 0;
   if (begins || (drives_close_loops() && !planned_rest)) std::ranges::for_each(loops_, &WheelLoop::expect_plan);
   WheelValues off{};
   for (std::size_t i = 0; i < loops_.size(); ++i) off[i] = loops_[i].off_plan();
-  const SidePair way = kinematics_.rim_speeds(kinematics_.twist(off));
-  const double allowed = planned_rest ? kRestWay : kStopWay * std::max(1.0, tuning_.linear.speed);
-  return rest_time_ > kRestTime || std::max(std::abs(way.left), std::abs(way.right)) > allowed;
+  if (!stops) stop_way_ = std::max(kStopWay, kStopTime * faster_rim(limiter_.value()));
+  return rest_time_ > kRestTime || faster_rim(kinematics_.twist(off)) > (planned_rest ? kRestWay : stop_way_);
 }
 
 void DriveController::drive(const PlanarTwist& requested, const SensorFrame& sensors, CommandFrame& out) noexcept {

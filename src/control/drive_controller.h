@@ -14,10 +14,10 @@
 /// A stop is planned by the limiter. It has ended when limited twist and lead are zero and all wheels stand
 /// (standstill.h). It also ends in the brake if the wheels do not get there:
 ///   - kRestTime after the end of the plan;
-///   - when the rims of a side have moved kStopWay off the plan (in proportion for limits above 1 m/s), or kRestWay
-///     after its end.
+///   - when the rims of a side are off the plan by max(kStopWay, v·kStopTime), v their speed before the stop, or have
+///     moved kRestWay off it since its end.
 /// So a load that slow wheel loops do not find, as on a slope at 20 Hz, does not move the robot for long. Drives that
-/// close their own loops lag behind a ramp, so kStopWay does not apply to them.
+/// close their own loops lag behind a ramp, so the way off the plan does not count for them.
 ///
 /// A stop that was not requested ramps with the emergency deceleration. This applies after a command that timed out or
 /// was refused, with more than one sender if that is forbidden, and under a ramp permit. A ramp permit sets the
@@ -89,7 +89,9 @@ namespace robot_control {
 /// No wheel reaches this speed, in rad/s (10⁴ rpm): a faster change of angle is an encoder error.
 inline constexpr double kFastestWheel = 1000;
 
-inline constexpr double kStopWay = 0.07;  ///< m; a robot of twice its mass leaves its plan by 0.05 m at 1 m/s
+inline constexpr double kStopWay = 0.1;  ///< m
+// A robot of twice its mass leaves its plan by v·0.08 s at 200 Hz.
+inline constexpr double kStopTime = 0.2;  ///< s
 inline constexpr double kRestWay = 0.02;  ///< m; at 20 Hz a wheel turns on by 0.01 m
 inline constexpr double kRestTime = 0.5;  ///< s; twice kStandstillTime
 
@@ -135,6 +137,7 @@ class DriveController {
   WheelValues planned_efforts(const PlanarTwist& twist, const PlanarTwist& acceleration) noexcept;
   void search_ground_friction(const PlanarTwist& twist) noexcept;
   void learn_ground_friction() noexcept;
+  double faster_rim(const PlanarTwist& twist) const noexcept;  ///< m/s, or m of a way
   /// Returns whether the brake has to end the stop; `stops`: the requested twist is zero.
   bool leaves_stop(bool stops, bool planned_rest) noexcept;
   void drive(const PlanarTwist& requested, const SensorFrame& sensors, CommandFrame& out) noexcept;
@@ -157,6 +160,7 @@ class DriveController {
   WheelValues held_effort_{};                ///< N·m, mean since `held_cycles_`
   std::uint64_t held_cycles_ = 0;  ///< cycles in which the wheels stood and this controller was not in control
   double acceleration_scale_ = 1;  ///< share of the acceleration limits that the wheels' torque allows
+  double stop_way_ = kStopWay;     ///< m, by which the next stop may leave its plan
   double rest_time_ = 0;           ///< s, since the plan of a stop ended
   double periods_ = 1;             ///< between the last two usable samples
   bool driving_ = false;           ///< The last command was not the brake.

@@ -13,8 +13,8 @@ TraceReader::TraceReader(const std::string& path, const Use& use)
         read_chunk(bag, chunk, use);
       }) {
   if (!header_) {
-    throw TraceError(path + " is no log of robot_control: it does not begin with a TraceHeader" +
-                     (cut().empty() ? "" : "; " + cut()));
+    throw NoTraceError(path + " is no log of robot_control: it does not begin with a TraceHeader" +
+                       (cut().empty() ? "" : "; " + cut()));
   }
 }
 

@@ -25,7 +25,8 @@ class TraceReader {
     std::function<void(double share)> chunk = {};  ///< receives the share of the file that is read, after each chunk
   };
 
-  /// Throws BagError for a damaged bag, TraceError for another bag, std::runtime_error for an unreadable file.
+  /// Throws BagError for a damaged bag, NoTraceError for another bag, TraceError for a header that breaks its rules,
+  /// std::runtime_error for an unreadable file.
   explicit TraceReader(const std::string& path) : TraceReader(path, {}) {}
 
   /// This constructor also gives everything to `use` while the file is checked; a `read` afterwards would double the

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from robot_control._robot_control import BagError, TraceError, read_run_bag, read_run_header
+from robot_control._robot_control import BagError, NoTraceError, TraceError, read_run_bag, read_run_header
 from robot_control.common.files import MAX_TABLE, check_input, utf8
 from robot_control.common.roles import Kind
 
@@ -85,10 +85,14 @@ def is_bag(path: Path) -> bool:
 
 
 def is_run_log(path: Path) -> bool:
-    """Whether the file is a run.bag: a ROS bag that begins with a TraceHeader."""
+    """Whether the file is a run.bag: a ROS bag that begins with a TraceHeader.
+
+    Raises:
+        TraceError: it begins with a damaged one.
+    """
     try:
         return is_bag(path) and bool(read_run_header(utf8(path)))
-    except (BagError, TraceError):
+    except (BagError, NoTraceError):
         return False
 
 

@@ -98,9 +98,9 @@ def _motion(streams: Streams) -> tuple[FloatArray, FloatArray, FloatArray]:
     speed = np.diff(travel) / BLOCK  # in the middle of each block: Δv is between middles
     rate = np.diff(turn) / BLOCK
     sideways = (speed * rate)[1:] / 2 + (speed * rate)[:-1] / 2
-    middles = (marks[1:] + marks[:-1]) / 2
     whole = cells[2:] - cells[:-2] == 2
-    return np.column_stack([middles[:-1], middles[1:]])[whole], np.diff(speed)[whole], sideways[whole] * BLOCK
+    ends = np.column_stack([marks[:-2] + marks[1:-1], marks[1:-1] + marks[2:]]) / 2
+    return ends[whole], np.diff(speed)[whole], sideways[whole] * BLOCK
 
 
 def _agreements(

@@ -45,8 +45,8 @@ class Samples:
     def seconds(self) -> FloatArray:
         """s since the first row; a jump of the time counts as a usual step."""
         steps = np.diff(self.time_ns, prepend=self.time_ns[0])
-        jumped = np.where(steps > JUMP, steps - min(int(np.median(steps)), JUMP), 0)
-        seconds: FloatArray = (self.time_ns - self.time_ns[0] - np.cumsum(jumped)) / 1e9
+        steps[steps > JUMP] = min(int(np.median(steps)), JUMP)
+        seconds: FloatArray = np.cumsum(steps) / 1e9
         return seconds
 
     @property

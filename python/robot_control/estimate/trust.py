@@ -54,8 +54,8 @@ class Trust:
                 "look at clocks, units and mounting, and at what shakes the IMU"
             )
         if self._restarts:
-            often = f"{len(self._restarts)} times, first " if len(self._restarts) > 1 else ""
-            found.append(f"an encoder began again {often}after {self._restarts[0]:.3f} s: the travel meanwhile is lost")
+            when = ", ".join(f"{time:.3f} s" for time in self._restarts[:3])
+            found.append(f"an encoder began again after {when}: the travel meanwhile is lost")
         rates = samples.rates()
         for sensor, seconds in self._without.items():
             if sensor in rates and self._duration > 0 and seconds > UNUSED * self._duration:

@@ -19,6 +19,12 @@ class TraceError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+/// A bag that is no log at all: it does not begin with a TraceHeader.
+class NoTraceError : public TraceError {
+ public:
+  using TraceError::TraceError;
+};
+
 /// Reads messages by the definition with which another version of this package recorded them. Fields of another name or
 /// type are passed over, and missing fields keep their default.
 class TraceDecoder {
