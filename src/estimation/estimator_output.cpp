@@ -61,9 +61,8 @@ void Estimator::fill_pose_covariance(double yaw, const Planar& lever, BaseState&
   const Eigen::Vector3d motion = forward_speed() * along + yaw_rate * turning;
   covariance += late * (1 - late) * states(0, 0) * motion * motion.transpose();
   covariance += square(encoder_) * along * along.transpose();
-  const double unknown = state_.wheels.unknown_speed() * state_.wheels.lost_time;
-  covariance.diagonal() +=
-      square(unknown) * Eigen::Vector3d(1, 1, state_.imu.gyro ? 0 : 4 / square(geometry_.wheel_base));
+  covariance.diagonal() += square(state_.wheels.unknown_speed() * state_.wheels.lost_time) *
+                           Eigen::Vector3d(1, 1, state_.imu.gyro ? 0 : 4 / square(geometry_.wheel_base));
   if (state_.pose_set) covariance.setZero();
   Eigen::Map<PoseMatrix> published(base.pose_covariance.data());
   published = Tuning::kPlanarVariance * PoseMatrix::Identity();

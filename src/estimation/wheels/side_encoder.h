@@ -16,8 +16,7 @@
 ///   |q| ≤ kEncoderSlack + |q̇|·t   and   |q − qₗₐₛₜ − q̇·t| > kNewZero + |q̇|·(t + gap),   later > kNewZero
 ///
 /// If angles stay impossible for more than kMaxHeld readings, the encoder was reset. Then the present angles become the
-/// offset, and the travel in between is lost. The same holds for the first angles after a drive had a fault and then no
-/// position, because its zero may be another one.
+/// offset, and the travel in between is lost. So do the first angles after a drive had a fault and no position.
 
 #include <array>
 #include <cstdint>

@@ -77,6 +77,15 @@ class Way:
         return best
 
 
+def _apart(points: list[Point]) -> tuple[Point, ...]:
+    """The points without each one that is nearer than APART to the last one before it that stays."""
+    kept = points[:1]
+    for point in points[1:]:
+        if math.dist(kept[-1], point) > APART:
+            kept.append(point)
+    return tuple(kept)
+
+
 def way_of(edge: Edge, begin: Place, end: Place) -> Way:
     """Raises RefusedError: orderError with the field that cannot be followed."""
 
@@ -101,8 +110,7 @@ def way_of(edge: Edge, begin: Place, end: Place) -> Way:
         for place, point in ((begin, points[0]), (end, points[-1])):
             if math.dist((place.x, place.y), point) > max(END_GAP, place.deviation_xy):
                 raise refused("trajectory", f"must begin and end within {END_GAP:g} m of the nodes")
-    kept = [points[0], *(b for a, b in pairwise(points) if math.dist(a, b) > APART)]
-    way = Way(tuple(kept), 1, raw.get("maxSpeed", 0.0), raw.get("maxRotationSpeed", 0.0))
+    way = Way(_apart(points), 1, raw.get("maxSpeed", 0.0), raw.get("maxRotationSpeed", 0.0))
     if way.length < SHORTEST:
         if raw.get("orientationType") == "GLOBAL":
             raise refused("orientation", f"needs an edge of {SHORTEST:g} m: give theta to its last node")
