@@ -524,14 +524,10 @@ def test_every_package_is_installed():
     assert named == {path.parent.name for path in (ROOT / "python/robot_control").glob("*/__init__.py")}
 
 
-OF_THEIR_OWN = {"path", "fleet", "data_return"}
-"""Folders whose programs have tests of their boundaries beside them"""
-
-
 def test_a_program_beside_the_loop_receives_messages_through_the_boundary_alone():
     found = {}
     for path in (ROOT / "python" / "robot_control").rglob("*.py"):
-        if path.name != "boundary.py" and path.relative_to(ROOT).parts[2] not in OF_THEIR_OWN:
+        if path.name != "boundary.py":
             calls = re.findall(r"rospy\.(?:Subscriber\(|wait_for_message|AnyMsg)", path.read_text(encoding="utf-8"))
             found |= {str(path): calls} if calls else {}
     assert found == {}

@@ -10,6 +10,7 @@ from pathlib import Path as FilePath
 import rospy
 from nav_msgs.msg import Path
 
+from robot_control.common.boundary import next_message
 from robot_control.common.command import Command
 from robot_control.common.command_topic import CommandTopic
 from robot_control.common.file_errors import in_words
@@ -33,10 +34,10 @@ REPORT_PERIOD = 1.0
 
 def received(name: str) -> Path:
     """The next message on that topic, or its last one if it is latched. Raises PathError."""
-    try:
-        return rospy.wait_for_message(name, Path, PATIENCE)
-    except rospy.ROSException:
-        raise PathError(f"nothing came on {rospy.resolve_name(name)} within {PATIENCE:g} s") from None
+    message: Path | None = next_message(name, Path, PATIENCE)
+    if message is None:
+        raise PathError(f"nothing came on {rospy.resolve_name(name)} within {PATIENCE:g} s")
+    return message
 
 
 def drive(points: list[Waypoint] | None, given: argparse.Namespace, signals: Signals) -> str:
