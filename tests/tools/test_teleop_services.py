@@ -139,6 +139,16 @@ def test_a_reset_that_overtook_its_own_level_of_the_topic_is_called_once_more(ro
     assert robot.calls.count("e_stop_reset") == calls
 
 
+def test_a_stop_that_a_silent_service_does_not_answer_goes_to_the_topic_whatever_reset_follows(robot, monkeypatch):
+    monkeypatch.setattr(module, "PATIENCE", 0.05)
+    robot.answers = False
+    services = Services(robot.watch)
+    services.e_stop()
+    services.reset()
+    wait_for(lambda: services.poll() or robot.levels)
+    assert robot.levels[0] is True
+
+
 def test_a_reset_that_waited_too_long_behind_a_silent_service_is_dropped(robot, monkeypatch):
     monkeypatch.setattr(module, "LATEST", 0.05)
     robot.answers = False

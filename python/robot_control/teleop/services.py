@@ -85,11 +85,8 @@ class Services:
 
     def reset(self) -> None:
         """Takes back the topic's level if it was raised here. The service may overtake the topic: a reset that is then
-        refused is called once more.
+        refused is called once more. An emergency stop that is not answered yet stays requested, and comes first.
         """
-        if self._e_stop_at is not None:
-            self._answers.put(Answer("e_stop_reset", accepted=False, text="the emergency stop is not answered yet"))
-            return
         attempts = 1
         if self._topic_said_true:
             self._topic.publish(Bool(data=False))
@@ -108,7 +105,7 @@ class Services:
                 continue
             if answer.service == E_STOP:
                 self._e_stop_at = None
-            elif not answer.accepted and not self._topic_said_true and self._e_stop_at is None:
+            elif not answer.accepted and not self._topic_said_true:
                 # A restarted safety_monitor holds the topic true for a publisher that it does not know and that is
                 # silent.
                 self._topic.publish(Bool(data=False))
