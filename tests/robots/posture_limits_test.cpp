@@ -14,8 +14,8 @@ Parameters field_parameters(std::uint64_t seed) {
 
 class PostureLimits : public testing::TestWithParam<std::string> {};
 
-/// Without a bound for the pose in force, quadbot is stopped with seed 33, and anymal with seed 3. Known weakness: a joint
-/// of anymal reaches 1.035 of its speed limit in 5 of 28 walks, and with seed 33.
+/// Without a bound for the pose in force, quadbot is stopped with seed 33, and anymal with seed 3. Known weakness: a
+/// joint of anymal reaches 1.035 of its speed limit in 5 of 28 walks, and with seed 33.
 TEST_P(PostureLimits, APoseWithinItsRangeLetsNoWalkBeStoppedAndNoJointLeaveItsLimits) {
   const double fastest = GetParam() == "anymal_c" ? 1.035 : 1;
   for (const std::uint64_t seed : {3u, 33u}) {
