@@ -96,7 +96,7 @@ class Link:
         }
         payload = encoded({**header, **message})
         if topic == "connection":
-            self._own.append(digest_of(payload).decode())
+            self._own.append(digest_of(payload))
             self._memory.save(connection=list(self._own))
         return payload
 
@@ -123,7 +123,7 @@ class Link:
             payload = message.payload[: MAX_BYTES + 1]  # one byte more than is taken
             if topic == "connection":
                 before = message.retain and self._connections == 1  # of this robot's program before
-                if before or not payload or digest_of(payload).decode() in self._own:
+                if before or not payload or digest_of(payload) in self._own:
                     return
             plain = len(payload) <= SMALL and payload.lstrip()[:1] == b"{"
             if self.received.qsize() >= (WAITING if plain else FEW):

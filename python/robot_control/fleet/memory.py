@@ -33,7 +33,7 @@ class Memory:
         if path.exists():
             check_input(path, MAX_FILE)
             digest, _, text = path.read_bytes().partition(b"\n")
-            if digest == digest_of(text):
+            if digest == digest_of(text).encode():
                 self._content = json.loads(text)
             else:
                 self.move_aside("its digest is wrong")
@@ -61,7 +61,7 @@ class Memory:
                 self.problem = f"{len(text)} bytes are more than {MAX_FILE // 2}"
                 return self.problem
             try:
-                write_durably(self.path, f"{digest_of(text.encode()).decode()}\n{text}")
+                write_durably(self.path, f"{digest_of(text.encode())}\n{text}")
                 self._content, self.problem = content, ""
             except OSError as error:
                 self.problem = in_words(error)
@@ -78,6 +78,6 @@ class Memory:
             return number % 2**32
 
 
-def digest_of(payload: bytes) -> bytes:
+def digest_of(payload: bytes) -> str:
     """Says whether a payload is another one."""
-    return hashlib.sha256(payload).hexdigest().encode()
+    return hashlib.sha256(payload).hexdigest()
