@@ -122,7 +122,7 @@ class ClosedLoop:
                 <joint>_motor; gyro accelerometer battery e_stop_button controller estimator monitor; with `drives`
                 also bus, and the joints by name
             kind: ok (ends the fault) off stuck garbage wrong slow delayed intermittent; bus: ok off lossy disturbed; a
-                joint's drive: ok off reset other_zero encoder released hot under_voltage not_finite
+                joint's drive: ok off reset other_zero slipped encoder released hot under_voltage not_finite
 
         Raises:
             ValueError: an unknown word, with the list of those there are.

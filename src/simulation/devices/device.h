@@ -23,6 +23,7 @@ enum class DeviceFault : std::uint8_t {
   kOff,           ///< no supply: no frame, no torque
   kReset,         ///< The device boots again, once.
   kOtherZero,     ///< Its position continues from another zero, once.
+  kSlipped,       ///< The encoder slips on its shaft: another zero, and the commutation is wrong (ODrive alone).
   kEncoder,       ///< The device reports an error of its encoder and releases the motor.
   kReleased,      ///< The device releases the motor without an error, once.
   kHot,           ///< 120 °C; the motor keeps its torque
@@ -37,6 +38,7 @@ inline std::vector<Word> words_of(DeviceFault) {
           {"off", kOff},
           {"reset", kReset},
           {"other_zero", kOtherZero},
+          {"slipped", kSlipped},
           {"encoder", kEncoder},
           {"released", kReleased},
           {"hot", kHot},

@@ -14,11 +14,13 @@ namespace {
 using namespace odrive;  // NOLINT(google-build-using-namespace): the messages of this device
 
 constexpr double kVelocityGain = 0.16 / kTurn;  // N·m/(rad/s), the maker's default
+constexpr double kVelocityTolerance = 1.2;      // of the limit, the maker's default
 constexpr double kSupply = 24;                  // V
 constexpr double kLowSupply = 8;
 constexpr double kCool = 35;  // °C
 constexpr double kHotMotor = 120;
 constexpr std::uint32_t kMissingEstimate06 = 0x8, kEncoderFailed05 = 0x100, kMotorFailed05 = 0x40;
+constexpr std::uint32_t kVelocityLimit06 = 0x8000, kControllerFailed05 = 0x200, kOverspeed05 = 0x1;
 constexpr std::uint32_t kNoResponse05 = 0x4;
 constexpr std::uint64_t kUnknownSupply05 = 0x8000'0000;
 
@@ -49,7 +51,7 @@ void OdriveDevice::boot(std::int64_t now_ns) {
 void OdriveDevice::inject(DeviceFault fault) {
   if (fault == DeviceFault::kReset || (fault_ == DeviceFault::kOff && fault != DeviceFault::kOff)) boot(bus_.now_ns());
   fault_ = fault;
-  if (fault == DeviceFault::kOtherZero) zero_ += kOtherZero;
+  if (fault == DeviceFault::kOtherZero || fault == DeviceFault::kSlipped) zero_ += kOtherZero;
   if (fault == DeviceFault::kReleased) state_ = AxisState::kIdle;
   if (fault == DeviceFault::kOff) motor_.torque = 0;
   report_fault();
@@ -67,7 +69,7 @@ void OdriveDevice::report_fault() {
 }
 
 void OdriveDevice::clear_errors() {
-  error_ = encoder_error_ = 0;
+  error_ = encoder_error_ = controller_error_ = 0;
   motor_error_ = 0;
 }
 
@@ -84,9 +86,13 @@ void OdriveDevice::step(std::int64_t now_ns) {
   if (fault_ == DeviceFault::kOff || now_ns < boot_ns_) return;
   const bool watched = !is_06() || state_ == AxisState::kClosedLoopControl;
   if (watched && watchdog_timer_.expired(now_ns)) fail(is_06() ? kWatchdogExpired06 : kWatchdogExpired05);
+  if (state_ == AxisState::kClosedLoopControl && std::abs(motor_.velocity) > kVelocityTolerance * velocity_limit_) {
+    controller_error_ = kOverspeed05;
+    fail(is_06() ? kVelocityLimit06 : kControllerFailed05);
+  }
   const bool closed = state_ == AxisState::kClosedLoopControl;
   if (!closed) speed_loop_.reset();
-  motor_.torque = closed ? driven_torque(seconds) : 0;
+  motor_.torque = closed ? (fault_ == DeviceFault::kSlipped ? -1 : 1) * driven_torque(seconds) : 0;
   if (heartbeat_timer_.expired(now_ns)) send_heartbeat();
   if (estimates_timer_.expired(now_ns)) send_estimates();
   if (effort_timer_.expired(now_ns)) is_06() ? send_torques() : send_current();
@@ -101,8 +107,9 @@ double OdriveDevice::driven_torque(double seconds) {
     return speed_loop_.step(error, parameters_.speed_gain, maximum, seconds, input_torque_);
   }
   if (mode_.control != ControlMode::kTorque) return 0;
-  const double fast = kVelocityGain * (velocity_limit_ - motor_.velocity);
-  const double slow = kVelocityGain * (-velocity_limit_ - motor_.velocity);
+  const double gain = gains_ ? gains_->gain : kVelocityGain;
+  const double fast = gain * (velocity_limit_ - motor_.velocity);
+  const double slow = gain * (-velocity_limit_ - motor_.velocity);
   return std::clamp(std::clamp(input_torque_, std::min(slow, fast), std::max(slow, fast)), -maximum, maximum);
 }
 
@@ -113,8 +120,11 @@ double OdriveDevice::measured_position() const {
 
 void OdriveDevice::send_heartbeat() {
   if (is_06()) return send(v06::Heartbeat{.error = error_, .state = state_});
-  send(v05::Heartbeat{
-      .error = error_, .state = state_, .motor_error = motor_error_ != 0, .encoder_error = encoder_error_ != 0});
+  send(v05::Heartbeat{.error = error_,
+                      .state = state_,
+                      .motor_error = motor_error_ != 0,
+                      .encoder_error = encoder_error_ != 0,
+                      .controller_error = controller_error_ != 0});
 }
 
 void OdriveDevice::send_estimates() {
@@ -147,7 +157,7 @@ void OdriveDevice::receive_request(const can_frame& frame) {
   if (!is_06()) {
     if (requests<v05::MotorError>(frame)) send(v05::MotorError{.error = motor_error_});
     if (requests<v05::EncoderError>(frame)) send(v05::EncoderError{.error = encoder_error_});
-    if (requests<v05::ControllerError>(frame)) send(v05::ControllerError{});
+    if (requests<v05::ControllerError>(frame)) send(v05::ControllerError{.error = controller_error_});
     return;
   }
   if (requests<v06::Version>(frame)) {

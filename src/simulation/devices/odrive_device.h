@@ -2,9 +2,10 @@
 /// An ODrive axis as a device, with firmware 0.5 or 0.6: CANSimple, the states idle and closed loop, torque mode with
 /// the limits of current and velocity, and the watchdog. Other modes of control give no torque.
 ///
-/// It keeps its last set-point in idle. Its velocity limit reduces the torque from below the limit on, as
-/// enable_torque_mode_vel_limit does. An expired watchdog releases the motor, as every error does. With 0.5 any frame
-/// to the axis feeds the watchdog, also in idle; with 0.6 it runs in closed loop alone.
+/// It keeps its last set-point in idle. In closed loop it releases the motor above 1.2 times its velocity limit. Its
+/// velocity limit reduces the torque from below the limit on, as enable_torque_mode_vel_limit does, with the gain of
+/// the speed. An expired watchdog releases the motor, as every error does. With 0.5 any frame to the axis feeds the
+/// watchdog, also in idle; with 0.6 it runs in closed loop alone.
 
 #include <cstdint>
 #include <optional>
@@ -79,9 +80,9 @@ class OdriveDevice final : public Device {
   odrive::AxisState state_ = odrive::AxisState::kIdle;
   std::uint32_t error_ = 0, disarm_reason_ = 0;
   std::uint64_t motor_error_ = 0;
-  std::uint32_t encoder_error_ = 0;
+  std::uint32_t encoder_error_ = 0, controller_error_ = 0;
   odrive::SetControllerMode mode_{.control = odrive::ControlMode::kPosition};  // the maker's default
-  std::optional<odrive::SetVelocityGains> gains_;                              // of a brake, without an integrator
+  std::optional<odrive::SetVelocityGains> gains_;                              // as they were set
   double input_torque_ = 0;
   double input_velocity_ = 0;  // rad/s
   SpeedLoop speed_loop_;

@@ -83,6 +83,49 @@ TEST(OdriveDrive, RaisesTheVelocityLimitThatWouldReduceTheTorque) {
   EXPECT_NEAR(rig.motor().torque, 0.2, 1.0e-6);
 }
 
+/// The robot's damping of the brake is smaller than what torque mode needs at the joint's limit.
+TEST(OdriveDrive, HasItsWholeTorqueAgainAfterItBrakedInAFault) {
+  DeviceRig rig;
+  add(rig, odrive_pair(2));
+  ASSERT_TRUE(rig.runs());
+  rig.command_all({.enabled = true, .brake_torque = 1, .brake_damping = 0.01});
+  rig.answers = false;
+  rig.run(0.5);
+  ASSERT_EQ(rig.drive().status().state, DriveState::kFault);
+  rig.answers = true;
+  rig.command_all({.enabled = true, .reset = true, .brake_torque = 1, .brake_damping = 0.01});
+  rig.cycle();
+  ASSERT_TRUE(rig.runs());
+  rig.motor().velocity = 2.5 * 39;  // just below the joint's limit
+  rig.command_all({.enabled = true, .torque = 4});
+  rig.cycle();
+  EXPECT_NEAR(rig.motor().torque, 4 / 2.5, 1.0e-6);
+}
+
+/// Behind an encoder that slipped the loop of the axis drives instead of braking.
+TEST(OdriveDrive, DoesNotRunAwayWhereItsEncoderFailed) {
+  for (const Firmware firmware : {Firmware::k05, Firmware::k06}) {
+    for (const bool takes_speeds : {false, true}) {
+      OdrivePair pair = odrive_pair(2, firmware);
+      pair.drive.drive.takes_speeds = takes_speeds;
+      pair.device.speed_gain = 0.1;
+      DeviceRig rig;
+      OdriveDevice& device = add(rig, pair);
+      ASSERT_TRUE(rig.runs());
+      rig.command_all({.enabled = true, .torque = takes_speeds ? 0 : 0.5, .speed = 8, .brake_damping = 1});
+      ASSERT_TRUE(rig.run_until([&] { return rig.motor().velocity > 18; }, 2));
+      rig.command_all({.enabled = true, .speed = 8, .brake_torque = 4, .brake_damping = 1});
+      device.inject(DeviceFault::kSlipped);
+      for (int i = 0; i < 1000; ++i) {
+        rig.cycle();
+        ASSERT_LT(std::abs(rig.motor().velocity), 2 * 20) << takes_speeds;
+      }
+      EXPECT_EQ(device.state(), AxisState::kIdle);
+      EXPECT_THAT(rig.drive().words(), HasSubstr("reports a jump of its position"));
+    }
+  }
+}
+
 TEST(OdriveDrive, ReportsTheLastOrderAsEffortWhileItFollows) {
   DeviceRig rig;
   add(rig, odrive_pair(2));

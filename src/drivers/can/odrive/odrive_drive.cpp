@@ -19,6 +19,8 @@ constexpr std::int64_t kEnterNs = 3'000'000'000;  // more than any axis needs to
 constexpr std::int64_t kModeNs = 10'000'000;      // between repetitions of the mode in which a drive brakes
 constexpr double kMaxHeartbeats = 6.5;            // Five lost ones in a row happen once in 10⁶ at a loss of 5 %.
 constexpr double kVelocityMargin = 1.5;           // Torque mode reduces the torque before the limit.
+constexpr double kBrakeTime = 0.1;                // s, in which no brake halves the speed from the limit
+constexpr double kLeastSpeed = 0.1;               // of the limit, below which a speed is no runaway
 
 /// Commands that move an axis or change how it moves: Estop, Set_Axis_State, Set_Controller_Mode, Set_Input_Pos, _Vel
 /// and _Torque, Set_Limits, Start_Anticogging, three of trajectories, Reboot, Clear_Errors, and those of position and
@@ -190,6 +192,7 @@ void OdriveDrive::receive_error_details(const can_frame& frame) noexcept {
 }
 
 void OdriveDrive::advance(const DriveCommand& command, std::int64_t now_ns, FrameBatch& send) noexcept {
+  if (status().state == DriveState::kRunning) note_speed();
   if (disabled()) {
     send.add(brakes_by_itself() ? encode(node(), SetInputVelocity{}) : input({}));
     brakes_by_itself() ? send_brake(command, now_ns, send) : send_idle(now_ns, send);
@@ -286,7 +289,10 @@ void OdriveDrive::advance_power(const DriveCommand& command, std::int64_t now_ns
   if (tries_ < kZeroCycles) {
     ++tries_;
     const DriveParameters& drive = drive_parameters();
-    send_mode(drive.takes_speeds ? ControlMode::kVelocity : ControlMode::kTorque, drive.torque_limit, send);
+    const ControlMode control = drive.takes_speeds ? ControlMode::kVelocity : ControlMode::kTorque;
+    const double fastest = parameters_.motor_velocity_limit > 0 ? parameters_.motor_velocity_limit
+                                                                : kVelocityMargin * drive.velocity_limit * drive.gear;
+    send_mode(command, control, fastest, drive.torque_limit, send);
   } else if (axis_state_ == AxisState::kClosedLoopControl && axis_error_ == 0) {
     if (sample().stamp_ns <= changed_ns_) return;
     reset_ = false;
@@ -315,22 +321,35 @@ can_frame OdriveDrive::input(const DriveCommand& command) const noexcept {
   return encode(node(), SetInputVelocity{.velocity = motor_speed(command.speed), .torque = torque});
 }
 
-/// `torque` is the limit, of the joint.
-void OdriveDrive::send_mode(ControlMode control, double torque, FrameBatch& send) const noexcept {
+/// `fastest` is the limit of the motor's speed, `torque` that of the joint. Without an integrator the gain of the speed
+/// is the damping of a brake. In torque mode the drive gives gain · (fastest − speed) at most, so with this gain it has
+/// its whole torque up to the joint's limit.
+void OdriveDrive::send_mode(const DriveCommand& command, ControlMode control, double fastest, double torque,
+                            FrameBatch& send) const noexcept {
   const DriveParameters& drive = drive_parameters();
-  const double velocity = parameters_.motor_velocity_limit > 0 ? parameters_.motor_velocity_limit
-                                                               : kVelocityMargin * drive.velocity_limit * drive.gear;
-  const double current = torque / drive.gear / parameters_.torque_constant;
+  const double damping = drive.torque_limit / ((kVelocityMargin - 1) * drive.velocity_limit);
+  if (!drive.takes_speeds) {
+    const double gain = std::fmax(damping, command.brake_damping) / (drive.gear * drive.gear);
+    send.add(encode(node(), SetVelocityGains{.gain = gain}));
+  }
   send.add(encode(node(), SetControllerMode{.control = control}));
-  send.add(encode(node(), SetLimits{.velocity = velocity, .current = current}));
+  send.add(
+      encode(node(), SetLimits{.velocity = fastest, .current = torque / drive.gear / parameters_.torque_constant}));
 }
 
-/// Without an integrator the gain of the speed is the damping of a brake.
+/// The brake closes the drive's own loop, whose encoder may be what failed. A drive that turns faster than its limit of
+/// the speed releases its motor, so that the limit is little above the speed at which the fault came.
 void OdriveDrive::send_brake(const DriveCommand& command, std::int64_t now_ns, FrameBatch& send) noexcept {
+  if (!due(next_request_ns_, kModeNs, now_ns)) return;
   const DriveParameters& drive = drive_parameters();
-  if (drive.takes_speeds || !due(next_request_ns_, kModeNs, now_ns)) return;
-  send.add(encode(node(), SetVelocityGains{.gain = command.brake_damping / (drive.gear * drive.gear)}));
-  send_mode(ControlMode::kVelocity, command.brake_torque, send);
+  const double torque = drive.takes_speeds ? drive.torque_limit : command.brake_torque;
+  send_mode(command, ControlMode::kVelocity, kVelocityMargin * drive.gear * fastest_, torque, send);
+}
+
+void OdriveDrive::note_speed() noexcept {
+  const double limit = drive_parameters().velocity_limit;
+  const double kept = std::exp2(-1.0e-9 * static_cast<double>(period_ns_) / kBrakeTime) * fastest_;
+  fastest_ = std::clamp(std::abs(sample().joint.velocity), std::fmax(kept, kLeastSpeed * limit), limit);
 }
 
 void OdriveDrive::send_idle(std::int64_t now_ns, FrameBatch& send) noexcept {
@@ -367,30 +386,11 @@ void OdriveDrive::add_details(DriveStatus& status) const noexcept {
 }
 
 std::string OdriveDrive::code_words(const DriveStatus& status) const {
-  switch (status.cause) {
-    case DriveCause::kDriveError:
-      break;
-    case DriveCause::kPower:
-    case DriveCause::kReleased:
-    case DriveCause::kStaysOff:
-    case DriveCause::kForeignCommander:
-    case DriveCause::kDiffers:
-      return status.code == 0 && status.cause == DriveCause::kDiffers ? "" : std::to_string(status.code);
-    default:
-      return "";
-  }
-  const auto& details = status.details;
-  if (details.back() == 1) {
-    std::string text = error_names(ErrorKind::kAny06, status.code);
-    if (details[3] != 0) text += " (disarmed by " + error_names(ErrorKind::kAny06, details[3]) + ")";
-    return text;
-  }
-  std::string text = error_names(ErrorKind::kAxis05, status.code);
-  constexpr ErrorKind kKinds[] = {ErrorKind::kMotor05, ErrorKind::kEncoder05, ErrorKind::kController05};
-  for (std::size_t i = 0; i < std::size(kKinds); ++i) {
-    if (details[i] != 0) text += " " + error_names(kKinds[i], details[i]);
-  }
-  return text;
+  using enum DriveCause;
+  if (status.cause == kDriveError) return error_words(status.code, status.details);
+  constexpr std::array kWithCode{kPower, kReleased, kStaysOff, kForeignCommander, kDiffers};
+  const bool has_code = std::ranges::find(kWithCode, status.cause) != kWithCode.end();
+  return has_code && (status.code != 0 || status.cause != kDiffers) ? std::to_string(status.code) : "";
 }
 
 }  // namespace robot_control::odrive

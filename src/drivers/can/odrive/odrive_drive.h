@@ -11,7 +11,10 @@
 /// becomes idle: the joint coasts. Firmware 0.5 may report a position of zero until the axis is in closed loop, so
 /// `running` begins with a position that came after this state.
 ///
-/// An axis with torque brakes in a fault by its own loop of the speed, whose gain is then the damping of the brake.
+/// An axis with torque brakes in a fault by its own loop of the speed, within a limit that is little above the speed at
+/// which the fault came. Where its encoder failed, this loop may drive: the axis releases its motor above that limit
+/// (OVERSPEED, VELOCITY_LIMIT_VIOLATION). The driver sets the gain of an axis that takes torques, because torque mode
+/// uses it as well and the drive does not tell the one that was set before. It stays until the axis restarts.
 ///
 /// The position is a float of turns, whose step grows with the number of turns. If the step exceeds max_position_step,
 /// the position of the drive is set back by whole turns as soon as the axis has rested for kRestNs. The position of the
@@ -67,8 +70,10 @@ class OdriveDrive final : public Drive {
   void set_position(double position, FrameBatch& send) const noexcept;
   void clear_errors(std::int64_t now_ns, FrameBatch& send) noexcept;
   can_frame input(const DriveCommand& command) const noexcept;
-  void send_mode(ControlMode control, double torque, FrameBatch& send) const noexcept;
+  void send_mode(const DriveCommand& command, ControlMode control, double fastest, double torque,
+                 FrameBatch& send) const noexcept;
   void send_brake(const DriveCommand& command, std::int64_t now_ns, FrameBatch& send) noexcept;
+  void note_speed() noexcept;
   void send_idle(std::int64_t now_ns, FrameBatch& send) noexcept;
   bool due(std::int64_t& next_ns, std::int64_t interval_ns, std::int64_t now_ns) const noexcept;
   std::uint8_t node() const noexcept { return static_cast<std::uint8_t>(drive_parameters().node); }
@@ -98,6 +103,7 @@ class OdriveDrive final : public Drive {
   double shift_ = 0;           // rad, the drive's zero since the first position
   double pending_shift_ = 0;   // rad, requested of the drive; 0: none
   std::int64_t moving_ns_ = 0;
+  double fastest_ = 0;  // rad/s of the joint, of the last kBrakeTime before a fault
 };
 
 }  // namespace robot_control::odrive

@@ -134,4 +134,18 @@ std::string error_names(ErrorKind kind, std::uint64_t error) {
   return text;
 }
 
+std::string error_words(std::uint64_t error, std::span<const std::uint64_t, 5> details) {
+  if (details.back() == 1) {
+    std::string text = error_names(ErrorKind::kAny06, error);
+    if (details[3] != 0) text += " (disarmed by " + error_names(ErrorKind::kAny06, details[3]) + ")";
+    return text;
+  }
+  std::string text = error_names(ErrorKind::kAxis05, error);
+  constexpr ErrorKind kKinds[] = {ErrorKind::kMotor05, ErrorKind::kEncoder05, ErrorKind::kController05};
+  for (std::size_t i = 0; i < std::size(kKinds); ++i) {
+    if (details[i] != 0) text += " " + error_names(kKinds[i], details[i]);
+  }
+  return text;
+}
+
 }  // namespace robot_control::odrive
