@@ -54,6 +54,13 @@ static uint8_t is_known(const struct board* board, const struct board_order* ord
   return 1;
 }
 
+static uint8_t brakes(const struct board_order* order) {
+  for (uint8_t i = 0; i < order->wheels; ++i) {
+    if (order->wheel[i].mode != BOARD_BRAKE) return 0;
+  }
+  return 1;
+}
+
 static void receive(struct board* board, uint8_t size) {
   const uint32_t now_us = board->config.functions.time_us(board->config.context);
   struct board_order order = board->order;
@@ -73,7 +80,7 @@ static void receive(struct board* board, uint8_t size) {
   board->order_us = now_us;
   board->has_order = 1;
   report(board, now_us, order.cycle, board->braked);
-  board->braked = 0;
+  if (brakes(&order)) board->braked = 0; /* a host that saw the flag brakes: one that lost this report sees the next */
 }
 
 static void run_velocity_loop(struct board* board, uint32_t now_us) {

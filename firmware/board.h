@@ -50,7 +50,7 @@ struct board {
   struct board_order order; /* the one in force */
   uint32_t order_us;        /* when it came */
   uint8_t has_order;
-  uint8_t braked; /* BOARD_WATCHDOG: by itself since the last good order */
+  uint8_t braked; /* BOARD_WATCHDOG: by itself since the last order to brake */
   uint16_t lost;
   uint32_t loop_us; /* last step of the PI loop */
   uint32_t loop_counts[BOARD_MAX_WHEELS];

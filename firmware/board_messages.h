@@ -25,7 +25,7 @@ enum board_validity { BOARD_HAS_EFFORT = 1, BOARD_HAS_BATTERY = 2, BOARD_HAS_TEM
 enum board_input { BOARD_E_STOP_RELEASED = 1 };
 
 enum board_flag {
-  BOARD_WATCHDOG = 1, /* no order came for the time of the watchdog: the board braked until this one */
+  BOARD_WATCHDOG = 1, /* the watchdog expired, and no order to brake all wheels was answered since then */
   BOARD_REFUSED = 2,  /* the order was of another protocol or number of wheels, or had an unknown mode: it brakes */
 };
 

@@ -96,8 +96,6 @@ void BoardDriver::accept(const board_report& report, std::int64_t arrived_ns) no
   status_.firmware = report.firmware;
   if (report.wheels != wheels_.size()) return fail(BoardCause::kOtherWheels, report.wheels);
   if ((report.flags & BOARD_REFUSED) != 0) return fail(BoardCause::kRefused);
-  const bool braked = (report.flags & BOARD_WATCHDOG) != 0;
-  if (braked) fail(BoardCause::kOwnBrake);
   const auto behind = static_cast<std::uint16_t>(cycle_ - report.cycle);
   const auto after = static_cast<std::uint16_t>(report.cycle - answered_);
   const std::int64_t sent_ns = sent_ns_[report.cycle % kOrders];
@@ -113,6 +111,9 @@ void BoardDriver::accept(const board_report& report, std::int64_t arrived_ns) no
     forget_samples();
     return;
   }
+  // A board that restarted braked as well: that is not its cause.
+  const bool braked = (report.flags & BOARD_WATCHDOG) != 0;
+  if (braked) fail(BoardCause::kOwnBrake);
   total_us_ += elapsed_us;
   board_clock_.add(sent_ns, total_us_, total_us_ + report.delay_us, arrived_ns);
   sample_ns_ = board_clock_.host_ns(total_us_);

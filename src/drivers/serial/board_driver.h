@@ -13,7 +13,7 @@
 /// reset; meanwhile the driver orders the brake of the board.
 ///
 ///   silence         no new report for max_silence cycles
-///   own brake       the board reports BOARD_WATCHDOG: it received no order in time
+///   own brake       the board reports BOARD_WATCHDOG: it received no order in time, and its clock did not jump
 ///   refusal         the board reports BOARD_REFUSED, or speaks another version of the protocol
 ///   restart         the clock of the board jumped by more than kClockJumpNs against the host's
 ///   position jump   counts that the joint cannot reach within its velocity limit

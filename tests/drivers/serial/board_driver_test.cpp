@@ -131,7 +131,7 @@ TEST_F(BoardDriverTest, StandsHalfASecondAfterItsAnswersFailAndAsLongAsTheyDo) {
 }
 
 /// At 100 Hz the watchdog of 50 ms expires before 12 reports are missing.
-TEST(BoardAt100Hz, ThatBrakedByItselfIsAFaultWithThisCause) {
+TEST(BoardAt100Hz, ThatBrakedByItselfIsAFaultWithThisCauseAlsoIfItsFirstReportIsLost) {
   BoardMachine machine(100);
   machine.start();
   SensorFrame frame;
@@ -142,6 +142,8 @@ TEST(BoardAt100Hz, ThatBrakedByItselfIsAFaultWithThisCause) {
     ASSERT_EQ(frame.driver_state, DriverState::kRunning) << i << machine.warning();
     machine.write(commands);
   }
+  ASSERT_EQ(machine.board().inject("line", "answers_lost"), "");
+  machine.write(commands);
   ASSERT_EQ(machine.board().inject("line", "ok"), "");
   for (int i = 0; i < 3; ++i) {
     machine.write(commands);
@@ -149,6 +151,25 @@ TEST(BoardAt100Hz, ThatBrakedByItselfIsAFaultWithThisCause) {
   }
   EXPECT_EQ(frame.driver_state, DriverState::kFault);
   EXPECT_NE(machine.warning().find("braked by itself"), std::string::npos) << machine.warning();
+}
+
+/// At 30 Hz a board has restarted before 12 reports are missing.
+TEST(BoardAt30Hz, ThatRestartedIsNotNamedByTheBrakeOfItsStart) {
+  BoardMachine machine(30);
+  machine.start();
+  SensorFrame frame;
+  const auto cycles = [&](int count) {
+    for (int i = 0; i < count; ++i) {
+      machine.read(frame);
+      machine.write(std::vector<JointCommand>(2, {.mode = JointMode::kEffort, .effort = 0}));
+    }
+  };
+  cycles(60);
+  ASSERT_EQ(frame.driver_state, DriverState::kRunning) << machine.warning();
+  ASSERT_EQ(machine.board().inject("board", "brown_out"), "");
+  cycles(20);
+  EXPECT_EQ(frame.driver_state, DriverState::kFault);
+  EXPECT_NE(machine.warning().find("restarted: its supply was too low"), std::string::npos) << machine.warning();
 }
 
 TEST_F(BoardDriverTest, EveryLossIsAFaultWithItsCauseAndStandsUntilTheReset) {
