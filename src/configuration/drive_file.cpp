@@ -311,15 +311,6 @@ class DriveFileReader {
 
 }  // namespace
 
-void read_driver_file(const std::string& path, const std::string& block, Keys keys) {
-  ProblemList problems;
-  const Schema schema{.blocks = {{block, std::move(keys)}},
-                      .check = [](const Schema&, GivenValues&) {},
-                      .other_package_remedy = [](std::string_view) { return std::string(); }};
-  read_blocks(read_tree(path, {}, problems, &peer_problem), schema, schema.blocks, path, problems);
-  problems.throw_if_any("drive file refused (" + path + ")");
-}
-
 CanParameters read_drive_file(const Parameters& parameters, std::span<const std::string> joints) {
   return read_drive_file(parameters.drives, joints, parameters.loop.rate, takes_speeds(parameters));
 }

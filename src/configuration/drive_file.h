@@ -15,7 +15,6 @@
 #include "drivers/can/can_parameters.h"
 #include "drivers/serial/board_parameters.h"
 #include "drivers/serial/roboclaw_parameters.h"
-#include "parameters/block.h"
 
 namespace robot_control {
 
@@ -34,17 +33,5 @@ BoardParameters read_board_file(const std::string& path, std::span<const std::st
 CanParameters read_drive_file(const Parameters& parameters, std::span<const std::string> joints);
 BoardParameters read_board_file(const Parameters& parameters, std::span<const std::string> joints);
 RoboclawParameters read_roboclaw_file(const Parameters& parameters, std::span<const std::string> joints);
-
-/// Reads a driver's file of one block with these keys into the members of the keys. Throws ParameterError with all
-/// problems of the file.
-void read_driver_file(const std::string& path, const std::string& block, Keys keys);
-
-/// Returns the members of such a file, for instance ExampleParameters.
-template <class Members>
-Members read_driver_file(const std::string& path, const std::string& block) {
-  Members members;
-  read_driver_file(path, block, keys(members));
-  return members;
-}
 
 }  // namespace robot_control

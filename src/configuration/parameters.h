@@ -31,7 +31,6 @@ namespace robot_control {
 enum class DriverChoice {
   kMujoco,    ///< the simulated machine
   kCan,       ///< motor drives on CAN, as the drive file says
-  kExample,   ///< drivers/example: a motor board
   kBoard,     ///< a motor board on a serial line, with the code of firmware/
   kRoboclaw,  ///< a RoboClaw on a serial line
 };
@@ -39,7 +38,6 @@ enum class DriverChoice {
 inline std::vector<Word> words_of(DriverChoice) {
   return {{"mujoco", DriverChoice::kMujoco},
           {"can", DriverChoice::kCan},
-          {"example", DriverChoice::kExample},
           {"board", DriverChoice::kBoard},
           {"roboclaw", DriverChoice::kRoboclaw}};
 }

@@ -1,6 +1,5 @@
 #include "drivers/driver_contract.h"
 
-#include "drivers/example_machine.h"
 #include "drivers/mujoco/mujoco_plant.h"
 #include "support/diffbot_urdf.h"
 #include "support/free_wheels.h"
@@ -25,13 +24,6 @@ const MachineUnderTest kSimulatedMachine{.name = "MujocoPlant",
                                          .damping = 2,
                                          .stiffness = 20};
 
-const MachineUnderTest kExample{.name = "ExampleDriver",
-                                .make = [] { return std::make_unique<ExampleMachine>(); },
-                                .effort_limit = kEffortLimit,
-                                .effort = 0.1,
-                                .damping = 0.5,
-                                .stiffness = 5};
-
 std::unique_ptr<Driver> free_wheels() {
   const Brake brake{.effort = 3, .hold_effort = 3, .damping = 3, .stiffness = 20, .hold_speed = 0.3};
   return std::make_unique<FreeWheels>(read_drive_train(diffbot_urdf(), {}), std::vector<Brake>(2, brake), 0.001);
@@ -44,8 +36,7 @@ const MachineUnderTest kFreeWheels{.name = "FreeWheels",
                                    .damping = 2,
                                    .stiffness = 20};
 
-INSTANTIATE_TEST_SUITE_P(Machines, DriverContract, testing::Values(kSimulatedMachine, kExample, kFreeWheels),
-                         machine_name);
+INSTANTIATE_TEST_SUITE_P(Machines, DriverContract, testing::Values(kSimulatedMachine, kFreeWheels), machine_name);
 
 }  // namespace
 }  // namespace robot_control

@@ -4,7 +4,7 @@
 
 #include <limits>
 
-#include "drivers/example_machine.h"
+#include "drivers/board_machine.h"
 
 namespace robot_control {
 namespace {
@@ -25,7 +25,7 @@ class ExternalImuTest : public testing::Test {
 
   std::int64_t now_ns_ = 1'000'000'000;
   std::shared_ptr<ImuInbox> inbox_ = std::make_shared<ImuInbox>();
-  ExternalImu machine_{std::make_unique<ExampleMachine>(), inbox_, [this] { return now_ns_; }};
+  ExternalImu machine_{std::make_unique<BoardMachine>(), inbox_, [this] { return now_ns_; }};
 };
 
 TEST_F(ExternalImuTest, TheMachineIsStartingUntilTheFirstSample) {

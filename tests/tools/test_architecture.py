@@ -53,7 +53,6 @@ MAY_INCLUDE = {
     # This holds simulated faults: of the machine in drivers/mujoco, of nodes in simulation.
     "simulation/faults": {"signals", "rt", "bus"},
     "drivers/can": {"signals", "bus", "drivers", "files", "parameters"},
-    "drivers/example": {"signals", "drivers", "parameters"},
     "drivers/serial": {"signals", "bus", "drivers", "parameters", "rt"},
     # Motor drives on a CAN bus, as devices in virtual time.
     "simulation/devices": {
@@ -63,7 +62,6 @@ MAY_INCLUDE = {
         "parameters",
         "drivers",
         "drivers/can",
-        "drivers/example",
         "drivers/serial",
     },
     # The simulated robot as one machine: the plant, and before its motors the drives, where there are some.
@@ -73,7 +71,6 @@ MAY_INCLUDE = {
         "configuration",
         "drivers",
         "drivers/can",
-        "drivers/example",
         "drivers/mujoco",
         "drivers/serial",
         "gate",
@@ -85,7 +82,6 @@ MAY_INCLUDE = {
         "configuration",
         "drivers",
         "drivers/can",
-        "drivers/example",
         "drivers/serial",
         "gate",
         "machine",

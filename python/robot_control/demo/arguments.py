@@ -23,7 +23,7 @@ def parse(arguments: Sequence[str] | None = None) -> argparse.Namespace:
     )
     parser.add_argument(
         "--drives",
-        choices=("odrive", "cia402", "vesc", "example", "board", "roboclaw"),
+        choices=("odrive", "cia402", "vesc", "board", "roboclaw"),
         help="the motors stand behind such simulated drives",
     )
     parser.add_argument(
@@ -36,7 +36,7 @@ def parse(arguments: Sequence[str] | None = None) -> argparse.Namespace:
         parser.error(f"--drives move wheels alone, and {LEGGED_ROBOT} stands on legs: leave one of both out")
     if given.wheel_command and given.robot == LEGGED_ROBOT:
         parser.error(f"--wheel-command is of wheels, and {LEGGED_ROBOT} stands on legs: leave one of both out")
-    only = {"example": "torque", "roboclaw": "velocity"}.get(given.drives)
+    only = "velocity" if given.drives == "roboclaw" else None
     given.wheel_command = given.wheel_command or only or "torque"
     if only not in (None, given.wheel_command):
         parser.error(f"the board of --drives {given.drives} takes {only} alone: leave --wheel-command out")

@@ -165,7 +165,7 @@ def _drive(seconds: float, out: Path, robot: str, drives: Path | None, parameter
                     if drives is None
                     else [
                         f"drives:={drives}",
-                        f"driver:={drives.stem if drives.stem in ('example', 'board', 'roboclaw') else 'can'}",
+                        f"driver:={drives.stem if drives.stem in ('board', 'roboclaw') else 'can'}",
                     ]
                 ),
             ],

@@ -7,7 +7,6 @@
 #include "configuration/drive_file.h"
 #include "drivers/can/can_driver.h"
 #include "drivers/drive_motors.h"
-#include "drivers/example/example_driver.h"
 #include "drivers/serial/board_driver.h"
 #include "drivers/serial/roboclaw_driver.h"
 #include "drivers/serial/serial_port.h"
@@ -43,15 +42,6 @@ std::unique_ptr<Driver> make_can(const Parameters& parameters, const MachineMode
   const CanParameters can = read_drive_file(parameters, motors.joints);
   return std::make_unique<CanDriver>(can, motors.brakes, motors.joint_count, parameters.loop.period(),
                                      CanSocket::open(can.bus.address), std::move(clock));
-}
-
-std::unique_ptr<Driver> make_example(const Parameters& parameters, const MachineModel& machine,
-                                     const std::vector<Brake>& brakes, DriverClock /*clock*/) {
-  refuse_held_joints(machine, "example");
-  const DriveMotors motors = drive_motors(machine, brakes);
-  const auto board = read_driver_file<ExampleParameters>(parameters.drives, "board");
-  return std::make_unique<ExampleDriver>(board, motors.brakes, motors.effort_limits, motors.joint_count,
-                                         parameters.loop.period(), connect_to_board(board.address));
 }
 
 /// `read` returns the drive file, and `make` the driver of such a board from file, motors, line and clock.
@@ -94,9 +84,8 @@ struct DriverRow {
   std::unique_ptr<Driver> (*make)(const Parameters&, const MachineModel&, const std::vector<Brake>&, DriverClock);
 };
 
-constexpr std::array kDrivers{
-    DriverRow{DriverChoice::kCan, &make_can}, DriverRow{DriverChoice::kExample, &make_example},
-    DriverRow{DriverChoice::kBoard, &make_board}, DriverRow{DriverChoice::kRoboclaw, &make_roboclaw}};
+constexpr std::array kDrivers{DriverRow{DriverChoice::kCan, &make_can}, DriverRow{DriverChoice::kBoard, &make_board},
+                              DriverRow{DriverChoice::kRoboclaw, &make_roboclaw}};
 
 }  // namespace
 

@@ -11,12 +11,10 @@
 #include "configuration/drive_file.h"
 #include "drivers/can/can_driver.h"
 #include "drivers/drive_motors.h"
-#include "drivers/example/example_driver.h"
 #include "drivers/mujoco/mujoco_plant.h"
 #include "drivers/serial/board_driver.h"
 #include "drivers/serial/roboclaw_driver.h"
 #include "simulation/devices/can_front.h"
-#include "simulation/devices/example_board.h"
 #include "simulation/devices/serial/board_front.h"
 #include "simulation/devices/serial/pseudo_terminal.h"
 #include "simulation/devices/serial/roboclaw_front.h"
@@ -37,17 +35,6 @@ std::array<int, 2> line_ends() {
   if (socketpair(AF_UNIX, SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0, ends.data()) != 0)
     throw DriverError(std::string("no socket for the line to the simulated drives: ") + std::strerror(errno));
   return ends;
-}
-
-std::unique_ptr<Driver> make_plant_behind_board(const Parameters& parameters, const MachineModel& machine,
-                                                const DriveMotors& motors) {
-  const double period = parameters.loop.period();
-  const auto board_parameters = read_driver_file<ExampleParameters>(parameters.drives, "board");
-  const auto [driver_end, board_end] = line_ends();
-  auto board = std::make_unique<ExampleBoard>(motors.brakes, motors.effort_limits, period, board_end);
-  auto driver = std::make_unique<ExampleDriver>(board_parameters, motors.brakes, motors.effort_limits,
-                                                motors.joint_count, period, driver_end);
-  return std::make_unique<DrivenPlant>(machine, parameters.plant, period, std::move(board), std::move(driver));
 }
 
 std::unique_ptr<Driver> make_plant_behind_serial(const Parameters& parameters, const MachineModel& machine,
@@ -79,7 +66,6 @@ std::unique_ptr<Driver> make_simulated_machine(const Parameters& parameters, con
   if (parameters.driver == DriverChoice::kMujoco && parameters.drives.empty())
     return std::make_unique<MujocoPlant>(machine, parameters.plant, period);
   const DriveMotors motors = drive_motors(machine, brakes);
-  if (parameters.driver == DriverChoice::kExample) return make_plant_behind_board(parameters, machine, motors);
   if (parameters.driver == DriverChoice::kBoard) return make_plant_behind_serial(parameters, machine, motors);
   if (parameters.driver == DriverChoice::kRoboclaw) return make_plant_behind_roboclaw(parameters, machine, motors);
   const CanParameters can = read_drive_file(parameters, motors.joints);
@@ -95,12 +81,6 @@ std::unique_ptr<DeviceSimulator> make_device_simulator(const Parameters& paramet
                                                        const std::vector<Brake>& brakes) {
   const double period = parameters.loop.period();
   const DriveMotors motors = drive_motors(machine, brakes);
-  if (parameters.driver == DriverChoice::kExample) {
-    const auto board_parameters = read_driver_file<ExampleParameters>(parameters.drives, "board");
-    auto board = std::make_unique<ExampleBoard>(motors.brakes, motors.effort_limits, period,
-                                                bind_board(board_parameters.address));
-    return std::make_unique<DeviceSimulator>(machine, parameters.plant, period, std::move(board));
-  }
   if (parameters.driver == DriverChoice::kBoard) {
     const BoardParameters board = read_board_file(parameters, motors.joints);
     auto front = std::make_unique<BoardFront>(board, motors.brakes, period,
