@@ -5,6 +5,7 @@
 #include <deque>
 #include <functional>
 #include <limits>
+#include <numbers>
 #include <random>
 
 #include "machine/legs/legs_corpus.h"
@@ -97,20 +98,29 @@ TEST_F(LeggedConditionsTest, AJointThatLeavesItsWindowMovesUntilTheRobotStandsAg
   EXPECT_FALSE(conditions_.moving());
 }
 
-/// Go2 lies with 0.1 rad on level ground, and with 0.45 rad on a slope of 20°.
-TEST_F(LeggedConditionsTest, ALyingRobotIsTiltedTooFarFromTwiceTheLimitOn) {
-  const auto tilted = [&](LegPhase phase, double tilt) {
-    conditions_.enter_run();
-    command_.legged.phase = phase;
-    const double seen = run(0.2, [&](double) {
-      sensors_.imu.linear_acceleration[1] = 9.81 * std::sin(tilt);
-      sensors_.imu.linear_acceleration[2] = 9.81 * std::cos(tilt);
-    });
-    return seen < 0.2;
-  };
-  EXPECT_TRUE(tilted(LegPhase::kStanding, 0.45));
-  EXPECT_FALSE(tilted(LegPhase::kLying, 0.45));
-  EXPECT_TRUE(tilted(LegPhase::kLying, 0.9));
+/// Go2 lies with 0.1 rad on level ground, and with 0.45 rad on a slope of 20°. A robot on its side has 1.57 rad on
+/// level ground. While it gathers its legs or moves them one by one, it lies as well.
+TEST_F(LeggedConditionsTest, ALyingRobotIsTiltedTooFarHalfWayToItsSide) {
+  for (const double limit : {0.42, 0.8, 1.2}) {
+    SafetyParameters safety = limits(robot_);
+    safety.tilt.limit = limit;
+    conditions_ = LeggedConditions(safety, robot_, kPeriod);
+    const auto tilted = [&](LegPhase phase, double tilt) {
+      conditions_.enter_run();
+      command_.legged.phase = phase;
+      const double seen = run(0.2, [&](double) {
+        sensors_.imu.linear_acceleration[1] = 9.81 * std::sin(tilt);
+        sensors_.imu.linear_acceleration[2] = 9.81 * std::cos(tilt);
+      });
+      return seen < 0.2;
+    };
+    EXPECT_EQ(tilted(LegPhase::kStanding, 0.45), limit < 0.45);
+    for (const LegPhase phase : {LegPhase::kLying, LegPhase::kGathering, LegPhase::kJoints}) {
+      EXPECT_FALSE(tilted(phase, 0.45));
+      EXPECT_TRUE(tilted(phase, std::max(limit, std::numbers::pi / 4) + 0.02)) << limit;
+      EXPECT_TRUE(tilted(phase, std::numbers::pi / 2)) << limit;
+    }
+  }
 }
 
 TEST_F(LeggedConditionsTest, AJointWithoutAnAngleMoves) {
@@ -181,8 +191,9 @@ TEST_F(LeggedConditionsTest, TheBlowOfItsOwnFoldIsNoImpact) {
       sensors_.imu.linear_acceleration[1] = now ? 100 : 0;
     });
   };
-  EXPECT_EQ(shaken(0.01, 0.2), 1) << causes(Reaction::kBrake);
-  EXPECT_NEAR(shaken(0.01, 0.6), 0.61, 0.005);
+  EXPECT_NEAR(shaken(0.0005, 0.2), 0.21, 0.005) << "a body that brakes for a cycle does not fold";
+  EXPECT_EQ(shaken(0.011, 0.2), 1) << causes(Reaction::kBrake);
+  EXPECT_NEAR(shaken(0.011, 0.6), 0.61, 0.005);
   EXPECT_EQ(causes(Reaction::kBrake), "impact");
   EXPECT_NEAR(shaken(-1, 0.2), 0.21, 0.005);
 }

@@ -47,7 +47,8 @@ void BodyConditions::enter_run() noexcept {
   rate_change_.reset();
   force_ = {};
   across_ = {};
-  shock_ = unbraked_ = 0;
+  shock_ = folded_ = 0;
+  braked_ = 0;
   carried_ = 1;
 }
 
@@ -93,7 +94,7 @@ void BodyConditions::shake(bool felt) noexcept {
 }
 
 void BodyConditions::step(const SensorFrame& sensors, std::uint64_t elapsed, double forward_speed, bool moving,
-                          ActiveCauses& out, double tilt_factor) noexcept {
+                          ActiveCauses& out, double least_tilt) noexcept {
   Eigen::Vector3d rate = Eigen::Vector3d::Zero();
   const bool turned = sample(sensors, kValidGyro, sensors.imu.angular_velocity, rate);
   const bool felt = sample(sensors, kValidAccelerometer, sensors.imu.linear_acceleration, *force_);
@@ -109,18 +110,19 @@ void BodyConditions::step(const SensorFrame& sensors, std::uint64_t elapsed, dou
   along_z_ = felt ? (*force_).z() : kNone;
   shake(felt);
   weigh(sensors);
-  unbraked_ = sensors.gate.verdict == GateVerdict::kBrake ? 0 : unbraked_ + static_cast<double>(elapsed) * period_;
+  braked_ = sensors.gate.verdict == GateVerdict::kBrake ? braked_ + elapsed : 0;
+  folded_ = braked_ >= window_ ? 0 : folded_ + static_cast<double>(elapsed) * period_;
 
   const auto update = [&](ConditionWatch& watch, bool beyond, double value) {
     out.update(watch, {.beyond = beyond, .value = value, .limit = watch.limit()}, elapsed);
   };
-  const double tilt_limit = tilt_factor * tilt_.limit();
+  const double tilt_limit = std::max(tilt_.limit(), least_tilt);
   tilt_.step({.beyond = attitude_.known() && tilt > tilt_limit, .value = tilt, .limit = tilt_limit}, elapsed);
   out.add(tilt_);
   update(tip_over_, attitude_.known() && tilt > tip_tilt_ && tilt_rate > tip_over_.limit(), tilt_rate);
   update(free_fall_, felt && force() < free_fall_.limit(), force());
   update(lift_, carried_ < lift_.limit(), carried_);
-  update(impact_, unbraked_ >= landing_ && shock_ > impact_.limit(), shock_);
+  update(impact_, folded_ >= landing_ && shock_ > impact_.limit(), shock_);
   update(jump_, turned && rate_change_.value() > jump_.limit(), rate_change_.value());
   repeat(gyro_, turned, sensors.imu.angular_velocity, elapsed, moving, out);
   repeat(accelerometer_, felt, sensors.imu.linear_acceleration, elapsed, moving, out);

@@ -6,8 +6,9 @@
 ///   free fall  |a| < limit
 ///   impact     component of a perpendicular to u, mean over kImpactWindow, > limit; that is a speed change of
 ///              limit · kImpactWindow. The mean, because stiff bodies stop within milliseconds; the perpendicular
-///              component, because bumps and landings accelerate upwards. It is not judged while the gate brakes a
-///              machine that folds its legs, and for `landing` after it: the blow is its own
+///              component, because bumps and landings accelerate upwards. It is not judged while a machine folds its
+///              legs, and for `landing` after it: the blow is its own. It folds when the gate has braked for
+///              kImpactWindow, in which a body that falls gains 0.1 m/s
 ///   lift       Σ F·u < limit · m g, if the robot has contact sensors; m = MachineModel::mass
 ///   IMU jump   the change of the gyro's rates from sample to sample (rate_change.h) > limit. The accelerometer is not
 ///              judged: a robot that falls shakes it as much as random samples would (docs/evidence/derivations.md)
@@ -56,17 +57,15 @@ class BodyConditions {
   void enter_run() noexcept;
 
   /// Once per cycle; `elapsed` cycles since the last one, ≥ 1. `forward_speed` in m/s is 0 where it is not known. Adds
-  /// the active causes to `out`. The limit of tilt is multiplied by `tilt_factor`.
+  /// the active causes to `out`. The limit of tilt is at least `least_tilt` rad.
   void step(const SensorFrame& sensors, std::uint64_t elapsed, double forward_speed, bool moving, ActiveCauses& out,
-            double tilt_factor = 1) noexcept;
+            double least_tilt = 0) noexcept;
 
   // Intermediates of the last step.
   const Attitude& attitude() const noexcept { return attitude_; }
-  double shock() const noexcept { return shock_; }  ///< m/s², the mean that is compared with the limit of impact
-  double carried() const noexcept {
-    return carried_;
-  }  ///< part of the weight on the contacts; 1 without contact sensors
-  double along_z() const noexcept { return along_z_; }        ///< m/s², a_z; NaN without a sample
+  double shock() const noexcept { return shock_; }      ///< m/s², the mean that is compared with the limit of impact
+  double carried() const noexcept { return carried_; }  ///< part of the weight on the contacts; 1 without sensors
+  double along_z() const noexcept { return along_z_; }  ///< m/s², a_z; NaN without a sample
   Eigen::Vector3d rate() const noexcept { return *rate_; }    ///< rad/s, base axes; NaN without a sample
   double force() const noexcept { return (*force_).norm(); }  ///< m/s², |a|, of the last good sample
 
@@ -89,11 +88,12 @@ class BodyConditions {
   void shake(bool felt) noexcept;
 
   double period_;
-  double weight_;        ///< N
-  double persistence_;   ///< s, of imu_stuck
-  double landing_;       ///< s
-  double unbraked_ = 0;  ///< s since the gate braked
-  double tip_tilt_;      ///< rad
+  double weight_;             ///< N
+  double persistence_;        ///< s, of imu_stuck
+  double landing_;            ///< s
+  double folded_ = 0;         ///< s since it folded
+  std::uint64_t braked_ = 0;  ///< cycles for which the gate has braked
+  double tip_tilt_;           ///< rad
   std::size_t contacts_;
   Stored<Eigen::Matrix3d> to_base_;  ///< from IMU axes
   Stored<Eigen::Vector3d> imu_;      ///< m, from the point, base axes

@@ -1,11 +1,12 @@
 #pragma once
 /// The encoder of a leg's joint reports angles that its joint cannot have. The worst joint is named.
 ///
-///   jump   |q − q₀| − kFaster V t > limit, each joint with its own persistence. q₀ is the last angle that was possible, t s ago, V the velocity limit
+///   jump   |q − q₀| − kFaster V t > limit, each joint with its own persistence. q₀ is the last angle that was
+///          possible, t s ago, V the velocity limit
 ///   stuck  |c − c₀| > limit, while the robot is on its feet. c is the angle that q can show: the command demanded it
-///          kAnswer cycles ago. c₀ was this angle when q changed for the last time. A joint that is blocked looks the same.
-///          The command of a robot that walks demands angles of feet in the air alone. Its limit is kOfSwing larger. q
-///          has to stay for kStays, and for two cycles: a noisy gyro moves the command at once, and no joint
+///          kAnswer cycles ago. c₀ was this angle when q changed for the last time. A joint that is blocked looks the
+///          same. The command of a robot that walks demands angles of feet in the air alone. Its limit is kOfSwing
+///          larger. q has to stay for kStays, and for two cycles: a noisy gyro moves the command at once, and no joint
 ///
 /// While c stays, a stuck encoder changes nothing: the joint is where it reports to be. An angle that is missing or not
 /// finite is not evaluated.

@@ -4,8 +4,8 @@
 /// gyro (wrong_state.h), and tell whether the joints stand. Joints stand while every one stays within kWindow of its
 /// angle for kStandingTime.
 ///
-/// A robot that lies on its body falls from no slope on which it rests. Twice the limit of tilt counts then, and a
-/// robot on its side or back is still named.
+/// A robot that lies on its body falls from no slope on which it rests. Its limit of tilt is then at least kLyingTilt,
+/// half way to its side. A robot on its side or back is still named.
 ///
 ///   moving    a joint left its window, or its angle is not known; until the robot stands again
 ///   standing  all joints are inside for kStandingTime
@@ -34,7 +34,7 @@ class LeggedConditions {
   static constexpr double kStandingTime = 0.1;  ///< s
   static constexpr double kForceTime = 0.3;     ///< s, of attitude.h: some steps of a trot
   static constexpr double kLanding = 0.5;       ///< s, of body_conditions.h: a fold in a walk, and its blow
-  static constexpr double kOfLying = 2;         ///< of the limit of tilt, while the robot lies
+  static constexpr double kLyingTilt = 0.785;   ///< rad, π/4
 
   /// `period` s.
   LeggedConditions(const SafetyParameters& parameters, const LegModel& robot, double period)
@@ -71,8 +71,8 @@ class LeggedConditions {
     }
     if (standing()) moving_ = false;
     const LegPhase phase = input.command != nullptr ? input.command->legged.phase : LegPhase::kLying;
-    const bool lies = input.command != nullptr && phase == LegPhase::kLying;
-    body_conditions_.step(sensors, elapsed, 0, moving_, out, lies ? kOfLying : 1);
+    const bool lies = input.command != nullptr && (phase < LegPhase::kRising || phase == LegPhase::kJoints);
+    body_conditions_.step(sensors, elapsed, 0, moving_, out, lies ? kLyingTilt : 0);
     downward_force_.step(body_conditions_.along_z(), phase, elapsed, out);
     wrong_state_.step(input.state, body_conditions_.rate(), elapsed, out);
     joint_conditions_.step(input, elapsed, out);
