@@ -53,12 +53,13 @@ void CommandWatch::set_timeout(double timeout) noexcept {
 void CommandWatch::accept(const VelocityCommand& request, std::uint64_t parts, std::uint64_t cycle) noexcept {
   request_cycle_ = cycle;
   life_ = cycles_left(timeout_, request.age_ns, period_);
-  const bool good = request.contested != kNotFiniteMessage && finite(request.content);
+  const bool refused = request.contested == kNotFiniteMessage || !finite(request.content);
+  const bool good = !refused && request.contested != kNotFiniteBefore;
   reason_ = good ? 0u : std::uint64_t{kReasonRefused};
   requested_ = good ? request.content : Request{};
   ignored_ = good ? parts & ~executable_ : 0;
   if (ignored_ != 0) ++partial_;
-  if (!good) ++not_finite_;
+  if (refused) ++not_finite_;
 }
 
 void CommandWatch::note_messages(const VelocityCommand& request, std::uint64_t parts, std::uint64_t cycle) noexcept {

@@ -21,6 +21,8 @@ struct Posture {
   double x = 0;       ///< m, to the front
   double y = 0;       ///< m, to the left
   double yaw = 0;     ///< rad
+
+  bool operator==(const Posture&) const = default;
 };
 
 /// A request names the positions of at most this many joints.
@@ -86,8 +88,9 @@ inline std::size_t logged_joints(const Request& request) noexcept {
 }
 
 /// Values of VelocityCommand::contested. A command with kNoMessage has no sender, and is neither a request nor the end
-/// of a silence. With kNotFiniteMessage, a message of its sender was refused because it was NaN or infinite.
-inline constexpr std::uint64_t kNoMessage = 2, kNotFiniteMessage = 3;
+/// of a silence. With kNotFiniteMessage, a message of its sender was refused because it was NaN or infinite. The value
+/// is kNotFiniteBefore when another message arrives meanwhile.
+inline constexpr std::uint64_t kNoMessage = 2, kNotFiniteMessage = 3, kNotFiniteBefore = 4;
 
 /// Returns how many seconds without a message count as a zero request; `timeout` is cmd_vel_timeout in s, 0 if messages
 /// never time out.
@@ -107,7 +110,7 @@ struct VelocityCommand {
   std::uint64_t stale = 0;         ///< grows with every message refused for its stamp: too old, or in the future
   std::uint64_t crowded = 0;       ///< grows with every message refused because another node sends
   std::uint64_t revoked = 0;       ///< grows with every message refused because its sender is revoked
-  std::uint64_t not_finite = 0;    ///< grows with every message that was NaN or infinite and ended no command
+  std::uint64_t not_finite = 0;    ///< grows with every message that was NaN or infinite and ended at most a pose
   std::uint64_t many_senders = 0;  ///< 1: more than one node sends now, and one_sender forbids it
 
   /// 1 if, when the command arrived, another sender's newest message within silence_needed was refused or not of zero

@@ -600,6 +600,21 @@ TEST_F(PoseInputTest, APoseEndsWithItsTimeoutWhileTheWalkGoesOn) {
   EXPECT_EQ(roll(), 0);
 }
 
+TEST_F(PoseInputTest, ARequestIsAsOldAsItsOldestPart) {
+  pose("/teleop", 0.1);
+  pass(kSecond);
+  twist("/teleop", 0.5);
+  EXPECT_EQ(roll(), 0.1);
+  EXPECT_EQ(value().age_ns, kSecond) << "of the pose";
+  pass(kSecond / 8);
+  pose("/teleop", 0.2);
+  EXPECT_EQ(value().age_ns, kSecond / 8) << "of the twist: the first pose was replaced";
+  pass(kSecond / 8);
+  pose("/teleop", 0);
+  twist("/teleop", 0.5);
+  EXPECT_EQ(value().age_ns, 0) << "a zero moves nothing";
+}
+
 TEST_F(PoseInputTest, APoseThatNeverTimesOutOutlivesNeitherItsSenderNorAStop) {
   input_.set_timeout(0);
   pose("/teleop", 0.1);
@@ -636,16 +651,27 @@ TEST_F(PoseInputTest, APoseOfAnotherSenderIsRefusedDuringAWalk) {
   EXPECT_EQ(roll(), 0.1);
 }
 
-TEST_F(PoseInputTest, APoseOfNaNEndsNoWalkAndNoLaterTwist) {
-  for (const char* sender : {"/teleop", "/posing"}) {
-    twist("/teleop", 0.5);
-    const std::uint64_t refused = value().not_finite;
-    pose(sender, kNaN);
-    EXPECT_EQ(speed(), 0.5);
-    EXPECT_EQ(value().not_finite, refused + 1);
-    twist("/teleop", 0.4);
-    EXPECT_EQ(speed(), 0.4);
-    EXPECT_EQ(roll(), 0);
+TEST_F(PoseInputTest, APoseOfNaNEndsThePoseAndNoWalk) {
+  for (const double timeout : {1.25, 0.0}) {
+    input_.set_timeout(timeout);
+    for (const char* sender : {"/teleop", "/posing"}) {
+      pose("/teleop", 0.1);
+      twist("/teleop", 0.5);
+      pass(kSecond / 10);
+      const std::uint64_t refused = value().not_finite, count = value().count;
+      pose(sender, kNaN);
+      const bool own = sender == std::string("/teleop");
+      EXPECT_EQ(speed(), 0.5);
+      EXPECT_EQ(roll(), own ? 0 : 0.1);
+      EXPECT_EQ(value().count > count, own) << "the controller reads it";
+      EXPECT_EQ(value().age_ns, own ? kSecond / 10 : 0) << "of the twist";
+      EXPECT_EQ(value().not_finite, refused + 1);
+      twist("/teleop", 0.4);
+      EXPECT_EQ(speed(), 0.4);
+      EXPECT_EQ(roll(), own ? 0 : 0.1);
+      pass(2 * kSecond);
+      twist("/teleop", 0);
+    }
   }
 }
 

@@ -215,6 +215,27 @@ TEST_F(CommandMuxTest, NaNOfTheWinnerEndsItsCommandAndIsCounted) {
   EXPECT_EQ(watch.refused(), 1u);
 }
 
+TEST_F(CommandMuxTest, MessagesOfOthersAreNoRefusalsOfTheWinner) {
+  CommandWatch watch(1.25, 0.001, kPartLinearX | kPartAngularZ);
+  watch.enter_run();
+  watch.step(mux_.value(), 0);
+  receive(kKey, std::numeric_limits<double>::quiet_NaN());
+  for (std::uint64_t cycle = 1; cycle <= 100; ++cycle) {
+    EXPECT_EQ(watch.step(mux_.value(), cycle).twist.linear[0], 0);
+    EXPECT_EQ(watch.reasons(), std::uint64_t{kReasonRefused}) << "of the winner's last message";
+    EXPECT_FALSE(watch.zero_requested());
+    EXPECT_EQ(watch.silent_cycles(cycle), 0u);
+    pass(kSecond / 1000);
+    receive(kPath, 0.2);
+  }
+  EXPECT_EQ(watch.refused(), 1u);
+  receive(kKey, std::numeric_limits<double>::quiet_NaN());
+  watch.step(mux_.value(), 101);
+  EXPECT_EQ(watch.refused(), 2u);
+  receive(kKey, 0.3);
+  EXPECT_EQ(watch.step(mux_.value(), 102).twist.linear[0], 0.3);
+}
+
 TEST_F(CommandMuxTest, NaNOfAMaskedSourceHasNoEffect) {
   receive(kKey, 0.3);
   receive(kCmd, std::numeric_limits<double>::quiet_NaN());

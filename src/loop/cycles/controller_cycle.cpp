@@ -52,7 +52,7 @@ void ControllerCycle::receive(std::uint64_t cycle) noexcept {
     request_.content = {.twist = events.twist};
     request_.age_ns = 0;
     request_.count += events.twists;
-    if (request_.contested == kNotFiniteMessage) request_.contested = 0;
+    if (request_.contested >= kNotFiniteMessage) request_.contested = 0;
   }
 }
 

@@ -84,11 +84,11 @@ void CommandInput::accept(const ArrivedCommand& arrived, Request content, std::i
   const std::string& topic = arrived.sender.topic;
   const bool own = same_process(sender_, arrived.sender);
   const bool beside_twist =
-      arrived.part == StatedPart::kPose && !zero(value_.content.twist) && in_time(command_ns_ - value_.age_ns, time);
+      arrived.part == StatedPart::kPose && !zero(value_.content.twist) && in_time(twist_ns_, time);
   if (!finite(content)) {
-    if (own && beside_twist) pose_ns_.reset();
     if (own ? beside_twist : parts_of(value_.content) != 0) {
       ++value_.not_finite;
+      if (own) end_pose(time);
     } else {
       set_command({}, arrived.sender, kNotFiniteMessage, time);
     }
@@ -100,23 +100,36 @@ void CommandInput::accept(const ArrivedCommand& arrived, Request content, std::i
                     "; let the sender of the twists send the pose, too",
                 time.loop_ns);
   }
-  if (beside_twist) {
-    content.twist = value_.content.twist;
-    content.mode = value_.content.mode;
-    age_ns = time.loop_ns - command_ns_ + value_.age_ns;
-  }
-  if (own && arrived.part == StatedPart::kTwist && pose_ns_ && in_time(*pose_ns_, time)) {
+  const std::int64_t stated_ns = time.loop_ns - age_ns;
+  const bool keeps_pose = own && arrived.part == StatedPart::kTwist && pose_ns_ && in_time(*pose_ns_, time);
+  if (keeps_pose) {
     content.posture = value_.content.posture;
   } else {
     pose_ns_.reset();
   }
-  if (arrived.part == StatedPart::kPose) pose_ns_ = time.loop_ns;
+  if (arrived.part == StatedPart::kPose && content.posture != Posture{}) pose_ns_ = stated_ns;
+  if (beside_twist) {
+    content.twist = value_.content.twist;
+    content.mode = value_.content.mode;
+  } else {
+    twist_ns_ = stated_ns;
+  }
+  age_ns = time.loop_ns - std::min(twist_ns_, pose_ns_.value_or(twist_ns_));
   set_command(content, arrived.sender, parts_of(content) == 0 && motion_requested(time.loop_ns) ? 1 : 0, time, age_ns);
+}
+
+/// Ends the pose of the command in force; its twist stays.
+void CommandInput::end_pose(const ArrivalTime& time) {
+  pose_ns_.reset();
+  Request twist = value_.content;
+  twist.posture = {};
+  set_command(twist, sender_, 0, time, time.loop_ns - twist_ns_);
 }
 
 void CommandInput::receive_once(const Request& request, const ArrivalTime& time) {
   if (!requests_.granted()) return;
   pose_ns_.reset();
+  twist_ns_ = time.loop_ns;
   set_command(request, {}, 0, time);
 }
 

@@ -8,14 +8,14 @@
 ///   2. its sender: with `one_sender`, two or more senders within cmd_vel_timeout, but at least
 ///      within kSenderWindow, exclude each other: all their messages are refused, and the robot ramps to rest until one
 ///      sender is left. Without `one_sender` each message overrides the one before, and that is reported;
-///   3. its numbers: NaN and infinity are refused. What this message would have replaced ends if it is its sender's;
-///      the command of another sender stays in force;
+///   3. its numbers: NaN and infinity are refused. What this message would have replaced ends if it is its sender's, a
+///      pose beside a twist alone; the command of another sender stays in force;
 ///   4. its connection (motion_requests.h): motion is refused while the connection is revoked.
 ///
 /// The command in force has one sender, one time and one end. Twist and pose of one process are parts of it. A twist
-/// keeps the pose that the same process sent within the timeout. A pose keeps its twist, with the twist's time.
-/// While a twist is in force, a pose of another process is refused (VelocityCommand::crowded). Every other message
-/// replaces the whole.
+/// keeps the pose that the same process sent within the timeout, and a pose its twist. The age of the command is that
+/// of its oldest part which is not zero. While a twist is in force, a pose of another process is refused
+/// (VelocityCommand::crowded). Every other message replaces the whole.
 ///
 /// A zero velocity is contested (VelocityCommand::contested) if another connection has requested motion within
 /// cmd_vel_timeout (1 s if that is 0). It is executed, but does not count as evidence (safety/latch/motion_release.h).
@@ -111,6 +111,7 @@ class CommandInput final : public CommandIntake {
   void accept(const ArrivedCommand& arrived, Request content, std::int64_t age_ns, const ArrivalTime& time);
   void set_command(const Request& content, const Publisher& sender, std::uint64_t contested, const ArrivalTime& time,
                    std::int64_t age_ns = 0);
+  void end_pose(const ArrivalTime& time);
   bool in_time(std::int64_t since_ns, const ArrivalTime& time) const;
   void end_command(std::int64_t loop_ns);
   void warn(std::string text, std::int64_t loop_ns);
@@ -126,7 +127,8 @@ class CommandInput final : public CommandIntake {
   VelocityCommand value_;
   std::int64_t command_ns_ = 0;          ///< when the command in force arrived
   Publisher sender_;                     ///< of the command in force, without its connection; empty: it has none
-  std::optional<std::int64_t> pose_ns_;  ///< when the posture of the command in force arrived, if it is a pose
+  std::int64_t twist_ns_ = 0;            ///< when its twist was stamped, or arrived
+  std::optional<std::int64_t> pose_ns_;  ///< the same of its posture, if that is a pose other than zero
   std::uint64_t mode_ = 0;               ///< of later twists
   std::int64_t unread_ns_ = unread_ns(0);
   std::map<std::string, StampVerdict> reported_stamps_;  ///< last reported verdict of each sender with wrong stamps

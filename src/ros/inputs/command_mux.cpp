@@ -45,6 +45,7 @@ void CommandMux::receive(std::size_t source, const ArrivedCommand& arrived, cons
   select(time.loop_ns);
   message_ns_ = time.loop_ns;
   update_result(time.loop_ns, true);
+  if (accepted && winner_ == source && value_.contested == kNotFiniteBefore) value_.contested = kNotFiniteMessage;
 }
 
 void CommandMux::receive_lock(std::size_t lock, bool set, std::int64_t loop_ns) {
@@ -122,7 +123,7 @@ void CommandMux::update_result(std::int64_t loop_ns, bool message) {
   const bool rests = parts_of(value_.content) == 0;
   value_.contested = rests && requested ? 1 : 0;
   if (rests && !message && !pending) value_.contested = unread(loop_ns) ? 1 : kNoMessage;
-  if (winner_ && sources_[*winner_].input.value().contested == kNotFiniteMessage) value_.contested = kNotFiniteMessage;
+  if (winner_ && sources_[*winner_].input.value().contested == kNotFiniteMessage) value_.contested = kNotFiniteBefore;
   ++value_.count;
   add_refusals();
 }
