@@ -14,14 +14,13 @@ Parameters field_parameters(std::uint64_t seed) {
 
 class PostureLimits : public testing::TestWithParam<std::string> {};
 
-/// Without a bound for the pose in force, quadbot is stopped with seed 33, and anymal with seed 3. Known weakness: a
-/// joint of anymal reaches 1.035 of its speed limit in 5 of 28 walks, and with seed 33.
+/// Without a bound for the pose in force, quadbot is stopped with seed 33, and anymal with seed 3. Without one for its
+/// rates, a joint of anymal reaches 1.03 of its speed limit with the seeds 18 and 33.
 TEST_P(PostureLimits, APoseWithinItsRangeLetsNoWalkBeStoppedAndNoJointLeaveItsLimits) {
-  const double fastest = GetParam() == "anymal_c" ? 1.035 : 1;
-  for (const std::uint64_t seed : {3u, 33u}) {
+  for (const std::uint64_t seed : {3u, 18u, 33u}) {
     const LeaningWalk walk = leaning_walk(legged_robot(GetParam()), field_parameters(seed));
     EXPECT_FALSE(walk.stopped) << seed << walk.causes;
-    EXPECT_LE(walk.joint_speed, fastest) << seed;
+    EXPECT_LE(walk.joint_speed, 1) << seed;
     EXPECT_LE(walk.beyond_range, 0) << seed;
   }
 }

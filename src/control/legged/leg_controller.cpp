@@ -128,7 +128,7 @@ bool LegController::advance(const Request& request, const ControlInput& input, s
   const bool up = request.mode == kStanceStand || walks(request);
   switch (state_.phase) {
     case LegPhase::kLying:
-      if (up ? !stands_up_here(input, reasons) : request.mode != kStanceJoints) return false;
+      if (up ? state_.steep != 0 && !stands_up_here(input, reasons) : request.mode != kStanceJoints) return false;
       for (std::size_t i = 0; i < kLegsJoints; ++i)
         state_.from[i] = state_.angles[i] = input.sensors->joints[i].position;
       state_.joints.begin(state_.from);
@@ -137,11 +137,11 @@ bool LegController::advance(const Request& request, const ControlInput& input, s
     case LegPhase::kJoints:
       move_joints(request, reasons);
       state_.from = state_.angles;
-      if (up && stands_up_here(input, reasons)) enter(LegPhase::kGathering, 0);
+      if (up) enter(LegPhase::kGathering, 0);
       if (down) enter(LegPhase::kLying, 0);
       return false;
     case LegPhase::kGathering:
-      gather();
+      gather(input, reasons);
       if (down) state_.phase = LegPhase::kLying;
       return false;
     case LegPhase::kRising:
@@ -190,7 +190,7 @@ void LegController::enter(LegPhase phase, double elapsed) noexcept {
   state_.elapsed = std::max(0.0, elapsed);
   state_.sinks = 0;
   state_.idle = 0;
-  state_.lies_next = 0;
+  state_.lies_next = state_.steep = 0;
 }
 
 void LegController::move_joints(const Request& request, std::uint64_t& reasons) noexcept {
@@ -209,7 +209,7 @@ void LegController::move_joints(const Request& request, std::uint64_t& reasons) 
   for (std::size_t i = 0; i < kLegsJoints; ++i) state_.angles[i] = state_.joints.axes[i].value;
 }
 
-/// Measures the slope of the ground. Returns false where it is too steep to stand up.
+/// Measures the slope of the ground below the lying posture. Returns false where it is too steep to stand up.
 bool LegController::stands_up_here(const ControlInput& input, std::uint64_t& reasons) noexcept {
   state_.up = {0, 0, 1};
   if (input.state == nullptr || (input.state->base.flags & kStateValid) == 0) return true;
@@ -220,14 +220,16 @@ bool LegController::stands_up_here(const ControlInput& input, std::uint64_t& rea
   return !steep;
 }
 
-void LegController::gather() noexcept {
+void LegController::gather(const ControlInput& input, std::uint64_t& reasons) noexcept {
   double time = kMinTime;
   for (std::size_t i = 0; i < kLegsJoints; ++i)  // the smooth way is 1.5 times as fast in its middle
     time = std::max(time, 1.5 * std::abs(lying(i) - state_.from[i]) / joint_motion_[i].speed);
   const double part = smooth(state_.elapsed / time);
   for (std::size_t i = 0; i < kLegsJoints; ++i) state_.angles[i] = state_.from[i] + part * (lying(i) - state_.from[i]);
   if (state_.elapsed < time) return;
-  enter(LegPhase::kRising, 0);
+  const bool stands_up = stands_up_here(input, reasons);
+  enter(stands_up ? LegPhase::kRising : LegPhase::kLying, 0);
+  state_.steep = stands_up ? 0 : 1;
   state_.body = {};
   state_.held = {};
   state_.follows = 0;

@@ -6,7 +6,7 @@
 ///   lying ─► joints ─► gathering or lying
 ///
 ///   lying      every joint brakes
-///   gathering  the joints move from where they are to the lying posture
+///   gathering  the joints move from where they are to the lying posture. There the slope of the ground is measured
 ///   rising     the feet go down to the ground where they lie, the body rises within rise_time to the nominal height,
 ///              with its centre of gravity amid the feet
 ///   standing   the body follows the request, and one foot may be in the air
@@ -33,11 +33,11 @@
 /// and in the requested one. The body waits before a pose in which they do not carry the twist of now.
 ///
 /// The stance frame has its origin where that of the base was when it began to rise. Its x axis shows ahead, its z axis
-/// up from the ground, whose slope the attitude gave while the robot lay (ground_slope.h). The centre of gravity stands
-/// amid the feet along the vertical. On a slope that is too steep the robot stays lying (kReasonTooSteep). Let aᵢ be
-/// the feet, p the body's position and R its rotation in it. The feet in the base's axes are Rᵀ(aᵢ − p), and the joint
-/// angles are those of LegKinematics::inverse. A ball as a foot rolls: aᵢ moves with ωᵢ × (0, 0, r), ωᵢ the rate of the
-/// shank.
+/// up from the ground, whose slope the attitude gave in the lying posture (ground_slope.h). The centre of gravity
+/// stands amid the feet along the vertical. On a slope that is too steep the robot lies again (kReasonTooSteep). Let aᵢ
+/// be the feet, p the body's position and R its rotation in it. The feet in the base's axes are Rᵀ(aᵢ − p), and the
+/// joint angles are those of LegKinematics::inverse. A ball as a foot rolls: aᵢ moves with ωᵢ × (0, 0, r), ωᵢ the rate
+/// of the shank.
 ///
 /// Each joint gets an impedance about its angle. The feed-forward is the effort of the whole robot's motion along its
 /// reference, M a + h − Jᵀ f (leg_dynamics.h). The feet that stand give the force and the moment that moving the body
@@ -148,6 +148,7 @@ class LegController {
     CarriedTwist carried_twist;                      ///< of the last cycle
     std::uint64_t gait = 0;                          ///< GaitName, the last one that was chosen
     std::uint64_t lies_next = 0;                     ///< 1: it lies down when the walk has ended
+    std::uint64_t steep = 0;                         ///< 1: it lies as gathered, on a slope that is too steep
     double idle = 0;                                 ///< s without a request of motion
     std::array<double, kLeggedDofs> velocity{};      ///< of the reference, in the order of leg_dynamics.h
     std::array<double, kLeggedDofs> acceleration{};  ///< of the reference, through a low pass
@@ -170,7 +171,8 @@ class LegController {
   double time_scale() const noexcept;
   double pace_of(const WalkingTwist& twist) const noexcept;
   CarriedBody carried_body() const noexcept;
-  double used(const WalkingTwist& twist, const CarriedBody& body, GaitName wanted) const noexcept;
+  double used(const WalkingTwist& twist, const CarriedBody& body, GaitName wanted,
+              const CarriedBody& rates = {}) const noexcept;
   double carried_part(const WalkingTwist& twist, GaitName wanted) noexcept;
   void carry(const Request& request, GaitName wanted, std::uint64_t& reasons) noexcept;
   void stand_here(const ControlInput& input) noexcept;
@@ -179,7 +181,7 @@ class LegController {
   void enter(LegPhase phase, double elapsed) noexcept;
   void move_joints(const Request& request, std::uint64_t& reasons) noexcept;
   bool stands_up_here(const ControlInput& input, std::uint64_t& reasons) noexcept;
-  void gather() noexcept;
+  void gather(const ControlInput& input, std::uint64_t& reasons) noexcept;
   void rise(double elapsed, std::uint64_t& reasons) noexcept;
   void stand(const Request& request, std::uint64_t& reasons) noexcept;
   void choose_pose(const Request& request, std::uint64_t& reasons) noexcept;

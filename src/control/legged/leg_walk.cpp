@@ -33,6 +33,14 @@ double used_part(const WalkingTwist& twist, const WalkingTwist& capable) noexcep
   return used;
 }
 
+CarriedBody place_of(const std::array<TrackedAxis, 3>& axes) noexcept {
+  return {axes[0].value, axes[1].value, axes[2].value};
+}
+
+CarriedBody rates_of(const std::array<TrackedAxis, 3>& axes) noexcept {
+  return {axes[0].speed, axes[1].speed, axes[2].speed};
+}
+
 bool nominal(const CarriedBody& body) noexcept {
   return std::ranges::all_of(body, [](double axis) { return std::abs(axis) < kNominal; });
 }
@@ -62,8 +70,10 @@ void LegController::begin_walk(const ControlInput& input) noexcept {
   const CarriedBody body = carried_body();
   const bool in_range =
       std::abs(body[0]) <= kCarriedPart * tuning_.bob && std::hypot(body[1], body[2]) <= kCarriedPart * tuning_.lean;
-  if (!nominal(body) && !(in_range && used({}, body, GaitName::kTrot) <= 1)) return;
+  if (!nominal(body) && !(in_range && used({}, body, GaitName::kTrot, rates_of(state_.carried)) <= 1)) return;
   state_.twist = {};
+  state_.lean_wanted = state_.lean_target = {};
+  state_.carried_twist = {};
   state_.gait = static_cast<std::uint64_t>(GaitName::kStand);
   walker_.begin(state_.walk, *input.sensors, *input.state);
   enter(LegPhase::kWalking, 0);
@@ -163,10 +173,12 @@ WalkingTwist LegController::capable(GaitName wanted) const noexcept {
   return speeds;
 }
 
-/// Returns true if the legs carry the body at this twist in this gait.
+/// Returns true if the legs carry the body at this twist, in this gait and the pose in force.
 bool LegController::carries(GaitName gait, const WalkingTwist& twist) const noexcept {
   constexpr double kRounding = 1e-9;
-  return used_part(twist, fastest_[static_cast<std::size_t>(gait)]) <= 1 + kRounding;
+  if (used_part(twist, fastest_[static_cast<std::size_t>(gait)]) > 1 + kRounding) return false;
+  return static_cast<std::uint64_t>(gait) == state_.walk.gait || nominal(carried_body()) ||
+         used(twist, carried_body(), gait) <= 1;
 }
 
 /// Returns √(l / kReferenceLeg): times and speeds of robots of equal Froude number are as these.
@@ -180,15 +192,17 @@ double LegController::pace_of(const WalkingTwist& twist) const noexcept {
 }
 
 CarriedBody LegController::carried_body() const noexcept {
-  return {state_.carried[0].value, state_.carried[1].value, state_.carried[2].value};
+  return place_of(state_.carried);
 }
 
-/// Returns what the gait in force and the wanted one use of what the legs can, at this twist in this pose.
-double LegController::used(const WalkingTwist& twist, const CarriedBody& body, GaitName wanted) const noexcept {
+/// Returns what the gait in force and the wanted one use of what the legs can, at this twist in this pose. The pose
+/// changes with `rates`.
+double LegController::used(const WalkingTwist& twist, const CarriedBody& body, GaitName wanted,
+                           const CarriedBody& rates) const noexcept {
   double used = 0;
   for (const std::uint64_t gait : {static_cast<std::uint64_t>(wanted), state_.walk.gait}) {
     if (walker_.gaits()[gait].duty >= 1 || (used > 0 && gait == static_cast<std::uint64_t>(wanted))) continue;
-    used = std::max(used, leg_use_.steady(walker_.gaits()[gait], twist, body, kUseSamples) / kOfJointSpeed);
+    used = std::max(used, leg_use_.steady(walker_.gaits()[gait], twist, body, kUseSamples, rates) / kOfJointSpeed);
   }
   return used;
 }
@@ -222,7 +236,8 @@ void LegController::carry(const Request& request, GaitName wanted, std::uint64_t
     reasons |= kReasonOutOfReach;
     for (double* axis : {&to[1], &to[2]}) *axis *= range / lean;
   }
-  if (to != state_.lean_wanted) {
+  const std::array gaits{static_cast<std::uint64_t>(wanted), state_.walk.gait};
+  if (to != state_.lean_wanted || gaits != state_.carried_twist.gaits) {
     state_.lean_wanted = state_.lean_target = to;
     for (int i = 0; i < kCarriedHalvings && !nominal(state_.lean_target); ++i) {
       if (used({}, state_.lean_target, wanted) <= kOnTheSpot) break;
@@ -236,9 +251,9 @@ void LegController::carry(const Request& request, GaitName wanted, std::uint64_t
   const CarriedBody before = carried_body();
   std::array<TrackedAxis, 3> next = state_.carried;
   track(next, state_.lean_target, bounds, period_);
-  const CarriedBody after{next[0].value, next[1].value, next[2].value};
-  const double uses = nominal(after) || after == before ? 0 : used(twist, after, wanted);
-  if (uses > 1 && uses > used(twist, before, wanted)) {
+  const CarriedBody after = place_of(next);
+  const double uses = after == before ? 0 : used(twist, after, wanted, rates_of(next));
+  if (uses > 1 && uses > used(twist, before, wanted, rates_of(state_.carried))) {
     brake(state_.carried, bounds, period_);
   } else {
     state_.carried = next;

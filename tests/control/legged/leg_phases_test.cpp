@@ -45,21 +45,48 @@ Quaternion uphill(double slope) {
   return {0, std::sin(-slope / 2), 0, std::cos(-slope / 2)};
 }
 
-TEST(LyingLegs, StayLyingWhereTheGroundSlopesTooMuch) {
+TEST(GatheredLegs, LieWhereTheGroundSlopesTooMuch) {
   IdealLegs legs(lopsided());
   legs.has_estimate = true;
   legs.estimate.base.flags = kStateValid;
   legs.estimate.base.attitude = uphill(kMaxSlope + 0.001);
   legs.step(stance_of(kStanceStand));
-  EXPECT_EQ(legs.out.legged.phase, LegPhase::kLying);
+  EXPECT_EQ(legs.out.legged.phase, LegPhase::kGathering);
+  run_until(legs, LegPhase::kLying);
   EXPECT_EQ(legs.out.reasons, std::uint64_t{kReasonHolding} | kReasonTooSteep);
-  legs.estimate.base.attitude = {1, 0, 0, 0};  // on its back
-  legs.step();
+  legs.run(1, stance_of(kStanceStand));
+  EXPECT_EQ(legs.out.legged.phase, LegPhase::kLying) << "it does not gather again there";
   EXPECT_EQ(legs.out.reasons, std::uint64_t{kReasonHolding} | kReasonTooSteep);
+  legs.step(stance_of(kStanceStay));
+  EXPECT_EQ(legs.out.reasons, std::uint64_t{kReasonHolding});
   legs.estimate.base.attitude = uphill(kMaxSlope - 0.001);
-  legs.step();
+  legs.step(stance_of(kStanceStand));
   EXPECT_EQ(legs.out.legged.phase, LegPhase::kGathering);
   EXPECT_EQ(legs.out.reasons, 0u);
+  run_until(legs, LegPhase::kRising);
+}
+
+/// Legs that were moved one by one lift or tilt the body.
+TEST(GatheredLegs, MeasureTheSlopeInTheLyingPostureAlone) {
+  constexpr double kSlope = 0.2;
+  for (const bool moved : {false, true}) {
+    IdealLegs legs(lopsided());
+    legs.has_estimate = true;
+    legs.estimate.base.flags = kStateValid;
+    Request joints = stance_of(kStanceJoints);
+    for (std::size_t i = 0; i < kLegsJoints; ++i)
+      joints.joints[i] = legs.sensors.joints[i].position + (i % kLegJoints == 1 ? 0.1 : 0);
+    if (moved) legs.run(1, joints);
+    EXPECT_EQ(legs.out.legged.phase, moved ? LegPhase::kJoints : LegPhase::kLying);
+    legs.estimate.base.attitude = uphill(kMaxSlope + 0.1);
+    legs.step(stance_of(kStanceStand));
+    EXPECT_EQ(legs.out.legged.phase, LegPhase::kGathering);
+    legs.estimate.base.attitude = uphill(kSlope);
+    run_until(legs, LegPhase::kStanding);
+    const Vector3& up = legs.state().up;
+    EXPECT_NEAR(std::atan2(std::hypot(up[0], up[1]), up[2]), kSlope + std::abs(legs.robot.lying_pitch),
+                0.01 + std::abs(legs.robot.lying_pitch));
+  }
 }
 
 /// So each foot bears the same on a slope as on level ground.

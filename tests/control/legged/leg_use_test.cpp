@@ -38,6 +38,33 @@ TEST_F(LegUseTest, CountsTheTorqueOfHalfOfTheWeight) {
   EXPECT_NEAR(steady({}), 2 * kOfJointSpeed, 1e-6);
 }
 
+/// The feet stay where they are while the body moves through the pose.
+TEST_F(LegUseTest, CountsTheRatesOfThePose) {
+  constexpr double kStep = 1e-6;  // s
+  const CarriedBody body{0.01, 0.05, -0.08};
+  const Eigen::Vector3d& centre = stance.equations.centre_of_gravity;
+  const auto angles_in = [&](std::size_t leg, const CarriedBody& pose) {
+    const Eigen::Matrix3d back =
+        (Eigen::AngleAxisd(-pose[1], Eigen::Vector3d::UnitX()) * Eigen::AngleAxisd(-pose[2], Eigen::Vector3d::UnitY()))
+            .toRotationMatrix();
+    const Eigen::Vector3d foot = back * (stance.feet[leg] - centre) + centre - pose[0] * back.col(2);
+    return robot.legs[leg].kinematics.inverse(foot).angles;
+  };
+  trot.lift = 0;
+  for (const CarriedBody& rates : {CarriedBody{0.3, 0, 0}, CarriedBody{0, 0, 1}, CarriedBody{0, -0.7, 0}}) {
+    double fastest = 0;  // of the limit
+    for (std::size_t i = 0; i < kLegsJoints; ++i) {
+      CarriedBody later = body;
+      for (std::size_t axis = 0; axis < later.size(); ++axis) later[axis] += kStep * rates[axis];
+      const auto joint = static_cast<Eigen::Index>(i % kLegJoints);
+      const double turned = angles_in(i / kLegJoints, later)[joint] - angles_in(i / kLegJoints, body)[joint];
+      fastest = std::max(fastest, std::abs(turned) / kStep / robot.joints[i].velocity_limit);
+    }
+    // A body that rolls and pitches turns about its own roll axis: a small angle away from the level one.
+    EXPECT_NEAR(LegUse(robot, stance).swinging(trot, {}, body, 8, rates), fastest, 0.01 * fastest + 1e-6);
+  }
+}
+
 TEST_F(LegUseTest, GrowsWithALeanThatTurnsTheJointsFaster) {
   const WalkingTwist twist{0.8, 0.1, 0.3};
   EXPECT_NE(steady(twist, {0, 0.1, 0}), steady(twist, {0, -0.1, 0}));

@@ -444,6 +444,33 @@ TEST(LegWalk, AsksForNoMoreSpeedThanTheLegsCarryInThePoseInForce) {
   EXPECT_NEAR(legs.legs.out.legged.body[4], body[2], 1e-3);
 }
 
+/// Two feet bear in a trot and three in a crawl. So weak legs carry less of a pose in a trot.
+TEST(LegWalk, TakesOfAPoseWhatTheLegsCarryInTheGaitOfNow) {
+  LegModel weak = lopsided();
+  for (JointModel& joint : weak.joints) joint.effort_limit *= 0.49;
+  const NominalStance stance = nominal_stance(weak);
+  const LegUse use(weak, stance);
+  const auto used = [&](GaitName gait, const WalkingTwist& twist, const CarriedBody& body) {
+    return use.steady(gait_of(weak, stance, kGaits[number(gait)]), twist, body, 8) / kOfJointSpeed;
+  };
+  const LegTuning tuning = leg_tuning(weak);
+  const CarriedBody whole{0.5 * tuning.bob, 0, 0.5 * tuning.lean};
+  ASSERT_LT(used(GaitName::kCrawl, {}, whole), 0.75);
+  ASSERT_GT(used(GaitName::kTrot, {}, whole), 0.75);
+  WalkingLegs legs(weak);
+  Request request = stance_of(mode_of(GaitName::kCrawl));
+  request.posture = {.height = whole[0], .roll = 0, .pitch = whole[2]};
+  legs.run(2, request);
+  EXPECT_EQ(legs.legs.out.reasons, 0u);
+  request.mode = mode_of(GaitName::kTrot);
+  legs.run(3, request);
+  EXPECT_EQ(legs.gait(), number(GaitName::kTrot));
+  EXPECT_EQ(legs.legs.out.reasons, std::uint64_t{kReasonOutOfReach});
+  WalkingLegs trots(weak);
+  trots.run(1, request);
+  EXPECT_EQ(legs.legs.state().lean_target, trots.legs.state().lean_target) << "as without the crawl";
+}
+
 TEST(LegWalk, BeginsWithThePoseInWhichItStands) {
   WalkingLegs legs = ready();
   Request pose;

@@ -30,12 +30,13 @@ LegUse::LegUse(const LegModel& robot, const NominalStance& stance) noexcept
   }
 }
 
-LegUse::Place LegUse::place_of(const CarriedBody& body) noexcept {
-  if (body == CarriedBody{}) return {};
+LegUse::Place LegUse::place_of(const CarriedBody& body, const CarriedBody& rates) noexcept {
+  if (body == CarriedBody{} && rates == CarriedBody{}) return {};
   using Axis = Eigen::AngleAxisd;
   return {
       .back = (Axis(-body[1], Eigen::Vector3d::UnitX()) * Axis(-body[2], Eigen::Vector3d::UnitY())).toRotationMatrix(),
       .height = body[0],
+      .rates = rates,
       .from_end = kFromEnd};
 }
 
@@ -52,7 +53,9 @@ double LegUse::needed_at(std::size_t leg, const Place& body, const Eigen::Vector
   if (!angles || kinematics.stretch(*angles) > kOfLength * kinematics.length()) return kOutOfReach;
   Eigen::Vector3d foot;
   const Eigen::Matrix3d jacobian = kinematics.jacobian(*angles, foot);
-  const Eigen::Vector3d rates = jacobian.inverse() * (body.back * velocity);
+  const Eigen::Vector3d turning(body.rates[1], body.rates[2], 0);
+  const Eigen::Vector3d moves = velocity - turning.cross(place - centre_) - body.rates[0] * Eigen::Vector3d::UnitZ();
+  const Eigen::Vector3d rates = jacobian.inverse() * (body.back * moves);
   const Eigen::Vector3d efforts = force * (jacobian.transpose() * body.back.col(2));
   double part = 0;
   for (std::size_t i = 0; i < kLegJoints; ++i) {
@@ -66,9 +69,9 @@ double LegUse::needed_at(std::size_t leg, const Place& body, const Eigen::Vector
   return part;
 }
 
-double LegUse::swinging(const Gait& gait, const WalkingTwist& twist, const CarriedBody& body,
-                        int samples) const noexcept {
-  const Place at = place_of(body);
+double LegUse::swinging(const Gait& gait, const WalkingTwist& twist, const CarriedBody& body, int samples,
+                        const CarriedBody& rates) const noexcept {
+  const Place at = place_of(body, rates);
   const double time = gait.swing_time(), half = gait.stance_time() / 2;
   double part = 0;
   for (std::size_t leg = 0; leg < kLegs; ++leg) {
@@ -84,11 +87,11 @@ double LegUse::swinging(const Gait& gait, const WalkingTwist& twist, const Carri
   return part;
 }
 
-double LegUse::steady(const Gait& gait, const WalkingTwist& twist, const CarriedBody& body,
-                      int samples) const noexcept {
-  const Place at = place_of(body);
+double LegUse::steady(const Gait& gait, const WalkingTwist& twist, const CarriedBody& body, int samples,
+                      const CarriedBody& rates) const noexcept {
+  const Place at = place_of(body, rates);
   const double half = gait.stance_time() / 2, force = weight_ / static_cast<double>(fewest_feet(gait));
-  double part = swinging(gait, twist, body, samples);
+  double part = swinging(gait, twist, body, samples, rates);
   for (std::size_t leg = 0; leg < kLegs; ++leg) {
     const Eigen::Vector3d foot = placed(leg, twist, body);
     const Eigen::Vector3d velocity = velocity_below(foot, twist);

@@ -37,13 +37,13 @@ class LegUse {
 
   LegUse(const LegModel& robot, const NominalStance& stance) noexcept;
 
-  /// Returns what a steady walk needs.
-  double steady(const Gait& gait, const WalkingTwist& twist, const CarriedBody& body = {},
-                int samples = kSamples) const noexcept;
+  /// Returns what a steady walk needs, while the pose changes with `rates` in m/s and rad/s.
+  double steady(const Gait& gait, const WalkingTwist& twist, const CarriedBody& body = {}, int samples = kSamples,
+                const CarriedBody& rates = {}) const noexcept;
 
   /// Returns the same without torques.
-  double swinging(const Gait& gait, const WalkingTwist& twist, const CarriedBody& body = {},
-                  int samples = kSamples) const noexcept;
+  double swinging(const Gait& gait, const WalkingTwist& twist, const CarriedBody& body = {}, int samples = kSamples,
+                  const CarriedBody& rates = {}) const noexcept;
 
   /// Returns what the feet need that stand on where `last` ends, at the end of their first stance in `next`.
   double changing(const Gait& last, const Gait& next, const WalkingTwist& twist) const noexcept;
@@ -52,9 +52,10 @@ class LegUse {
   struct Place {
     Eigen::Matrix3d back = Eigen::Matrix3d::Identity();  ///< level axes → those of the base
     double height = 0;                                   ///< m
+    CarriedBody rates{};                                 ///< of the pose
     double from_end = 0;                                 ///< rad, of joints from the ends of their ranges
   };
-  static Place place_of(const CarriedBody& body) noexcept;
+  static Place place_of(const CarriedBody& body, const CarriedBody& rates) noexcept;
   /// Returns where a foot stands in the middle of its stance (foothold.h).
   Eigen::Vector3d placed(std::size_t leg, const WalkingTwist& twist, const CarriedBody& body) const noexcept;
   /// Returns what a leg needs whose foot has this place and velocity, and bears this force, in level axes.

@@ -36,6 +36,10 @@ double ground_below(const Walker::State& state, const Eigen::Vector3d& place) no
   return state.ground[0] + state.ground[1] * place.x() + state.ground[2] * place.y();
 }
 
+double within(const JointRange& range, double angle) noexcept {
+  return std::min(std::max(angle, range.lower + kFromEnd), range.upper - kFromEnd);
+}
+
 Eigen::Index joint_row(std::size_t leg) noexcept {
   return static_cast<Eigen::Index>(6 + kLegJoints * leg);
 }
@@ -83,6 +87,7 @@ WalkingBody Walker::measure(const SensorFrame& sensors, const StateFrame& estima
   body.velocity = body.turned * motion.linear;
   body.rate = body.turned * motion.angular;
   body.angles = motion.angles;
+  body.rates = motion.rates;
   for (std::size_t leg = 0; leg < kLegs; ++leg) {
     Eigen::Vector3d foot;
     body.jacobians[leg] = legs_[leg].kinematics.jacobian(LegModel::angles_of(motion.angles, leg), foot);
@@ -347,12 +352,15 @@ void Walker::bear(const State& state, const WalkingBody& body, std::size_t leg, 
   for (std::size_t i = 0; i < kLegJoints; ++i) {
     const std::size_t joint = kLegJoints * leg + i;
     const auto axis = static_cast<Eigen::Index>(i);
+    const double ahead = body.angles[joint] + tuning_.damping / tuning_.stiffness * body.rates[joint];
+    const double stop = tuning_.stiffness * (within(legs_[leg].kinematics.range(i), ahead) - ahead);
+    const double limit = effort_limits_[joint];
     out.joints[joint] = {.mode = JointMode::kImpedance,
                          .position = body.angles[joint],
                          .velocity = 0,
                          .stiffness = 0,
                          .damping = 0,
-                         .effort = own[axis] + part * load[axis]};
+                         .effort = std::clamp(own[axis] + part * load[axis] + stop, -limit, limit)};
   }
 }
 
@@ -378,8 +386,7 @@ void Walker::swing(const State& state, const WalkInput& input, const WalkingBody
     const std::size_t joint = kLegJoints * leg + i;
     const auto axis = static_cast<Eigen::Index>(i);
     const double limit = effort_limits_[joint];
-    const JointRange& range = kinematics.range(i);
-    const double angle = std::min(std::max(solution.angles[axis], range.lower + kFromEnd), range.upper - kFromEnd);
+    const double angle = within(kinematics.range(i), solution.angles[axis]);
     out.joints[joint] = {.mode = JointMode::kImpedance,
                          .position = angle,
                          .velocity = angle == solution.angles[axis] ? rates[axis] : 0,

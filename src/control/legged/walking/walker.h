@@ -9,19 +9,20 @@
 ///             one. A walk ends in a cycle in which no foot is far from where it left the ground
 ///   contact   a foot that touches the ground in the second half of its swing, for kTouchTime within kMetWithin, bears
 ///             from then on. A foot that is late is pushed down by the force that it is to bear
-///   ground    is the plane through the places where the feet bore last. So a foot lands where the others stand, whatever
-///             the error of the estimated tilt
+///   ground    is the plane through the places where the feet bore last. So a foot lands where the others stand,
+///             whatever the error of the estimated tilt
 ///   target    moves from where the robot was, with the twist, its velocity through a low pass of half a period: a body
 ///             follows it when the next feet have landed. It stays within kFarthest of the robot
 ///   plan      every kPlanTime or cycle, and where other feet bear, the forces of the feet (force_plan.h), which knows
 ///             the gait that follows
-///   stance    τ = h − Jᵀ f, f the planned force, h what holds the leg itself. f is scaled down until each |τ| is within
-///             the joint's limit, so that f stays within friction
-///   reach     the twist that is requested keeps each foot that bears in reach until its next swing, within the ranges of
-///             its joints and kOfLength of its leg's length (walking_speed.h), or no farther than it is. A foot that landed
-///             for another twist bounds it by that
-///   swing     the foot follows swing.h to its foothold (foothold.h) with the impedance of standing, and the efforts
-///             M q̈ + h of its own leg. Each joint stays kFromEnd away from the ends of its range
+///   stance    τ = h − Jᵀ f, f the planned force, h what holds the leg itself. f is scaled down until each |τ| is
+///             within the joint's limit, so that f stays within friction. The torque of a swing's impedance is added
+///             where it turns a joint back from kFromEnd before an end of its range
+///   reach     the twist that is requested keeps each foot that bears in reach until its next swing, within the ranges
+///             of its joints and kOfLength of its leg's length (walking_speed.h), or no farther than it is. A foot that
+///             landed for another twist bounds it by that
+///   swing     the foot follows swing.h to its foothold (foothold.h) with the impedance of standing, and the efforts M
+///             q̈ + h of its own leg. Each joint stays kFromEnd away from the ends of its range
 ///
 /// If a plan fails, the last forces stay for up to kFailures plans (kReasonNoPlan).
 
@@ -63,6 +64,7 @@ struct WalkingBody {
   Eigen::Vector3d moves = Eigen::Vector3d::Zero();       ///< m/s, of the centre of gravity, level axes
   double roll = 0, pitch = 0;                            ///< rad
   std::array<double, kLegsJoints> angles{};              ///< rad
+  std::array<double, kLegsJoints> rates{};               ///< rad/s
   std::array<Eigen::Vector3d, kLegs> feet{};             ///< m, level axes
   std::array<Eigen::Matrix3d, kLegs> jacobians{};        ///< base axes
   LeggedEquations equations;

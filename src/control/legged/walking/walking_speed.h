@@ -4,10 +4,11 @@
 ///   gait   that of gait.h, scaled. Its lift is lower where a step in place would need more than kOfLift of the speed
 ///          limit of a joint
 ///   speed  the largest one of the body at which the legs need at most kOfJointSpeed of what they can (leg_use.h). A
-///          leg that is nearly straight does not push the body on. That holds either way, for a steady walk and for the first stance after
-///          a change of gaits: a foot that ended a stance may have to bear for a whole one. The slower gait of a change
-///          bounds its speed until the other one has lasted for a period. To the front and back no gait is faster than
-///          1.7 m/s √(l/kReferenceLeg): beyond it a trot loses its balance (docs/evidence/legs.md)
+///          leg that is nearly straight does not push the body on. That holds either way, for a steady walk and for the
+///          first stance after a change of gaits: a foot that ended a stance may have to bear for a whole one. The
+///          slower gait of a change bounds its speed until the other one has lasted for a period. To the front and back
+///          no gait is faster than 1.7 m/s √(l/kReferenceLeg): beyond it a trot loses its balance
+///          (docs/evidence/legs.md)
 
 #include <vector>
 
