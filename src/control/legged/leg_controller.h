@@ -107,10 +107,7 @@ class LegController {
     std::array<std::uint64_t, 2> gaits{};  ///< GaitName
     double part = 1;                       ///< 0 … 1
 
-    /// Returns whether the part is that of the same twist, poses and gaits.
-    bool same(const CarriedTwist& other) const noexcept {
-      return twist == other.twist && bodies == other.bodies && gaits == other.gaits;
-    }
+    bool operator==(const CarriedTwist&) const = default;
   };
 
   struct State {

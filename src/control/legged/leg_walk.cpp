@@ -208,21 +208,34 @@ double LegController::used(const WalkingTwist& twist, const CarriedBody& body, G
 }
 
 /// Returns the largest part of a twist that the legs carry in the pose in force and in its target. The nominal pose is
-/// that of walking_speed.h.
+/// that of walking_speed.h. While nothing but the pose in force changes, the part changes by at most a step per cycle,
+/// which bounds the work of a cycle.
 double LegController::carried_part(const WalkingTwist& twist, GaitName wanted) noexcept {
+  CarriedTwist last = state_.carried_twist;
   CarriedTwist now{.twist = twist,
                    .bodies = {carried_body(), state_.lean_target},
-                   .gaits = {static_cast<std::uint64_t>(wanted), state_.walk.gait}};
-  if (now.same(state_.carried_twist)) return state_.carried_twist.part;
+                   .gaits = {static_cast<std::uint64_t>(wanted), state_.walk.gait},
+                   .part = last.part};
+  if (now == last) return now.part;
+  last.bodies[0] = now.bodies[0];
   const auto carries = [&](double part) {
     const WalkingTwist tried{part * twist[0], part * twist[1], part * twist[2]};
     return std::ranges::all_of(
         now.bodies, [&](const CarriedBody& body) { return nominal(body) || used(tried, body, wanted) <= 1; });
   };
-  double step = 0.5;
-  now.part = carries(1) ? 1 : 0;
-  for (int i = 0; i < kCarriedHalvings && (now.part < 1); ++i, step /= 2)
-    if (carries(now.part + step)) now.part += step;
+  if (now == last) {
+    constexpr double kStep = 1.0 / (1 << kCarriedHalvings);
+    if (!carries(now.part)) {
+      now.part = std::max(0.0, now.part - kStep);
+    } else if (now.part < 1 && carries(now.part + kStep)) {
+      now.part += kStep;
+    }
+  } else {
+    double step = 0.5;
+    now.part = carries(1) ? 1 : 0;
+    for (int i = 0; i < kCarriedHalvings && (now.part < 1); ++i, step /= 2)
+      if (carries(now.part + step)) now.part += step;
+  }
   state_.carried_twist = now;
   return now.part;
 }

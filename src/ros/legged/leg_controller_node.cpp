@@ -24,7 +24,7 @@
 namespace robot_control {
 namespace {
 
-constexpr std::int64_t kBeginWait = 1'000'000'000;  // ns, in which the posture must begin to change
+constexpr std::int64_t kBeginWait = 1'000'000'000;  // ns, in which the posture must begin to change, gathering apart
 constexpr std::int64_t kRepeat = 10'000'000;        // ns; another sender's message may have replaced the request
 constexpr std::int64_t kStep = 10'000'000;          // ns of the loop's time between two requests of a trajectory
 constexpr double kRefusalPause = 0.1;               // s between two lines about refused trajectories
@@ -34,11 +34,10 @@ double seconds_of(std::int64_t ns) {
   return 1e-9 * static_cast<double>(ns);
 }
 
-/// Returns whether the robot already is in this posture, or on its way.
+/// Returns whether the robot already is in this posture, or on its way. It may still refuse while it gathers its legs.
 bool begun(StanceMode mode, LegPhase phase) {
   if (mode == kStanceLie) return phase == LegPhase::kLying || phase == LegPhase::kLowering;
-  return phase == LegPhase::kGathering || phase == LegPhase::kRising || phase == LegPhase::kStanding ||
-         phase == LegPhase::kWalking;
+  return phase == LegPhase::kRising || phase == LegPhase::kStanding || phase == LegPhase::kWalking;
 }
 
 class LegControllerNode final : public CommandedNode {
@@ -284,8 +283,10 @@ class LegControllerNode final : public CommandedNode {
     for (std::int64_t waited_ns = 0; waited_ns < kBeginWait; waited_ns += kRepeat) {
       if (std::string problem = refusal_of_permission(); !problem.empty()) return problem;
       if (process().output().newest(command) == Lookup::kFrame && process().is_current(command.head) &&
-          (command.reasons & (kReasonNoPermit | kReasonPermitBrake)) == 0 && begun(mode, command.legged.phase))
-        return "";
+          (command.reasons & (kReasonNoPermit | kReasonPermitBrake)) == 0) {
+        if (begun(mode, command.legged.phase)) return "";
+        if (mode == kStanceStand && command.legged.phase == LegPhase::kGathering) waited_ns = 0;
+      }
       {
         const std::lock_guard lock(input_mutex_);
         end_trajectory("set_posture was called");

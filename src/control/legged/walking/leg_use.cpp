@@ -36,7 +36,8 @@ LegUse::Place LegUse::place_of(const CarriedBody& body, const CarriedBody& rates
   return {
       .back = (Axis(-body[1], Eigen::Vector3d::UnitX()) * Axis(-body[2], Eigen::Vector3d::UnitY())).toRotationMatrix(),
       .height = body[0],
-      .rates = rates,
+      .rises = rates[0],
+      .turns = {rates[1] * std::cos(body[2]), rates[2], -rates[1] * std::sin(body[2])},
       .from_end = kFromEnd};
 }
 
@@ -53,8 +54,7 @@ double LegUse::needed_at(std::size_t leg, const Place& body, const Eigen::Vector
   if (!angles || kinematics.stretch(*angles) > kOfLength * kinematics.length()) return kOutOfReach;
   Eigen::Vector3d foot;
   const Eigen::Matrix3d jacobian = kinematics.jacobian(*angles, foot);
-  const Eigen::Vector3d turning(body.rates[1], body.rates[2], 0);
-  const Eigen::Vector3d moves = velocity - turning.cross(place - centre_) - body.rates[0] * Eigen::Vector3d::UnitZ();
+  const Eigen::Vector3d moves = velocity - body.turns.cross(place - centre_) - body.rises * Eigen::Vector3d::UnitZ();
   const Eigen::Vector3d rates = jacobian.inverse() * (body.back * moves);
   const Eigen::Vector3d efforts = force * (jacobian.transpose() * body.back.col(2));
   double part = 0;

@@ -52,7 +52,8 @@ class LegUse {
   struct Place {
     Eigen::Matrix3d back = Eigen::Matrix3d::Identity();  ///< level axes → those of the base
     double height = 0;                                   ///< m
-    CarriedBody rates{};                                 ///< of the pose
+    double rises = 0;                                    ///< m/s
+    Eigen::Vector3d turns = Eigen::Vector3d::Zero();     ///< rad/s, level axes
     double from_end = 0;                                 ///< rad, of joints from the ends of their ranges
   };
   static Place place_of(const CarriedBody& body, const CarriedBody& rates) noexcept;
