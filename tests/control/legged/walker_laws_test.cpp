@@ -503,13 +503,15 @@ TEST_F(WalkerLaws, ReportsThePartOfTheStanceThatAFootHasDone) {
   }
 }
 
-/// With τ = h − p Jᵀ f, p is the largest part of the force within the limits; 0 if h alone exceeds one.
+/// With τ = h − p Jᵀ f, p is the largest part of the force within the limits; 0 if h alone exceeds one. The impedance
+/// of a swing turns a joint back that would come nearer than 0.03 rad to an end of its range.
 TEST_F(WalkerLaws, AFootThatStandsBearsItsForceUnlessAJointIsTooWeak) {
-  int weak = 0, strong = 0, overloaded = 0;
+  int weak = 0, strong = 0, overloaded = 0, turned_back = 0;
   for (const double limit : {1000.0, 6.0, 0.3}) {
     for (JointModel& joint : robot.joints) joint.effort_limit = limit;
     stance = nominal_stance(robot);  // weak knees stand higher
     walker = Walker(robot, all_gaits({}), kMu, kMillisecond);
+    const LegTuning tuning = leg_tuning(robot);
     for (unsigned seed = 0; seed < kRandomStates; ++seed) {
       choose(seed);
       step();
@@ -533,7 +535,13 @@ TEST_F(WalkerLaws, AFootThatStandsBearsItsForceUnlessAJointIsTooWeak) {
           EXPECT_EQ(joint.velocity, 0);
           EXPECT_EQ(joint.stiffness, 0);
           EXPECT_EQ(joint.damping, 0);
-          EXPECT_NEAR(joint.effort, own[axis] + part * load[axis], kExact) << seed << " leg " << leg << " of " << limit;
+          const JointRange& range = robot.legs[leg].kinematics.range(i);
+          const double ahead = angles(leg)[axis] + tuning.damping / tuning.stiffness * now.rates[kLegJoints * leg + i];
+          const double stop = tuning.stiffness * (std::clamp(ahead, range.lower + 0.03, range.upper - 0.03) - ahead);
+          turned_back += stop != 0 ? 1 : 0;
+          const double most = kOfLimit * limit;
+          EXPECT_NEAR(joint.effort, std::clamp(own[axis] + part * load[axis] + stop, -most, most), kExact)
+              << seed << " leg " << leg << " of " << limit;
         }
       }
     }
@@ -541,6 +549,7 @@ TEST_F(WalkerLaws, AFootThatStandsBearsItsForceUnlessAJointIsTooWeak) {
   EXPECT_GT(weak, 20);
   EXPECT_GT(strong, 20);
   EXPECT_GT(overloaded, 5);
+  EXPECT_GT(turned_back, 20);
 }
 
 TEST_F(WalkerLaws, AFootInTheAirFollowsItsPathToTheFoothold) {

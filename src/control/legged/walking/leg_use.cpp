@@ -54,7 +54,8 @@ double LegUse::needed_at(std::size_t leg, const Place& body, const Eigen::Vector
   if (!angles || kinematics.stretch(*angles) > kOfLength * kinematics.length()) return kOutOfReach;
   Eigen::Vector3d foot;
   const Eigen::Matrix3d jacobian = kinematics.jacobian(*angles, foot);
-  const Eigen::Vector3d moves = velocity - body.turns.cross(place - centre_) - body.rises * Eigen::Vector3d::UnitZ();
+  const Eigen::Vector3d up = Eigen::Vector3d::UnitZ();
+  const Eigen::Vector3d moves = velocity - body.turns.cross(place - centre_ - body.height * up) - body.rises * up;
   const Eigen::Vector3d rates = jacobian.inverse() * (body.back * moves);
   const Eigen::Vector3d efforts = force * (jacobian.transpose() * body.back.col(2));
   double part = 0;
