@@ -539,8 +539,8 @@ TEST_F(WalkerLaws, AFootThatStandsBearsItsForceUnlessAJointIsTooWeak) {
           const double ahead = angles(leg)[axis] + tuning.damping / tuning.stiffness * now.rates[kLegJoints * leg + i];
           const double stop = tuning.stiffness * (std::clamp(ahead, range.lower + 0.03, range.upper - 0.03) - ahead);
           turned_back += stop != 0 ? 1 : 0;
-          const double most = kOfLimit * limit;
-          EXPECT_NEAR(joint.effort, std::clamp(own[axis] + part * load[axis] + stop, -most, most), kExact)
+          const double largest = kOfLimit * limit;
+          EXPECT_NEAR(joint.effort, std::clamp(own[axis] + part * load[axis] + stop, -largest, largest), kExact)
               << seed << " leg " << leg << " of " << limit;
         }
       }
