@@ -16,7 +16,7 @@ from sensor_msgs.msg import LaserScan
 
 def view_of(message):
     view = NavigationView.__new__(NavigationView)
-    view._grids = {"map": SimpleNamespace(message=message, received_at=0.0)}
+    view._grids = {"map": SimpleNamespace(message=message, newest=(message, 0.0))}
     return view
 
 

@@ -4,13 +4,16 @@ from __future__ import annotations
 
 import contextlib
 import math
+import struct
 import time
 from types import SimpleNamespace
 
 import pytest
 import rospy
+from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
+from geometry_msgs.msg import PoseStamped
 from mutants import mutants
-from nav_msgs.msg import OccupancyGrid, Odometry
+from nav_msgs.msg import OccupancyGrid, Odometry, Path
 from robot_control.common.boundary import (
     MAX_BYTES,
     MAX_LONG_BYTES,
@@ -26,7 +29,7 @@ from robot_control.common.boundary import boundary as boundary_of_this_process
 from robot_control.msg import LegState, SafetyStatus
 from robot_control.safety.interruptions import SURPRISE
 from robot_control.safety.watch import SafetyWatch
-from robot_control.why.recent import MAX_NAMES, MAX_SENDERS, Recent
+from robot_control.why.recent import MAX_NAMES, MAX_SENDERS, MAX_SIZE, Diagnostics
 from sensor_msgs.msg import BatteryState
 from topics import Topics, wire
 
@@ -76,7 +79,7 @@ def test_a_number_that_is_not_finite_is_refused_with_its_field(bad: float) -> No
 
 def test_a_field_in_which_nan_has_a_meaning_keeps_it() -> None:
     message = BatteryState(percentage=math.nan)
-    assert math.isnan(opened(sealed(BatteryState, wire(message)), ("percentage",)).percentage)
+    assert math.isnan(opened(sealed(BatteryState, wire(message))).percentage)
 
 
 def test_every_truncation_is_refused() -> None:
@@ -144,10 +147,10 @@ def test_a_polled_topic_shows_the_newest_message_that_passed_and_its_age(monkeyp
     assert (latest.message, latest.age(0.0)) == (None, None)
     message = Odometry(child_frame_id="base_link")
     topics.send("odom", message)
-    received = latest.received_at
+    received = latest.newest[1]
     topics.send_bytes("odom", wire(message)[:40])
     assert latest.message.child_frame_id == "base_link"
-    assert latest.received_at == received
+    assert latest.newest[1] == received
     assert latest.fresh(received + 0.5, 1.0) is latest.message
     assert latest.fresh(received + 1.5, 1.0) is None
     assert latest.message._connection_header["callerid"] == "/node"
@@ -186,15 +189,64 @@ def test_a_surprise_ends_what_was_requested_before_it(monkeypatch: pytest.Monkey
     assert watch.interruptions() == (1, SURPRISE)
 
 
-def test_a_hundred_thousand_names_of_one_sender_are_few_expire_and_displace_no_other_sender() -> None:
-    table = Recent[int](life=3.0)
-    table.put("/safety_monitor", "safety_monitor", 1, 0.0)
-    for number in range(130_000):
-        table.put("/flood", f"name {number}", number, 1.0)
+def report(*names: str, text: str = "") -> DiagnosticArray:
+    return DiagnosticArray(status=[DiagnosticStatus(name=name, values=[KeyValue("key", text)]) for name in names])
+
+
+@pytest.fixture
+def diagnostics(monkeypatch: pytest.MonkeyPatch) -> tuple[Diagnostics, Topics, SimpleNamespace]:
+    topics, clock = Topics(monkeypatch), SimpleNamespace(now=0.0)
+    monkeypatch.setattr("robot_control.why.recent.time", SimpleNamespace(monotonic=lambda: clock.now))
+    return Diagnostics(life=3.0), topics, clock
+
+
+def test_a_hundred_thousand_names_of_one_sender_are_few_expire_and_displace_no_other_sender(diagnostics) -> None:
+    table, topics, clock = diagnostics
+    topics.send("/diagnostics", report("safety_monitor"), "/safety_monitor")
+    clock.now = 1.0
+    for first in range(0, 130_000, 1000):
+        topics.send("/diagnostics", report(*(f"name {first + each}" for each in range(1000))), "/flood")
     assert len(table.items(2.0)) == MAX_NAMES + 1
-    assert table.items(2.0)["safety_monitor"] == (0.0, 1)
-    assert table.items(3.5) == {f"name {n}": (1.0, n) for n in range(130_000 - MAX_NAMES, 130_000)}
+    assert table.items(2.0)["/safety_monitor"][0] == 0.0
+    assert list(table.items(3.5)) == [f"/name {each}" for each in range(130_000 - MAX_NAMES, 130_000)]
+    clock.now = 4.0
     for number in range(1000):
-        table.put(f"/sender_{number}", "name", number, 4.0)
+        topics.send("/diagnostics", report("name"), f"/sender_{number}")
     assert len(table._senders) == MAX_SENDERS
-    assert table.items(4.0)["name"] == (4.0, 999)
+    assert list(table.items(4.0)) == ["/name"]
+
+
+def test_long_reports_of_one_sender_are_few(diagnostics) -> None:
+    table, topics, _ = diagnostics
+    topics.send("/diagnostics", report("safety_monitor"), "/safety_monitor")
+    for number in range(20):
+        topics.send("/diagnostics", report(f"name {number}", text="x" * 10_000), "/flood")
+    assert list(table.items(0.0)) == ["/safety_monitor", *(f"/name {number}" for number in range(14, 20))]
+    topics.send("/diagnostics", report("name", text="x" * MAX_SIZE), "/flood")
+    assert list(table.items(0.0)) == ["/safety_monitor"]
+
+
+def costs(kind: type, data: bytes) -> float:
+    """s of the thread's processor time to read a message."""
+    began = time.thread_time()
+    opened(sealed(kind, data))
+    return time.thread_time() - began
+
+
+def test_the_longest_map_and_the_longest_path_cost_less_than_a_tenth_of_a_second() -> None:
+    grid = OccupancyGrid()
+    cells = MAX_LONG_BYTES - len(wire(grid))
+    assert costs(OccupancyGrid, wire(grid)[:-4] + struct.pack("<I", cells) + bytes(cells)) < 0.1
+    path = Path(poses=[PoseStamped()] * 7000)
+    assert costs(Path, wire(path)) < 0.1
+    with pytest.raises(UnfitError, match="bytes, more than"):
+        opened(sealed(Path, wire(Path(poses=[PoseStamped()] * 20_000))))
+    assert len(opened(sealed(Path, wire(Path(poses=[PoseStamped()] * 20_000))), longest=MAX_LONG_BYTES).poses) == 20_000
+
+
+def test_a_map_has_its_cells_and_one_that_is_cut_off_is_refused() -> None:
+    data = wire(OccupancyGrid(data=[-1, 0, 100]))
+    assert list(opened(sealed(OccupancyGrid, data)).data) == [-1, 0, 100]
+    for end in range(len(data)):
+        with pytest.raises(UnfitError):
+            opened(sealed(OccupancyGrid, data[:end]))

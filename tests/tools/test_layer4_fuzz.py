@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import contextlib
 import json
+import math
 import os
 import random
 import time
@@ -20,6 +21,7 @@ import pytest
 from mutants import mutants
 from robot_control import _robot_control
 from robot_control.calibrate.robot import CalibratedRobot
+from robot_control.common.pose import Pose
 from robot_control.drive.main import Statuses
 from robot_control.drive.release import Release
 from robot_control.installed_files import share_file
@@ -28,6 +30,9 @@ from robot_control.latency.figures import table
 from robot_control.pad.law import Pad
 from robot_control.pad.main import Refusal, Source
 from robot_control.parameter_layers import layered
+from robot_control.path.frames import Tf, located
+from robot_control.path.robot import Robot
+from robot_control.path.waypoints import PathError, Waypoint
 from robot_control.safety.watch import SafetyWatch
 from robot_control.status.main import Status
 from robot_control.teleop.services import Answer, in_words
@@ -94,7 +99,7 @@ def console() -> Step:
     def step() -> None:
         backend.step()
         backend.view.navigation._places = backend.view.navigation._places_of_now()
-        shown = [backend.fast(), backend.slow(), backend.authority_of(page), backend.view.wanted()[1]]
+        shown = [backend.fast(), backend.slow(), backend.authority_of(page), backend.view.wanted[1]]
         json.dumps(shown, allow_nan=False)
         for name in ("map", "costmap"):
             with contextlib.suppress(NoGridError):
@@ -153,9 +158,22 @@ def latencies() -> Step:
     return lambda: table(listener.nodes())
 
 
+def follow_path() -> Step:
+    robot, tf = Robot(attended=True), Tf()
+    tf._complete_at = -math.inf
+
+    def step() -> None:
+        robot.against_driving(time.monotonic())
+        robot.revoked(0.0, waited=True)
+        with contextlib.suppress(PathError):
+            located([Waypoint(0.0, 0.0)], "map", robot.frames, tf)[1].pose(Pose(0.0, 0.0, 0.0), time.monotonic())
+
+    return step
+
+
 @pytest.mark.parametrize(
     "program",
-    [console, status, why, teleop, pad, send_cmd, view_markers, calibrate, latencies],
+    [console, status, why, teleop, pad, send_cmd, view_markers, calibrate, latencies, follow_path],
     ids=lambda p: p.__name__,
 )
 def test_no_damaged_message_ends_or_surprises_it(

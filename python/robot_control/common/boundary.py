@@ -20,18 +20,24 @@ from functools import cache
 from typing import Any
 
 import genpy
+import numpy as np
 import rospy
 
 from robot_control.common.files import fit_for_message
 
 MAX_BYTES = 1 << 19
 """of a message; to check 20,000 reports of nodes takes 0.05 s"""
-LONG = {"nav_msgs/OccupancyGrid", "nav_msgs/Path", "robot_control/FollowPathActionGoal"}
+GRID = "nav_msgs/OccupancyGrid"
+"""its cells become an array of numpy, which costs no time per cell"""
+LONG = {GRID, "robot_control/FollowPathActionGoal"}
 MAX_LONG_BYTES = 1 << 26
 """of a message of these types; a map of 8000 by 8000 cells"""
 FLOATS = ("float32", "float64")
-LIMITS, MEASURED = {"speed_limit", "range_max"}, {"wanted", "actual", "error", "effort", "load", "slip", "ranges"}
-MAY_BE_INFINITE = LIMITS | MEASURED | {"intensities", "odometry_confidence", "value"}
+MAY_BE_INFINITE = {
+    *("speed_limit", "range_max", "wanted", "actual", "error", "effort", "load", "slip", "ranges", "intensities"),
+    *("odometry_confidence", "value", "voltage", "temperature", "current", "charge", "capacity", "design_capacity"),
+    *("percentage", "cell_voltage", "cell_temperature"),
+}
 """Fields of any message in which NaN or an infinity has a meaning, such as no limit, no return or not measured"""
 POLL_PERIOD = 0.02
 """s between two looks for a message that is waited for"""
@@ -82,22 +88,19 @@ boundary = Boundary()
 """of this program"""
 
 
-def subscribe(
-    topic: str, kind: type, receive: Callable[[Any], None], *, not_finite: Collection[str] = (), **options: Any
-) -> rospy.Subscriber:
+def subscribe(topic: str, kind: type, receive: Callable[[Any], None], **options: Any) -> rospy.Subscriber:
     """A subscriber whose callback gets checked messages of `kind` only.
 
     Args:
         topic: name; it is the source of what is dropped
         kind: type of the messages; a publisher of another type is refused, as by any subscriber
         receive: called in rospy's thread
-        not_finite: names of fields in which a NaN or an infinity has a meaning, beside MAY_BE_INFINITE
         options: as for `rospy.Subscriber`
     """
 
     def arrive(sealed: Any) -> None:
         with boundary.crossing(topic):
-            receive(opened(sealed, not_finite))
+            receive(opened(sealed))
 
     return rospy.Subscriber(topic, _sealed(kind), arrive, **options)
 
@@ -105,38 +108,36 @@ def subscribe(
 class Latest:
     """The newest message of a topic, for a program that polls: it is checked when it is read, as most are not."""
 
-    def __init__(self, topic: str, kind: type) -> None:
-        self._topic = topic
+    def __init__(self, topic: str, kind: type, longest: int = 0) -> None:
+        """`longest`: bytes of a message, where they may be more than of another one of its type."""
+        self._topic, self._longest = topic, longest
         self._unread: deque[tuple[Any, float]] = deque(maxlen=1)
-        self._newest: Any = None
-        self._received_at = -math.inf
+        self._newest: tuple[Any, float] = None, -math.inf
         self._subscriber = rospy.Subscriber(topic, _sealed(kind), self._receive, queue_size=1, tcp_nodelay=True)
 
     @property
-    def message(self) -> Any:
-        """The newest one that passed the checks, or None."""
-        try:
+    def newest(self) -> tuple[Any, float]:
+        """The newest message that passed the checks, and when it was received, s, monotonic; None, minus infinity."""
+        with contextlib.suppress(IndexError):
             sealed, at = self._unread.popleft()
-        except IndexError:
-            return self._newest
-        with boundary.crossing(self._topic):
-            message = opened(sealed)
-            if at > self._received_at:  # another thread may have read a newer one meanwhile
-                self._newest, self._received_at = message, at
+            with boundary.crossing(self._topic):  # another thread may have read a newer one meanwhile
+                self._newest = max(self._newest, (opened(sealed, longest=self._longest), at), key=lambda each: each[1])
         return self._newest
 
     @property
-    def received_at(self) -> float:
-        """s, monotonic, of that message; minus infinity without one."""
-        return self._received_at if self.message is not None else -math.inf
+    def message(self) -> Any:
+        """That message; None without one."""
+        return self.newest[0]
 
     def age(self, now: float) -> float | None:
         """s since that message was received; None without one."""
-        return None if self.message is None else round(now - self._received_at, 2)
+        message, at = self.newest
+        return None if message is None else round(now - at, 2)
 
     def fresh(self, now: float, silence: float) -> Any:
         """That message if it was received less than `silence` s ago; else None."""
-        return self.message if now - self.received_at < silence else None
+        message, at = self.newest
+        return message if now - at < silence else None
 
     def end(self) -> None:
         """Ends the subscription."""
@@ -146,9 +147,11 @@ class Latest:
         self._unread.append((sealed, time.monotonic()))
 
 
-def next_message(topic: str, kind: type, patience: float) -> Any:
-    """The next message, or the last one if the topic is latched; None if none came within `patience` s."""
-    latest, end = Latest(topic, kind), time.monotonic() + patience
+def next_message(topic: str, kind: type, patience: float, longest: int = 0) -> Any:
+    """The next message, or the last one if the topic is latched; None if none came within `patience` s. `longest`: as
+    of Latest.
+    """
+    latest, end = Latest(topic, kind, longest), time.monotonic() + patience
     while latest.message is None and time.monotonic() < end and not rospy.is_shutdown():
         time.sleep(POLL_PERIOD)
     latest.end()
@@ -162,14 +165,15 @@ def _sealed(kind: type) -> type:
     return type(f"Sealed{kind.__name__}", (rospy.AnyMsg,), {**own, "__slots__": [], "kind": kind})
 
 
-def opened(sealed: Any, not_finite: Collection[str] = ()) -> Any:
-    """The checked message of the bytes. Raises UnfitError."""
+def opened(sealed: Any, not_finite: Collection[str] = (), longest: int = 0) -> Any:
+    """The checked message of the bytes, at most `longest` or, if that is 0, MAX_BYTES. Raises UnfitError."""
     data: bytes = sealed._buff  # all that AnyMsg has
-    bound = MAX_LONG_BYTES if sealed.kind._type in LONG else MAX_BYTES
+    bound = longest or (MAX_LONG_BYTES if sealed.kind._type in LONG else MAX_BYTES)
     if len(data) > bound:
         raise UnfitError(f"has {len(data)} bytes, more than {bound}")
     try:
-        message = sealed.kind().deserialize(data)
+        message = sealed.kind()
+        message.deserialize_numpy(data, np) if sealed.kind._type == GRID else message.deserialize(data)
     except (genpy.DeserializationError, UnicodeError, ValueError, TypeError, MemoryError, OverflowError) as error:
         raise UnfitError(f"is no {sealed.kind._type}: {str(error)[:100]}") from None
     require_fit(message, MAY_BE_INFINITE.union(not_finite))

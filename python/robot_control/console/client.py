@@ -229,7 +229,7 @@ class Client:
             self._seen_slow = frames.slow_number
             await self._socket.send_str(frames.slow)
             await self._socket.send_str(json.dumps(self._backend.authority_of(self.page)))
-            at, wanted = self._backend.view.wanted()
+            at, wanted = self._backend.view.wanted
             if at != self._wanted_at:
                 self._wanted_at = at
                 await self._socket.send_str(json.dumps(wanted))

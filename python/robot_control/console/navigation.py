@@ -44,7 +44,7 @@ class NavigationView:
 
     def values(self) -> dict[str, Any]:
         """`map`: its pose in odom; `scan`, `particles`: points in odom and in the map; `grids`: name → age's mark."""
-        marks = {name: grid.received_at for name, grid in self._grids.items() if math.isfinite(grid.received_at)}
+        marks = {name: grid.newest[1] for name, grid in self._grids.items() if grid.message is not None}
         return {**self._places, "grids": marks}
 
     def frame(self) -> str:

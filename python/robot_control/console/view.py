@@ -12,7 +12,7 @@ from geometry_msgs.msg import TwistStamped
 from nav_msgs.msg import Odometry, Path
 from sensor_msgs.msg import JointState
 
-from robot_control.common.boundary import Latest
+from robot_control.common.boundary import Latest, subscribe
 from robot_control.common.command import Command
 from robot_control.common.pose import pose_of
 from robot_control.console.navigation import NavigationView
@@ -45,7 +45,9 @@ class View:
             "feedback": Latest("follow_path/feedback", FollowPathActionFeedback),
         }
         self.navigation = NavigationView(self._topics["odom"])
-        self._wanted = Latest("path_wanted", Path)
+        self.wanted: tuple[float, Values] = -math.inf, {}
+        """when the path wanted was received, s, monotonic, and the path"""
+        subscribe("path_wanted", Path, self._receive_wanted, queue_size=1)
         self._status = Latest("robot_status", RobotStatus)
 
     def revoked(self, node: str) -> bool:
@@ -59,13 +61,11 @@ class View:
         odometry = self._topics["odom"].message
         return None if odometry is None else _pose(odometry)
 
-    def wanted(self) -> tuple[float, Values]:
-        """When the wanted path was received, and the path."""
-        message = self._wanted.message
-        points = [] if message is None else [(each.pose.position.x, each.pose.position.y) for each in message.poses]
-        frame = "" if message is None else message.header.frame_id
-        step = max(1, math.ceil(len(points) / MAX_PATH))
-        return self._wanted.received_at, finite({"type": "wanted", "frame": frame, "points": points[::step]})
+    def _receive_wanted(self, message: Path) -> None:
+        poses = message.poses[:: max(1, math.ceil(len(message.poses) / MAX_PATH))]
+        points = [(each.pose.position.x, each.pose.position.y) for each in poses]
+        values = finite({"type": "wanted", "frame": message.header.frame_id, "points": points})
+        self.wanted = time.monotonic(), values
 
     def fast(self, asked: Command | None) -> Values:
         """The values of a frame; `asked` is the last command of this console."""

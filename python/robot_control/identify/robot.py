@@ -62,12 +62,12 @@ class RunningRobot:
         """The present state; `senders` are the others on cmd_vel."""
         revoked = self._watch.revoked(self.requested, waited=True)
         now = time.monotonic()
-        odometry, status = self._odometry.message, self._watch.message
+        (odometry, at), status = self._odometry.newest, self._watch.message
         return Observation(
             pose=None if odometry is None else pose_of(odometry),
             linear=0.0 if odometry is None else odometry.twist.twist.linear.x,
             angular=0.0 if odometry is None else odometry.twist.twist.angular.z,
-            pose_age=now - self._odometry.received_at,
+            pose_age=now - at,
             state="" if status is None else status.state_name,
             status_age=now - self._watch.received_at,
             revoked=revoked,

@@ -118,7 +118,7 @@ class Refusal:
     @property
     def active(self) -> bool:
         """True if the newest message of the robot's controller says so."""
-        newest = max(self._states, key=lambda state: state.received_at).message
+        newest, _ = max((state.newest for state in self._states), key=lambda newest: newest[1])
         return newest is not None and rospy.get_name() in newest.revoked
 
 

@@ -10,7 +10,7 @@ from pathlib import Path as FilePath
 import rospy
 from nav_msgs.msg import Path
 
-from robot_control.common.boundary import next_message
+from robot_control.common.boundary import MAX_LONG_BYTES, next_message
 from robot_control.common.command import Command
 from robot_control.common.command_topic import CommandTopic
 from robot_control.common.file_errors import in_words
@@ -34,7 +34,7 @@ REPORT_PERIOD = 1.0
 
 def received(name: str) -> Path:
     """The next message on that topic, or its last one if it is latched. Raises PathError."""
-    message: Path | None = next_message(name, Path, PATIENCE)
+    message: Path | None = next_message(name, Path, PATIENCE, MAX_LONG_BYTES)
     if message is None:
         raise PathError(f"nothing came on {rospy.resolve_name(name)} within {PATIENCE:g} s")
     return message

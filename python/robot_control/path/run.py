@@ -22,6 +22,8 @@ from robot_control.path.waypoints import PathError, Waypoint, from_poses
 
 POLL_PERIOD = 0.005
 """s between two looks for a new odometry message"""
+MAX_SHOWN = 2000
+"""points of a path that is shown; a longer path is thinned evenly"""
 
 
 class Drive:
@@ -131,10 +133,10 @@ def points_of(message: Path) -> list[Waypoint]:
 
 
 def message_of(points: list[Waypoint], frame: str) -> Path:
-    """For RViz."""
+    """For RViz and the console."""
     path = Path()
     path.header.frame_id, path.header.stamp = frame, rospy.Time.now()
-    for point in points:
+    for point in [*points[: -1 : math.ceil(len(points) / MAX_SHOWN)], *points[-1:]]:
         pose = PoseStamped(header=path.header)
         pose.pose.position.x, pose.pose.position.y = point.x, point.y
         half = (point.yaw or 0.0) / 2
