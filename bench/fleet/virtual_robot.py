@@ -14,7 +14,7 @@ from robot_control.fleet.v2.capability import EDGE, INSTANT, NODE, STANDARD, Act
 from robot_control.fleet.v2.leg import PathPoint
 from robot_control.fleet.v2.order import Action
 from robot_control.fleet.v2.state import Facts, Machine
-from robot_control.fleet.v2.vehicle import Vehicle
+from robot_control.fleet.v2.vehicle import FINISHED, Vehicle
 from robot_control.path.follower import Follower, FollowParameters, Motion, State
 from robot_control.path.pieces import route
 from robot_control.path.waypoints import Waypoint, limited, shortened
@@ -58,16 +58,16 @@ class VirtualRobot:
     def stop(self) -> None:
         self._stopping = True
 
-    def resume(self) -> str:
-        self.given = replace(self.given, held_by="")
-        return ""
-
     def set_position(self, x: float, y: float, theta: float, map_id: str) -> str:
         self.pose, self.given = Pose(x, y, theta), replace(self.given, map_id=map_id)
         return ""
 
     def begin(self, action: Action) -> None:
-        self.begun.append(action)
+        if action.kind == "stopPause":
+            self.given = replace(self.given, held_by="")
+            self.ended.append((action.id, FINISHED, ""))
+        else:
+            self.begun.append(action)
 
     def end(self, action_id: str) -> bool:
         del action_id

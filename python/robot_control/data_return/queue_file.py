@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import contextlib
 import fcntl
-import json
 import os
 import re
 import stat
@@ -13,7 +12,8 @@ from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
 
-from robot_control.common.files import printable, write_durably
+from robot_control.common.files import printable
+from robot_control.common.kept_file import put_aside, read_kept, write_kept
 from robot_control.data_return.parts import read_part
 from robot_control.data_return.plan import KINDS, Entry, identity, kind_of
 
@@ -45,12 +45,10 @@ class QueueFile:
         self.entries: dict[str, Entry] = {}
         self.damage = ""
         """why the file is no queue; empty: it is one, or there is none"""
-        with contextlib.suppress(FileNotFoundError):
-            try:
-                files = [_entry(each) for each in json.loads(self.path.read_bytes())["files"]]
-                self.entries = {each.key: each for each in files}
-            except (ValueError, KeyError, TypeError, AttributeError, RecursionError) as error:
-                self.damage = f"{self.path} is no queue of data_return.py ({printable(str(error))})"
+        try:
+            self.entries = {each.key: each for each in map(_entry, read_kept(self.path) or ())}
+        except (ValueError, KeyError, TypeError, AttributeError) as error:
+            self.damage = f"{self.path} is no queue of data_return.py ({printable(str(error))})"
 
     def lock(self) -> None:
         """Holds the folder until the program ends; a damaged queue is put aside there.
@@ -66,11 +64,11 @@ class QueueFile:
         except BlockingIOError:
             raise QueueError(f"another data_return.py uses {self.folder}; end it, or set queue_folder") from None
         if self.damage:
-            self.path.replace(self.path.with_suffix(".damaged"))
+            put_aside(self.path)
 
     def save(self) -> None:
         """Raises OSError."""
-        write_durably(self.path, json.dumps({"format": 1, "files": [asdict(each) for each in self.entries.values()]}))
+        write_kept(self.path, [asdict(each) for each in self.entries.values()])
 
     def scan(self, logs: Path, day: float) -> list[Entry]:
         """Takes in what is finished, forgets what is gone. Returns those that are gone and had not returned.

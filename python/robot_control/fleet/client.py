@@ -6,6 +6,7 @@ from __future__ import annotations
 
 import math
 import sys
+from collections import deque
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
@@ -16,7 +17,7 @@ from robot_control.fleet.settings import Settings
 from robot_control.fleet.v2.capability import INSTANT, Capabilities
 from robot_control.fleet.v2.leg import Leg, PathPoint, aligned, leg_of
 from robot_control.fleet.v2.messages import INBOUND, MAX_ID, Error, Message, RefusedError, decoded, is_connection
-from robot_control.fleet.v2.order import Action, Node, Order, order_of
+from robot_control.fleet.v2.order import NONE, Action, Node, Order, order_of
 from robot_control.fleet.v2.state import STATE_PERIOD, Facts, Machine, factsheet, state, visualization
 from robot_control.fleet.v2.vehicle import FAILED, FINISHED, RUNNING, ActionState, Vehicle
 from robot_control.path.waypoints import FARTHEST
@@ -63,14 +64,11 @@ class Robot(Protocol):
     def stop(self) -> None:
         """Ends the present leg."""
 
-    def resume(self) -> str:
-        """Why the path that is held at the robot does not go on; empty if it does."""
-
     def set_position(self, x: float, y: float, theta: float, map_id: str) -> str:
         """Why it is refused; empty if the robot is there from now on."""
 
     def begin(self, action: Action) -> None:
-        """Its end comes with `results`."""
+        """Its end comes with `results`; stopPause: the path that is held at the robot goes on."""
 
     def end(self, action_id: str) -> bool:
         """True if the action was interrupted; else its end comes with `results`."""
@@ -108,6 +106,8 @@ class Client:
         self._outbox: list[tuple[str, Message]] = []
         self._sent_key: object = None  # what the last state said
         self._state_at = self._visualization_at = -math.inf
+        self._requests: deque[Callable[[], None]] = deque()
+        """of other threads: what the next pass does first with the vehicle, which is that of one thread"""
         self._stepped_at, self._ignore_until = math.inf, -math.inf
         self._duplicate_until = -math.inf
         self._planned: object = None  # revision of the order that the present leg is made of
@@ -154,8 +154,13 @@ class Client:
             self.vehicle.refuse(replace(refused.error, references=(*refused.error.references, ("topic", topic))))
 
     def _drop_order(self) -> None:
-        """Called where an exception is handled that nothing foresaw: an order that led to it must not do so again."""
+        """Called in any thread, where an exception is handled that nothing foresaw: an order that led to it must not do
+        so again.
+        """
         why = f"the order was dropped: {type(sys.exception()).__name__}: {sys.exception()}"
+        self._requests.append(lambda: self._drop(why))
+
+    def _drop(self, why: str) -> None:
         self._leg, self._state_due = None, True
         self._driving_error = Error("internalError", why, (), "the log of vda5050 names it; send another order")
         self._interrupt(self.vehicle.clear("an internal error"))
@@ -205,28 +210,39 @@ class Client:
             case "startPause":
                 self.vehicle.paused, state.status = True, RUNNING
             case "stopPause":
-                why = self.resume()
-                state.end(FAILED if why else FINISHED, why)
+                if why := self._against_resuming():
+                    state.end(FAILED, why)
+                else:
+                    self._resume(state)
             case "stateRequest":
                 state.end(FINISHED)
             case "factsheetRequest":
                 self._outbox.append(("factsheet", factsheet(self.machine)))
                 state.end(FINISHED)
 
+    def pause(self) -> None:
+        """startPause at the robot, in any thread."""
+        self._requests.append(lambda: setattr(self.vehicle, "paused", True))
+
     def resume(self) -> str:
-        """stopPause, or the same at the robot; why it does not go on, empty if it does."""
-        if not self._facts.may_drive or self._facts.silent:
-            return "the safety monitor does not permit to drive, or it or odometry is silent"
-        if self._stepped_at < self._duplicate_until:
-            return DUPLICATE_CLIENT.description
-        why = self.robot.resume() if self._facts.held_by else ""
-        if not why:
-            self.vehicle.paused, self._driving_error = False, None
+        """stopPause at the robot, in any thread; why it does not go on, empty if it does."""
+        if not (why := self._against_resuming()):
+            self._requests.append(lambda: self._resume(ActionState(Action({}, "", "stopPause", NONE), -1)))
         return why
 
-    def pause(self) -> None:
-        """startPause, at the robot."""
-        self.vehicle.paused = True
+    def _against_resuming(self) -> str:
+        if not self._facts.may_drive or self._facts.silent:
+            return "the safety monitor does not permit to drive, or it or odometry is silent"
+        return DUPLICATE_CLIENT.description if self._stepped_at < self._duplicate_until else ""
+
+    def _resume(self, state: ActionState) -> None:
+        """The path that is held at the robot goes on, or not; that ends the action then."""
+        self.vehicle.paused, self._driving_error = False, None
+        if self._facts.held_by:
+            state.status = RUNNING
+            self.robot.begin(state.action)
+        else:
+            state.end(FINISHED)
 
     # one pass
 
@@ -241,6 +257,8 @@ class Client:
         return outbox
 
     def _advance(self, now: float) -> None:
+        while self._requests:
+            self._requests.popleft()()
         before, self._facts = self._facts, self.robot.facts()
         vehicle, facts = self.vehicle, self._facts
         vehicle.standing = not facts.driving and self.robot.progress.status != DRIVING

@@ -21,6 +21,8 @@ from robot_control.fleet.v2.vehicle import FAILED, FINISHED
 Result = tuple[str, str, str]
 RELEASE = ("sh", "-c", 'read -r _ || for topic; do timeout 10 rostopic pub -1 "$topic" std_msgs/Bool false & done', "-")
 """Waits for a line. If the pipe ends without one, the program was killed, and each topic becomes false."""
+MAX_CALLS = 32
+"""services that do not answer, each with a thread of its own"""
 
 
 class Actions:
@@ -29,6 +31,7 @@ class Actions:
     def __init__(self, custom: dict[str, CustomAction]) -> None:
         self._custom = custom
         self._results: queue.SimpleQueue[Result] = queue.SimpleQueue()
+        self._calls: list[threading.Thread] = []
         self._ends: dict[str, tuple[float, str]] = {}  # s, monotonic; its topic or service, empty: waitForTrigger
         self._topics = {
             each.topic: Sender(rospy.Publisher(each.topic, Bool, queue_size=1, latch=True), Bool(data=False))
@@ -57,8 +60,13 @@ class Actions:
             self._ends[action.id] = time.monotonic() + seconds, custom.topic or custom.service
             if custom.topic:
                 self._topics[custom.topic].send(Bool(data=True))
-            else:
-                threading.Thread(target=self._call, args=(action.id, custom), daemon=True).start()
+                return
+            self._calls = [each for each in self._calls if each.is_alive()]
+            if len(self._calls) >= MAX_CALLS:
+                self._results.put((action.id, FAILED, f"{MAX_CALLS} services do not answer"))
+                return
+            self._calls.append(threading.Thread(target=self._call, args=(action.id, custom), daemon=True))
+            self._calls[-1].start()
 
     def end(self, action_id: str) -> bool:
         """True if it was interrupted; a service that was called goes on."""

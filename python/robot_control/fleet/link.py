@@ -18,7 +18,8 @@ from typing import Any
 import paho.mqtt.client as mqtt
 
 from robot_control.common.boundary import UnfitError, boundary
-from robot_control.fleet.memory import Memory, digest_of
+from robot_control.common.kept_file import digest_of
+from robot_control.fleet.memory import Memory
 from robot_control.fleet.settings import Settings
 from robot_control.fleet.v2.messages import INBOUND, MAX_BYTES, Message, encoded, time_text
 

@@ -2,49 +2,38 @@
 
 from __future__ import annotations
 
-import hashlib
-import json
 import threading
 from pathlib import Path
 from typing import Any
 
 from robot_control.common.file_errors import in_words
-from robot_control.common.files import check_input, write_durably
+from robot_control.common.kept_file import DamagedError, put_aside, read_kept, write_kept
 
 BLOCK = 1000
 """headerIds that are reserved with one write: they grow over restarts, and a write per message is saved"""
-MAX_FILE = 1 << 24
-"""bytes; an order of 500 nodes has 200,000"""
 
 
 class Memory:
-    """A file that holds the last state that was saved, whatever ends the program or the machine.
-
-    Its first line is the digest of the second one, so that nothing is taken from a file that was damaged or is another.
-    """
+    """A file that holds the last state that was saved, whatever ends the program or the machine."""
 
     def __init__(self, path: Path) -> None:
-        """A file whose digest is wrong is moved aside. Raises OSError, InputFileError: there cannot be a file."""
+        """A file that is damaged is moved aside. Raises OSError, InputFileError: there cannot be a file."""
         self.path = path
         self.problem = ""
         """why the last content could not be saved, or was moved aside; empty if it is in the file"""
         path.parent.mkdir(parents=True, exist_ok=True)
         self._content: dict[str, Any] = {"headers": {}}
-        if path.exists():
-            check_input(path, MAX_FILE)
-            digest, _, text = path.read_bytes().partition(b"\n")
-            if digest == digest_of(text).encode():
-                self._content = json.loads(text)
-            else:
-                self.move_aside("its digest is wrong")
+        try:
+            self._content = read_kept(path) or self._content
+        except DamagedError as error:
+            self.move_aside(str(error))
         self._reserved: dict[str, int] = dict(self._content["headers"])
         self._next = dict(self._reserved)
         self._lock = threading.RLock()  # the link has a thread of its own
 
     def move_aside(self, why: str) -> None:
         """Begins without content; the file keeps its own under another name. Raises OSError."""
-        aside = self.path.with_name(f"{self.path.name}.damaged")
-        self.path.replace(aside)
+        aside = put_aside(self.path)
         self._content = {"headers": self._content["headers"]}
         self.problem = f"{self.path} cannot be used ({why}) and is {aside} now: the order before is not known"
 
@@ -56,12 +45,8 @@ class Memory:
         """Why these values are not in the file; empty if they are."""
         with self._lock:
             content = self._content | values | {"headers": self._reserved}
-            text = json.dumps(content)
-            if len(text) > MAX_FILE // 2:  # what is read at the next start has a bound
-                self.problem = f"{len(text)} bytes are more than {MAX_FILE // 2}"
-                return self.problem
             try:
-                write_durably(self.path, f"{digest_of(text.encode())}\n{text}")
+                write_kept(self.path, content)
                 self._content, self.problem = content, ""
             except OSError as error:
                 self.problem = in_words(error)
@@ -76,8 +61,3 @@ class Memory:
                 self.save()
             self._next[topic] = number + 1
             return number % 2**32
-
-
-def digest_of(payload: bytes) -> str:
-    """Says whether a payload is another one."""
-    return hashlib.sha256(payload).hexdigest()

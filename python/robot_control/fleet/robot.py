@@ -13,14 +13,13 @@ from actionlib_msgs.msg import GoalStatus
 from geometry_msgs.msg import PoseStamped, TransformStamped
 from nav_msgs.msg import Odometry
 from sensor_msgs.msg import BatteryState
-from std_srvs.srv import Trigger
 from tf2_msgs.msg import TFMessage
 
 from robot_control.common.boundary import subscribe, unsealed
 from robot_control.common.pose import pose_of, turned
 from robot_control.fleet.client import DONE, DRIVING, ENDED, Progress
 from robot_control.fleet.custom import Actions
-from robot_control.fleet.settings import Settings
+from robot_control.fleet.settings import CustomAction, Settings
 from robot_control.fleet.v2.leg import PathPoint
 from robot_control.fleet.v2.messages import Error
 from robot_control.fleet.v2.order import Action
@@ -38,10 +37,10 @@ SILENCE = 0.5
 STATUS_SILENCE = 3.0
 """s without safety_status, robot_status or feedback of follow_path; the slowest come once per second"""
 ACTION = "follow_path"
+RESUME = CustomAction(service=f"{ACTION}/resume", timeout=5.0)
+"""stopPause for a path that is held at the robot"""
 JUMP = 0.5
 """m, rad beyond the measured motion: odometry was set, and map → odom does not hold any more"""
-UNMEASURED = tuple(BatteryState.__slots__)
-"""fields of battery_state in which NaN stands for nothing measured"""
 MAX_ERRORS = 20
 """of each kind of errors in a state; the monitor has fewer causes"""
 SPEED_CHANGE = 1.0
@@ -63,7 +62,7 @@ class RosRobot:
     def __init__(self, settings: Settings, saved: list[Any] | None) -> None:
         """`saved`: `position` of the program before; None: the position is not initialized."""
         self.progress, self._goal = Progress(), 0
-        self._settings, self.actions = settings, Actions(settings.actions)
+        self._settings, self.actions = settings, Actions({**settings.actions, "stopPause": RESUME})
         self._odometry: Odometry | None = None
         self._safety: SafetyStatus | None = None
         self._status: RobotStatus | None = None
@@ -78,7 +77,7 @@ class RosRobot:
         subscribe_odometry(self._receive_odometry)
         subscribe("safety_status", SafetyStatus, self._receive_safety, queue_size=1)
         subscribe("robot_status", RobotStatus, self._receive_status, queue_size=1)
-        subscribe("battery_state", BatteryState, self._receive_battery, not_finite=UNMEASURED, queue_size=1)
+        subscribe("battery_state", BatteryState, self._receive_battery, queue_size=1)
         self._client = actionlib.ActionClient(ACTION, GuardedAction)
         self._handles: list[actionlib.ClientGoalHandle] = []  # of goals that have not ended, the present one last
 
@@ -220,14 +219,6 @@ class RosRobot:
         """Ends every goal of follow_path, also one of the program that ran before this one."""
         if self._client.wait_for_server(rospy.Duration(0.01)):
             self._client.cancel_goals_at_and_before_time(rospy.Time.now())
-
-    def resume(self) -> str:
-        """Why the path that is held at the robot does not go on; empty if it does."""
-        try:
-            answer = rospy.ServiceProxy(f"{ACTION}/resume", Trigger)()
-        except rospy.ServiceException as error:
-            return str(error)
-        return "" if answer.success else str(answer.message)
 
     def _feedback(self, number: int, feedback: FollowPathFeedback) -> None:
         if number == self._goal and self.progress.status == DRIVING:

@@ -22,7 +22,7 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
 from typing import Any
 
-from robot_control.fleet.v2.messages import Error, Message, RefusedError
+from robot_control.fleet.v2.messages import LIMITS, Error, Message, RefusedError
 from robot_control.fleet.v2.order import HARD, NONE, Action, Edge, Node, Order, in_sequence
 
 WAITING, RUNNING, FINISHED, FAILED = "WAITING", "RUNNING", "FINISHED", "FAILED"
@@ -31,6 +31,10 @@ IMMEDIATE = ("startPause", "stopPause", "cancelOrder", "stateRequest", "factshee
 """instant actions that concern the order itself: they wait for none and hold none up, whatever their blockingType"""
 MAX_ERRORS = 20
 """refusals that are reported; an older one makes room"""
+MAX_NODES = 2 * LIMITS["nodes"]
+"""nodes that are still to be traversed; so an update may be as long as an order while that is driven"""
+MAX_OVER = 1000
+"""finished actions of an order that are kept, where an older one makes room"""
 MAX_INSTANT = 100
 """finished instant actions that are kept until the next order, where an older one makes room; and that may run"""
 
@@ -147,6 +151,8 @@ class Vehicle:
         if (first.id, first.sequence) != point:
             why = f"it must begin with node {point[0]}, sequenceId {point[1]}"
             raise _refused(order, "orderUpdateError", why, nodeId=first.id)
+        if sum(node.sequence <= first.sequence for node in self.nodes) + len(order.nodes) - 1 > MAX_NODES:
+            raise _refused(order, "orderUpdateError", f"more than {MAX_NODES} nodes are still to be traversed")
         self._check_ids(order, order.elements[1:], (s for s in self.actions if s.sequence <= first.sequence))
         if self.cancelling:
             raise _refused(order, "orderUpdateError", "the order is being cancelled")
@@ -173,6 +179,7 @@ class Vehicle:
         self.nodes = [node for node in self.nodes if node.sequence <= after] + list(order.nodes[1:])
         self.edges = [edge for edge in self.edges if edge.sequence < after] + list(order.edges)
         self.actions = [state for state in self.actions if state.sequence <= after]
+        self._forget([state for state in self.actions if state.over and state.sequence >= 0], MAX_OVER)
         self._add_actions(order.elements[1:])
         self._enter_edge()
 
@@ -182,7 +189,8 @@ class Vehicle:
     # instant actions
 
     def add_instant(self, action: Action) -> ActionState | None:
-        """Its state, triggered; None if an action of this id is here already: it came twice.
+        """Its state, triggered; None if an action of this id is here already: it came twice. Where too many are not
+        over, one that concerns the order itself takes the place of the oldest one of its kind.
 
         Raises:
             RefusedError: too many others of the robot are not over.
@@ -190,15 +198,22 @@ class Vehicle:
         if any(state.action.id == action.id for state in self.actions):
             return None
         instant = [state for state in self.actions if state.sequence < 0]
-        over = [state for state in instant if state.over]
-        if len(instant) - len(over) >= MAX_INSTANT and action.kind not in IMMEDIATE:
-            why = f"{MAX_INSTANT} instant actions are not over"
-            raise RefusedError("orderError", why, actionId=action.id)
-        for state in over[: max(0, len(over) - MAX_INSTANT + 1)]:
-            self.actions.remove(state)
+        going_on = [state for state in instant if not state.over]
+        why = f"{MAX_INSTANT} instant actions are not over"
+        if len(going_on) >= MAX_INSTANT:
+            if action.kind not in IMMEDIATE:
+                raise RefusedError("orderError", why, actionId=action.id)
+            for state in [each for each in going_on if each.action.kind == action.kind][:1]:
+                state.end(FAILED, why)
+        self._forget([state for state in instant if state.over], MAX_INSTANT - 1)
         state = ActionState(action, -1, triggered=True)
         self.actions.append(state)
         return state
+
+    def _forget(self, over: list[ActionState], kept: int) -> None:
+        """The oldest of these make room, until so many are kept."""
+        for state in over[: max(0, len(over) - kept)]:
+            self.actions.remove(state)
 
     @property
     def cancelling(self) -> list[ActionState]:
