@@ -80,8 +80,8 @@ class Changes:
                 stack.enter_context(patch.object(module, "PART_BYTES", PART))
             for name in ("open", "fstat", "pread"):
                 stack.enter_context(patch.object(os, name, hooked(getattr(os, name))))
-            for name in ("rename", "lstat"):
-                stack.enter_context(patch.object(Path, name, hooked(getattr(Path, name))))
+            stack.enter_context(patch.object(Path, "lstat", hooked(Path.lstat)))
+            stack.enter_context(patch.object(parts, "renamed", hooked(parts.renamed)))
             unlink = Path.unlink
 
             def judged(path: Path, *given: Any, **named: Any) -> None:

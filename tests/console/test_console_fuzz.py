@@ -92,27 +92,51 @@ def test_no_message_of_a_page_surprises_the_console(message, monkeypatch):
                 assert not surprises, mutant
 
 
-def test_no_body_of_a_login_surprises_the_server(monkeypatch, tmp_path):
+HEADERS = {"Host": "console", "Origin": "http://console", "Content-Type": "application/json"}
+
+
+def served(monkeypatch, known):
+    """A client of a server with these users."""
     pytest.importorskip("aiohttp")
     from aiohttp.test_utils import TestClient, TestServer
     from robot_control.console.addresses import Origins
     from robot_control.console.backend import Backend
     from robot_control.console.server import Server
 
-    surprises = surprises_of(monkeypatch)
     with graph(monkeypatch):
         backend = Backend(settings.Settings())
     monkeypatch.undo()
-    known, origin = users.Users(tmp_path / "users.json"), {"http://console"}
-    known.add("anna", authority.Role.WATCH, 0.0)
-    server = Server(backend, Origins(frozenset(origin)), known, tmp_path, port=1, read_only=False)
-    headers = {"Host": "console", "Origin": "http://console", "Content-Type": "application/json"}
+    origins = Origins(frozenset({"http://console"}))
+    return TestClient(TestServer(Server(backend, origins, known, known.path.parent, port=1, read_only=False).app))
+
+
+def test_wrong_links_block_no_first_login_of_another_link(monkeypatch, tmp_path):
+    known = users.Users(tmp_path / "users.json")
+    link = known.add("anna", authority.Role.WATCH, time.time())
+
+    async def answers():
+        async with served(monkeypatch, known) as client:
+            for body in [*({"link": f"wrong {number}"} for number in range(6)), {"link": link}]:
+                data = json.dumps({"password": "long enough", **body})
+                async with client.post("/api/login", data=data, headers=HEADERS) as answer:
+                    yield answer.status
 
     async def whole():
-        async with TestClient(TestServer(server.app)) as client:
+        return [each async for each in answers()]
+
+    assert asyncio.run(whole()) == [403] * 6 + [200]
+
+
+def test_no_body_of_a_login_surprises_the_server(monkeypatch, tmp_path):
+    surprises = surprises_of(monkeypatch)
+    known = users.Users(tmp_path / "users.json")
+    known.add("anna", authority.Role.WATCH, 0.0)
+
+    async def whole():
+        async with served(monkeypatch, known) as client:
             valid = json.dumps({"name": "anna", "link": "", "password": "long enough"}).encode()
             for mutant in mutants(valid, COUNT, seed=3):
-                async with client.post("/api/login", data=mutant, headers=headers) as answer:
+                async with client.post("/api/login", data=mutant, headers=HEADERS) as answer:
                     assert answer.status in {400, 403, 413, 429}, (answer.status, mutant, surprises)
 
     asyncio.run(whole())

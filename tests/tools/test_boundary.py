@@ -10,6 +10,7 @@ from types import SimpleNamespace
 
 import pytest
 import rospy
+from actionlib_msgs.msg import GoalID, GoalStatus, GoalStatusArray
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
 from geometry_msgs.msg import PoseStamped
 from mutants import mutants
@@ -21,6 +22,7 @@ from robot_control.common.boundary import (
     Latest,
     UnfitError,
     _sealed,
+    guard_action,
     next_message,
     opened,
     unsealed,
@@ -57,6 +59,19 @@ def test_what_actionlib_cannot_read_arrives_empty_and_counts(
     data = wire(Odometry(child_frame_id="base_link"))
     assert [kind().deserialize(each).child_frame_id for each in (data, data[:-1])] == ["base_link", ""]
     assert boundary.dropped == {"nav_msgs/Odometry": 1}
+
+
+@pytest.mark.parametrize("of", [GoalID, GoalStatusArray])
+def test_what_actionlib_subscribes_to_by_itself_is_guarded(
+    of: type, monkeypatch: pytest.MonkeyPatch, boundary: Boundary
+) -> None:
+    monkeypatch.setattr("robot_control.common.boundary.boundary", boundary)
+    guard_action("guarded", **{of.__name__: unsealed(of)})
+    kind = rospy.Subscriber(f"guarded/{of.__name__}", of, print).impl.data_class
+    message = GoalID(id="1") if of is GoalID else GoalStatusArray(status_list=[GoalStatus(text="driving")])
+    for mutant in mutants(wire(message), 2000, seed=1):
+        kind().deserialize(mutant)
+    assert boundary.dropped[of._type] > 100
 
 
 def test_a_healthy_message_arrives() -> None:
@@ -237,7 +252,7 @@ def test_the_longest_map_and_the_longest_path_cost_less_than_a_tenth_of_a_second
     grid = OccupancyGrid()
     cells = MAX_LONG_BYTES - len(wire(grid))
     assert costs(OccupancyGrid, wire(grid)[:-4] + struct.pack("<I", cells) + bytes(cells)) < 0.1
-    path = Path(poses=[PoseStamped()] * 7000)
+    path = Path(poses=[PoseStamped()] * 3600)
     assert costs(Path, wire(path)) < 0.1
     with pytest.raises(UnfitError, match="bytes, more than"):
         opened(sealed(Path, wire(Path(poses=[PoseStamped()] * 20_000))))

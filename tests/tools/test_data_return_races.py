@@ -3,10 +3,14 @@
 import io
 import os
 import random
+from types import SimpleNamespace
 
 import pytest
 from data_return_system import OPEN_BAG, PART, WHOLE_BAG, System, use_small_parts, write
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
+from robot_control.common.boundary import Boundary
+from robot_control.data_return import node, parts
+from robot_control.data_return.node import Node
 from robot_control.data_return.parts import MANIFEST, put_together
 
 from bench.data_return.changes import Changes
@@ -159,19 +163,57 @@ def test_a_part_that_the_far_side_damaged_is_noticed_before_the_file_is_deleted(
 def test_a_file_that_takes_the_name_at_the_moment_of_the_deletion_stays(tmp_path, monkeypatch):
     system = System(tmp_path, {"run.1.bag": some_bytes(PART)}, local_quota=1e-9)
     logs = tmp_path / "logs"
-    rename = type(logs).rename
+    renamed = parts.renamed
 
     def late(path, target):
-        if target.name == "_run.1.bag":
-            write(logs / "other", b"another file")
-            (logs / "other").replace(path)
-            monkeypatch.undo()
-        return rename(path, target)
+        write(logs / "other", b"another file")
+        (logs / "other").replace(path)
+        monkeypatch.undo()
+        return renamed(path, target)
 
-    monkeypatch.setattr("pathlib.Path.rename", late)
+    monkeypatch.setattr(parts, "renamed", late)
     for _ in range(3):
         system.step()
     assert (logs / "run.1.bag").read_bytes() == b"another file"
+
+
+def test_a_file_that_takes_the_other_name_before_the_deletion_stays(tmp_path, monkeypatch):
+    system = System(tmp_path, {"run.1.bag": some_bytes(PART)}, local_quota=1e-9)
+    logs = tmp_path / "logs"
+    renamed, exists = parts.renamed, os.path.lexists
+
+    def late(*paths):
+        if not exists(logs / "_run.1.bag"):
+            (logs / "_run.1.bag").write_bytes(b"another file")
+        return renamed(*paths)
+
+    monkeypatch.setattr(parts, "renamed", late)
+    for _ in range(3):
+        system.step()
+    assert {path.name: path.read_bytes() for path in logs.iterdir()} == {"_run.1.bag": b"another file"}
+
+
+def test_a_report_that_surprises_the_program_does_not_end_its_reports(monkeypatch):
+    reports, names = [], iter([KeyError("x"), "", ""])
+
+    class Sender:
+        progress = "all files are on the far side"
+
+        @property
+        def problem(self):
+            if isinstance(name := next(names, ""), KeyError):
+                raise name
+            return name
+
+    monkeypatch.setattr(node, "boundary", Boundary(lambda _: None))
+    monkeypatch.setattr(node.rospy.Time, "now", node.rospy.Time)
+    sending = Node.__new__(Node)
+    sending._sender, sending._name = Sender(), "data_return"
+    sending._diagnostics = SimpleNamespace(publish=reports.append)
+    for _ in range(2):
+        sending._report(None)
+    assert [each.status[0].message for each in reports] == ["ok"]
+    assert node.boundary.dropped == {"a report": 1}
 
 
 def test_a_deletion_that_was_ended_half_way_costs_no_file(tmp_path, monkeypatch):

@@ -15,6 +15,8 @@ from types import SimpleNamespace
 
 import pytest
 import yaml
+from actionlib import CommState
+from actionlib_msgs.msg import GoalID, GoalStatus, GoalStatusArray
 from mutants import mutants
 from nav_msgs.msg import Odometry
 from robot_control.common import boundary as crossing
@@ -29,7 +31,7 @@ from robot_control.fleet.settings import CustomAction, Settings, read_settings
 from robot_control.fleet.v2.messages import RefusedError, decoded, encoded, schema
 from robot_control.fleet.v2.order import Action, order_of
 from robot_control.fleet.v2.vehicle import MAX_INSTANT, MAX_NODES, MAX_OVER, Vehicle
-from robot_control.msg import FollowPathActionFeedback, RobotStatus, SafetyStatus
+from robot_control.msg import FollowPathActionFeedback, FollowPathActionResult, RobotStatus, SafetyStatus
 from sensor_msgs.msg import BatteryState
 
 from bench.fleet.attack import mutated, seeds
@@ -546,7 +548,7 @@ def test_no_message_of_a_topic_ends_the_client_or_holds_it_up(wire, topic, count
     feedback = FollowPathActionFeedback()
     feedback.feedback.distance, feedback.feedback.state = 0.5, "driving"
     message = {**valid_topics(), "feedback": feedback}[topic]
-    kind = crossing.unsealed(FollowPathActionFeedback)
+    kind, _ = wire.arrive["follow_path/feedback"]
     for number, payload in enumerate(mutants(wire_of(message), count, seed=1)):
         if topic == "feedback":
             robot._client.feedback(None, timed(kind().deserialize, payload).feedback)
@@ -558,3 +560,27 @@ def test_no_message_of_a_topic_ends_the_client_or_holds_it_up(wire, topic, count
                 assert next(STATE.iter_errors({**header(), **out}), None) is None
     assert set(crossing.boundary.dropped) <= {topic, FollowPathActionFeedback._type}
     assert "a pass" not in crossing.boundary.dropped
+
+
+@BOTH
+@pytest.mark.parametrize("topic", ["status", "result"])
+def test_no_message_of_the_action_raises_in_the_thread_that_reads_it(wire, topic, count):
+    client_on(wire)
+    kind, _ = wire.arrive[f"follow_path/{topic}"]
+    status = GoalStatus(GoalID(id="1"), GoalStatus.ACTIVE, "driving")
+    message = FollowPathActionResult(status=status) if topic == "result" else GoalStatusArray(status_list=[status])
+    for payload in mutants(wire_of(message), count, seed=1):
+        timed(kind().deserialize, payload)
+    assert set(crossing.boundary.dropped) == {kind._type}
+
+
+def test_a_goal_whose_status_is_lost_is_cancelled_for_it_may_go_on(wire, monkeypatch):
+    robot, client = client_on(wire)
+    monkeypatch.setattr(ros_robot.rospy.Time, "now", ros_robot.rospy.Time)
+    robot._client.cancel_goals_at_and_before_time = lambda _: robot.__dict__.update(cancelled=True)
+    lost = SimpleNamespace(get_goal_status=lambda: GoalStatus.LOST, get_result=lambda: None)
+    lost.get_comm_state = lambda: CommState.DONE
+    robot._transition(robot._goal, lost)
+    assert robot.cancelled
+    client.step(0.04)
+    assert client.vehicle.paused

@@ -27,7 +27,7 @@ from robot_control.console.navigation import NoGridError
 from robot_control.console.pending_connections import PendingConnections
 from robot_control.console.room import gives_way
 from robot_control.console.runs import Runs, RunsError
-from robot_control.console.sessions import Session, Sessions, Tries
+from robot_control.console.sessions import Session, Sessions, Tries, digest
 from robot_control.console.users import Users, UsersError
 
 MAX_PAGES = 20
@@ -158,8 +158,8 @@ class Server:
         users, remote = self._users, request.remote or ""
         if users is None:
             raise web.HTTPForbidden(text="this console has no users: open the address that console.py printed")
-        now = time.time()
-        wait = self._tries.admit(name, remote, now)
+        now, tried = time.time(), digest(link) if link else name  # wrong links block no other link
+        wait = self._tries.admit(tried, remote, now)
         if wait > 0:
             raise self._refusal(request, web.HTTPTooManyRequests, f"too many tries: wait {wait:.0f} s")
         try:
@@ -168,7 +168,7 @@ class Server:
                 user = await asyncio.to_thread(*check)
         except UsersError as error:
             raise self._refusal(request, web.HTTPForbidden, f"{printable(name, 32)}: {error}".lstrip(": ")) from None
-        self._tries.succeed(name, remote, now)
+        self._tries.succeed(tried, remote, now)
         return self._begin(request, web.json_response({}), user.name, user.role)
 
     async def _logout(self, request: web.Request) -> web.StreamResponse:

@@ -41,7 +41,7 @@ class Node:
         self._settings, self._signals = settings, signals
         self._mode, self._mode_at = "", -PERIOD
         self._sender = Sender(settings, queue, Remote(settings, self._why_not), rospy.logwarn)
-        self._name = rospy.get_name()
+        self._name = rospy.get_name().lstrip("/")
         subscribe("robot_status", RobotStatus, self._receive, queue_size=1)
         self._diagnostics = rospy.Publisher("/diagnostics", DiagnosticArray, queue_size=1)
         rospy.Timer(rospy.Duration(PERIOD), self._report, reset=True)
@@ -65,12 +65,11 @@ class Node:
         return reason_to_wait(self._settings, datetime.now().astimezone(), mode, default_interfaces())
 
     def _report(self, _event: object) -> None:
-        level = DiagnosticStatus.WARN if self._sender.problem else DiagnosticStatus.OK
-        values = [KeyValue("progress", self._sender.progress)]
-        status = DiagnosticStatus(level, self._name.lstrip("/"), self._sender.problem or "ok", "", values)
-        report = DiagnosticArray(status=[status])
-        report.header.stamp = rospy.Time.now()
-        with boundary.crossing("a report"):
+        with boundary.crossing("a report"):  # an exception would end rospy's timer
+            problem, values = self._sender.problem, [KeyValue("progress", self._sender.progress)]
+            level = DiagnosticStatus.WARN if problem else DiagnosticStatus.OK
+            report = DiagnosticArray(status=[DiagnosticStatus(level, self._name, problem or "ok", "", values)])
+            report.header.stamp = rospy.Time.now()
             self._diagnostics.publish(report)
 
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import ctypes
+import errno
 import gzip
 import hashlib
 import json
@@ -23,6 +25,9 @@ HELPS = 0.9
 SAMPLE = 1 << 16
 """bytes: a part that does not compress, as those of most bags, costs a 64th of the time"""
 FORMAT = 1
+KERNEL = ctypes.CDLL(None, use_errno=True)
+HERE, RENAME_NOREPLACE = -100, 1
+"""AT_FDCWD of openat(2); of renameat2(2)"""
 RANGES = {"size": (0, 2**63 - 1), "mtime_ns": (-(2**65), 2**65), "part_size": (1, MAX_FILE)}
 """of the numbers of a manifest"""
 
@@ -68,10 +73,9 @@ def remove(path: Path, known: os.stat_result) -> None:
     """
     if (now := path.lstat()).st_ctime_ns != known.st_ctime_ns or identity(now) != identity(known):
         raise ChangedError("it was touched before it could be deleted")
-    aside = path
-    while os.path.lexists(aside):
+    aside = path.with_name(f"_{path.name}")
+    while not renamed(path, aside):
         aside = aside.with_name(f"_{aside.name}")
-    path.rename(aside)
     if identity(aside.lstat()) == identity(known):
         aside.unlink()
         return
@@ -79,6 +83,23 @@ def remove(path: Path, known: os.stat_result) -> None:
         os.link(aside, path, follow_symlinks=False)
         aside.unlink()
     raise ChangedError("another file has its name by now")
+
+
+def renamed(path: Path, new: Path) -> bool:
+    """False if the new name exists already. Where the file system cannot tell at that moment, it was looked up before.
+
+    Raises:
+        OSError: it cannot be renamed.
+    """
+    if KERNEL.renameat2(HERE, os.fsencode(path), HERE, os.fsencode(new), RENAME_NOREPLACE) == 0:
+        return True
+    error = ctypes.get_errno()
+    if error == errno.EEXIST or (error == errno.EINVAL and os.path.lexists(new)):
+        return False
+    if error != errno.EINVAL:
+        raise OSError(error, os.strerror(error), str(path))
+    path.rename(new)
+    return True
 
 
 def packed(file: int, number: int) -> tuple[Part, bytes]:
@@ -121,13 +142,6 @@ def read_manifest(data: bytes) -> Mapping[str, Any]:
         if isinstance(error, GapError):
             raise
         raise GapError(f"{MANIFEST} is cut off or damaged") from None
-
-
-def known_parts(data: bytes) -> dict[int, Part]:
-    """The parts of a manifest; empty: it is cut off, or none."""
-    with suppress(GapError):
-        return dict(enumerate(read_manifest(data)["parts"]))
-    return {}
 
 
 def read_part(given: Mapping[str, Any], number: int) -> Part:

@@ -5,11 +5,12 @@ from __future__ import annotations
 import os
 import shutil
 from collections.abc import Callable, Iterable, Iterator, Mapping
+from contextlib import suppress
 from typing import NamedTuple
 
 from robot_control.common.file_errors import in_words
 from robot_control.common.files import fit_for_message, printable
-from robot_control.data_return.parts import MANIFEST, MAX_FILE, known_parts, manifest, opened, packed, remove
+from robot_control.data_return.parts import MANIFEST, MAX_FILE, GapError, manifest, opened, packed, read_manifest, remove
 from robot_control.data_return.plan import GB, Entry, Part, deletable, next_entry, next_parts, progress, wait_after
 from robot_control.data_return.queue_file import QueueFile
 from robot_control.data_return.remote import InterruptedCallError, Remote, RemoteError
@@ -138,9 +139,11 @@ class Sender:
     def _known(self, target: str) -> dict[int, Part]:
         """The parts of the whole file that a folder of the remote holds; empty: it holds none."""
         there = self._remote.files(target, [MANIFEST]).get(MANIFEST)
-        if there is None or there.size > MAX_FILE:
-            return {}
-        return known_parts(self._remote.read(f"{target}/{MANIFEST}", there.size))
+        with suppress(GapError):
+            if there is not None and there.size <= MAX_FILE:
+                content = read_manifest(self._remote.read(f"{target}/{MANIFEST}", there.size))
+                return dict(enumerate(content["parts"]))
+        return {}
 
     def _packed(self, entry: Entry, numbers: Iterable[int]) -> Iterator[tuple[int, Part, bytes]]:
         """Parts of the local file. Raises OSError, and ChangedError at the end."""

@@ -9,13 +9,13 @@ from typing import Any
 import actionlib
 import rospy
 from actionlib import CommState
-from actionlib_msgs.msg import GoalStatus
+from actionlib_msgs.msg import GoalStatus, GoalStatusArray
 from geometry_msgs.msg import PoseStamped, TransformStamped
 from nav_msgs.msg import Odometry
 from sensor_msgs.msg import BatteryState
 from tf2_msgs.msg import TFMessage
 
-from robot_control.common.boundary import subscribe, unsealed
+from robot_control.common.boundary import guard_action, subscribe, unsealed
 from robot_control.common.pose import pose_of, turned
 from robot_control.fleet.client import DONE, DRIVING, ENDED, Progress
 from robot_control.fleet.custom import Actions
@@ -47,15 +47,6 @@ SPEED_CHANGE = 1.0
 """m/s², rad/s² by which the robot may have been faster between two messages than at both"""
 
 
-class GuardedAction(FollowPathAction):  # type: ignore[misc]
-    """The action follow_path with results and feedback that are checked."""
-
-    def __init__(self) -> None:
-        super().__init__()
-        for name in ("action_result", "action_feedback"):
-            setattr(self, name, unsealed(type(getattr(self, name)))())
-
-
 class RosRobot:
     """The port of the client; its methods are called by one thread, the callbacks by rospy's."""
 
@@ -78,7 +69,10 @@ class RosRobot:
         subscribe("safety_status", SafetyStatus, self._receive_safety, queue_size=1)
         subscribe("robot_status", RobotStatus, self._receive_status, queue_size=1)
         subscribe("battery_state", BatteryState, self._receive_battery, queue_size=1)
-        self._client = actionlib.ActionClient(ACTION, GuardedAction)
+        action = FollowPathAction()
+        results, feedback = (unsealed(type(each)) for each in (action.action_result, action.action_feedback))
+        guard_action(ACTION, status=unsealed(GoalStatusArray), result=results, feedback=feedback)
+        self._client = actionlib.ActionClient(ACTION, FollowPathAction)
         self._handles: list[actionlib.ClientGoalHandle] = []  # of goals that have not ended, the present one last
 
     def begin(self, action: Action) -> None:
@@ -231,6 +225,8 @@ class RosRobot:
         if number != self._goal or handle.get_comm_state() != CommState.DONE:
             return
         status, result = handle.get_goal_status(), handle.get_result()
+        if status == GoalStatus.LOST:
+            self.stop_all()  # it may go on where only a message of its status was damaged
         self._held_by = ""
         distance = self.progress.distance if result is None else max(result.distance, 0.0)
         if status == GoalStatus.SUCCEEDED:

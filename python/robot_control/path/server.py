@@ -10,9 +10,10 @@ import time
 
 import actionlib
 import rospy
+from actionlib_msgs.msg import GoalID
 from nav_msgs.msg import Path
 
-from robot_control.common.boundary import boundary, unsealed
+from robot_control.common.boundary import boundary, guard_action, unsealed
 from robot_control.common.command import Command
 from robot_control.common.command_topic import CommandTopic
 from robot_control.common.ros_node import running_node
@@ -64,14 +65,6 @@ class TimedGoal(unsealed(FollowPathActionGoal, NUMBERS)):  # type: ignore[misc]
         return self
 
 
-class TimedAction(FollowPathAction):  # type: ignore[misc]
-    """The action follow_path with such goals."""
-
-    def __init__(self) -> None:
-        super().__init__()
-        self.action_goal = TimedGoal()
-
-
 class Server:
     """One goal at a time; the newest counts."""
 
@@ -82,7 +75,8 @@ class Server:
         self._wanted = rospy.Publisher("path_wanted", Path, queue_size=1, latch=True)
         self._idle = threading.Event()
         self._idle.set()
-        self._action = actionlib.SimpleActionServer(NAME, TimedAction, self._execute, auto_start=False)
+        guard_action(NAME, goal=TimedGoal, cancel=unsealed(GoalID))
+        self._action = actionlib.SimpleActionServer(NAME, FollowPathAction, self._execute, auto_start=False)
         boundary.stops(self._stop)
         self._action.start()
 

@@ -16,7 +16,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr int kNotInstalled = 69;  // python/robot_control/expand_xacro.py
-constexpr const char* kByHand = "or expand the file by hand: xacro FILE > robot.urdf";
+constexpr const char* kByHand = "or expand the file by hand if you trust it as a program: xacro FILE > robot.urdf";
 
 std::string python() {
   if (std::string chosen = environment("ROBOT_CONTROL_XACRO_PYTHON"); !chosen.empty()) return chosen;
@@ -60,8 +60,8 @@ std::string expand_xacro(const std::string& path) {
   }
   if (result.code != 0) {
     refuse(path, "xacro", on_one_line(result.errors),
-           "Repair the file; set ROS_PACKAGE_PATH so that $(find …) works; give arguments without default by hand: "
-           "xacro FILE name:=value > robot.urdf");
+           "Repair the file; set ROS_PACKAGE_PATH so that $(find …) works; write defaults for its arguments into it, or "
+           "take the URDF that its author expanded: a .xacro file is a program, which `xacro FILE` runs unguarded");
   }
   return result.output;
 }
