@@ -16,7 +16,7 @@ from typing import Any
 
 from robot_control.installed_files import share_file
 
-from bench.markdown import ALLOWED, MEASURED
+from bench.markdown import ALLOWED, NO_BOUND
 
 PARTS = (
     "kinematics",
@@ -214,7 +214,7 @@ def judged(row: dict[str, Any], part: str) -> dict[str, Any]:
     bound = _bound(figure)
     row = row | {"name": f"{robot} {part}: {figure}"}
     if bound is None:
-        return row | {"reference": 0, "reference_name": MEASURED, "ratio": 0}
+        return row | {"reference": 0, "reference_name": NO_BOUND, "ratio": 0}
     if figure.startswith(BOTH_WAYS):
         row["value"] = max(row["value"], 1 / row["value"])
     ratio = row["value"] / bound if bound else (1 + row["value"] if row["value"] > 0 else 0)

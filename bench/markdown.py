@@ -10,14 +10,14 @@ from typing import Any
 EVIDENCE = Path(__file__).parents[1] / "docs" / "evidence"
 ALLOWED = "what is allowed"
 """reference_name of a figure that is judged by a bound"""
-MEASURED = "no bound"
+NO_BOUND = "no bound"
 """that of a figure beside such figures that has no bound"""
 
 
 def table(result: dict[str, Any]) -> str:
     """Figures with bounds side by side, robot by robot; all others one by one, with the ratio to their reference."""
     rows = result["rows"]
-    bounded = bool(rows) and all(row["reference_name"] in (ALLOWED, MEASURED) for row in rows)
+    bounded = bool(rows) and all(row["reference_name"] in (ALLOWED, NO_BOUND) for row in rows)
     parts = ["```text\n" + "\n".join(result["table"]) + "\n```"] if result.get("table") else []
     parts.append(_by_robot(rows) if bounded else _one_by_one(rows))
     if result.get("not_judged"):

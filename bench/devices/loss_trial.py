@@ -7,7 +7,7 @@ follows.
     seen     the driver reports the loss within `LATEST` of its kind
     brake    the gate brakes within `BRAKE_CYCLES` after that
     latch    the stop is latched with the cause driver_fault
-    pose     while the drives come back, the estimate moves in no `JUMP_TIME` by more than `JUMP` beyond the truth,
+    pose     while the drives come back, the estimate moves in no `JUMP_TIME` by more than `MAX_JUMP` beyond the truth,
              unless towards it; the truth stays within `DEVIATIONS` of it
     torque   from `STEADY_TIME` after the brake on, the robot does not become faster. A RoboClaw without supply brakes
              when it is switched on again
@@ -61,7 +61,7 @@ FASTER = 0.02  # m/s, tolerance
 STANDING = 0.01  # m/s
 RESETS = 20
 JUMP_TIME = 0.1  # s
-JUMP = {True: 0.05, False: 0.01}  # m, where both drives were lost, and one
+MAX_JUMP = {True: 0.05, False: 0.01}  # m, where both drives were lost, and one
 DEVIATIONS = 5  # of a proof: one error in 1.7 million
 
 DRIVER_FAULT = mask_of("StopCause", "driver_fault")
@@ -196,7 +196,7 @@ def broken_rules(trial: LossTrial, loop: ClosedLoop, log: Log, request: tuple[fl
         loop.e_stop_reset()
     span = round(JUMP_TIME / period)
     beyond = np.minimum(moved(back, "estimate", span) - moved(back, "truth", span), error_growth(back, span))
-    jump = JUMP[trial.kind == CABLE or trial.dialect in SERIAL]
+    jump = MAX_JUMP[trial.kind == CABLE or trial.dialect in SERIAL]
     if beyond.max() > jump or error(back[-1]) > DEVIATIONS * deviation(back[-1]):
         yield "pose"
     if speed_of(loop.run(1.0), base).max() > STANDING:

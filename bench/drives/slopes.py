@@ -11,12 +11,13 @@ import itertools
 import tempfile
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from math import cos, pi, radians, sin
+from math import pi, radians
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from robot_control.closed_loop import ClosedLoop
+from robot_control.render.scene import orientation, product
 
 from bench.drives.wheel_command import WHEEL_COMMANDS, for_drives
 
@@ -28,8 +29,6 @@ BEYOND = 0.1  # m, farther than the planned stop
 REST, DRIVE, STOP = 1.0, 3.0, 8.0  # s
 STANDS = 0.001  # m/s
 
-Quaternion = tuple[float, float, float, float]  # w x y z
-
 
 @dataclass(frozen=True)
 class Stop:
@@ -40,20 +39,10 @@ class Stop:
     causes: int
 
 
-def _turned(one: Quaternion, other: Quaternion) -> Quaternion:
-    (a, b, c, d), (w, x, y, z) = one, other
-    return (
-        a * w - b * x - c * y - d * z,
-        a * x + b * w + c * z - d * y,
-        a * y - b * z + c * w + d * x,
-        a * z + b * y - c * x + d * w,
-    )
-
-
 def scene(slope: float, heading: float) -> str:
     """MJCF of a floor of `slope` [rad]; the robot starts at `heading` [rad] from uphill."""
-    floor = (cos(slope / 2), 0.0, -sin(slope / 2), 0.0)
-    start = _turned(floor, (cos(heading / 2), 0.0, 0.0, sin(heading / 2)))
+    floor = orientation(0.0, -slope, 0.0)
+    start = product(floor, orientation(0.0, 0.0, heading))
     floor_text, start_text = (" ".join(map(repr, quat)) for quat in (floor, start))
     return (
         '<mujoco><worldbody><geom name="floor" type="plane" size="50 50 1" friction="1 0.005 0.0001" '

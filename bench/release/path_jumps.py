@@ -14,7 +14,7 @@ from robot_control.path.waypoints import Waypoint
 
 PERIOD = 0.02  # s, odometry
 MAX_TIME = 60.0  # s, of every path here
-FARTHEST = 0.3  # m beyond the length of the path
+MAX_EXCESS = 0.3  # m beyond the length of the path
 STRAIGHT = [Waypoint(0.0, 0.0), Waypoint(2.0, 0.0)]
 BENT = [Waypoint(0.0, 0.0), Waypoint(0.8, 0.0), Waypoint(0.8, 0.8)]
 BACK = [Waypoint(0.0, 0.0, 0.0), Waypoint(0.8, 0.0, 0.0), Waypoint(0.0, 0.0, 0.0)]

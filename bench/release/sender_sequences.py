@@ -18,7 +18,7 @@ from robot_control.path.follower import Motion
 from robot_control.path.waypoints import Waypoint
 from robot_control.safety.interruptions import GAP, Status
 
-from bench.release.path_jumps import FARTHEST, excess
+from bench.release.path_jumps import MAX_EXCESS, excess
 from bench.release.senders import CommandSender, GoalSender, PadSender, PathSender, TeleopSender
 from bench.rows import plain
 from bench.runs.runner import Runner
@@ -268,9 +268,9 @@ def command(seed: int) -> Outcome:
 
 
 def jumps(seed: int) -> Outcome:
-    """A path whose pose jumps drives the robot no farther than its length and `FARTHEST`."""
+    """A path whose pose jumps drives the robot no farther than its length and `MAX_EXCESS`."""
     farther = excess(seed)
-    violation = "" if farther < FARTHEST else f"{farther:.2f} m farther than the path is long"
+    violation = "" if farther < MAX_EXCESS else f"{farther:.2f} m farther than the path is long"
     return Outcome(seed, violation, moving=1)
 
 

@@ -91,10 +91,10 @@ def test_the_installed_settings_are_the_defaults(tmp_path):
 @pytest.mark.parametrize(
     ("text", "words"),
     [
-        ("distance: 0", "distance = 0: must be a number above zero"),
-        ("distance: .nan\nlink_gap: x", "link_gap = 'x'"),
-        ("distanze: 1", "distanze: unknown; known are distance, link_gap"),
-        ("- 1", "must be a map"),
+        ("distance: 0", "distance = 0: must be a number from 0.001 to 1000"),
+        ("distance: .nan\nlink_gap: x", "link_gap = x: must be"),
+        ("distanze: 1", "distanze: is unknown; known are distance, link_gap"),
+        ("- 1", "must hold keys with values"),
         ("a: [", "is no YAML"),
     ],
 )

@@ -38,7 +38,7 @@ def test_an_address_that_others_reach_is_refused_without_users_or_tls(tmp_path):
 def test_wrong_files_are_refused_with_their_name(tmp_path):
     config, users = tmp_path / "own.yaml", tmp_path / "robot_control/console_users.json"
     config.write_text("distance: -1")
-    assert f"{config}: distance = -1: must be a number above zero" in refusal("--config", config, home=tmp_path)
+    assert f"{config}: distance = -1: must be a number from 0.001 to 1000" in refusal("--config", config, home=tmp_path)
     assert "--cert" in refusal("--cert", tmp_path / "none.pem", home=tmp_path)
     assert "--origin console.example" in refusal("--origin", "console.example", home=tmp_path)
     users.parent.mkdir(exist_ok=True)

@@ -65,7 +65,7 @@ def follow_path(monkeypatch):
     monkeypatch.setattr(run.time, "sleep", lambda _: None)
     monkeypatch.setattr(server.rospy, "loginfo", lambda _: None)
     monkeypatch.setattr(server.rospy, "Time", SimpleNamespace(now=server.rospy.Time))
-    monkeypatch.setattr(server, "message_of", lambda *_: None)
+    monkeypatch.setattr(server, "shown", lambda *_: None)
     monkeypatch.setattr(run.rospy, "Time", server.rospy.Time)
     made = Server.__new__(Server)
     made._began, made._action, made._services = -math.inf, Results(), SimpleNamespace(drive=None)

@@ -8,7 +8,7 @@ from robot_control.path.follower import Motion, State
 from robot_control.path.shapes import SHAPES
 from robot_control.path.waypoints import Waypoint
 
-from bench.release.path_jumps import FARTHEST, MAX_TIME, PERIOD, STRAIGHT, Jumping, excess
+from bench.release.path_jumps import MAX_EXCESS, MAX_TIME, PERIOD, STRAIGHT, Jumping, excess
 
 
 @pytest.mark.parametrize("jump", [(-5.0, 0.0, 0.0), (0.0, 0.0, math.pi), (1.0, 0.0, 0.0), (0.0, 0.2, 0.0)])
@@ -62,7 +62,7 @@ def test_progress_that_falls_back_for_ever_ends_the_path():
     while not robot.follower.over and robot.driven < 10.0:
         robot.drive(0.2)
         robot.jump(-0.08, 0.0, 0.0)
-    assert robot.driven < 2.0 + FARTHEST
+    assert robot.driven < 2.0 + MAX_EXCESS
     assert "without coming nearer to its end" in robot.follower.reason
 
 
@@ -77,7 +77,7 @@ def test_what_is_lost_in_the_turns_of_a_path_counts():
             robot.jump(*back)
             robot.step()
             robot.jump(*back)
-    assert robot.driven < robot.route.length + FARTHEST
+    assert robot.driven < robot.route.length + MAX_EXCESS
     assert "without coming nearer to its end" in robot.follower.reason
 
 
@@ -110,7 +110,7 @@ def test_a_path_that_begins_before_the_robot_is_driven_to():
 
 def assert_none_drives_farther(seeds):
     worst, seed = max((excess(seed), seed) for seed in seeds)
-    assert worst < FARTHEST, f"seed {seed} drives {worst:.2f} m farther"
+    assert worst < MAX_EXCESS, f"seed {seed} drives {worst:.2f} m farther"
 
 
 def test_four_hundred_random_jumps_drive_none_farther():

@@ -306,7 +306,7 @@ def test_services_that_never_answer_cost_few_threads(monkeypatch):
     monkeypatch.setattr(custom.rospy, "wait_for_service", lambda *_: time.sleep(0.5))
     monkeypatch.setattr(custom.rospy, "ServiceProxy", lambda *_: lambda: SimpleNamespace(success=True, message=""))
     monkeypatch.setattr(custom.subprocess, "Popen", lambda *_, **__: SimpleNamespace(communicate=lambda _: None))
-    actions, before = custom.Actions({"stopPause": CustomAction(service="follow_path/resume")}), threading.active_count()
+    before, actions = threading.active_count(), custom.Actions({"stopPause": CustomAction(service="resume")})
     for number in range(200):
         actions.begin(Action({}, str(number), "stopPause", "NONE"))
     assert threading.active_count() - before == custom.MAX_CALLS

@@ -42,7 +42,7 @@ PERIOD = 0.05
 """s between two commands: 25 are lost before the default cmd_vel_timeout"""
 SILENCE = 1.0
 """s without wheel_odom, which comes 50 times a second"""
-JUMP = 0.3
+MAX_HOP = 0.3
 """m between two messages of wheel_odom; a larger step is a reset or another run: 15 m/s at 50 Hz"""
 MIN_DISTANCE = 0.3
 """m; half of the shortest drive, and more than a robot creeps"""
@@ -156,7 +156,7 @@ class Wizard:
         hops = np.linalg.norm(np.diff(path[:, :2], axis=0), axis=1)
         if hops.sum() < MIN_DISTANCE:
             raise RefusedError(f"{title}: the wheels have not turned")
-        if hops.max() > JUMP:
+        if hops.max() > MAX_HOP:
             raise RefusedError(
                 f"{title}: wheel_odom jumped by {hops.max():.2f} m: was the odometry or the robot reset?"
             )

@@ -11,6 +11,7 @@ import rospy
 
 TIMEOUT = 1.0
 """s for an answer of the master, which may hang"""
+NO_ANSWER = (OSError, xmlrpc.client.Error, http.client.HTTPException, ValueError)
 
 
 class _Transport(xmlrpc.client.Transport):
@@ -38,7 +39,7 @@ def living(node: str) -> bool:
             return False
         itself: Any = xmlrpc.client.ServerProxy(uri, transport=_Transport())
         return bool(itself.getPid(node)[0] == 1)
-    except (OSError, xmlrpc.client.Error, http.client.HTTPException, ValueError):
+    except NO_ANSWER:
         return False
 
 
@@ -54,7 +55,7 @@ class Master:
         """Publishers, subscribers and servers; None if the master does not answer."""
         try:
             answer: Any = self._proxy.getSystemState(self._own)
-        except (OSError, xmlrpc.client.Error, http.client.HTTPException, ValueError):
+        except NO_ANSWER:
             return None
         code, _, state = answer
         return state if code == 1 else None
@@ -72,7 +73,7 @@ class Master:
             for topic, kind in itself.getSubscriptions(self._own)[2]:
                 answer: Any = self._proxy.registerSubscriber(self._own, topic, kind, uri)
                 itself.publisherUpdate("/master", topic, answer[2])
-        except (OSError, xmlrpc.client.Error, http.client.HTTPException, ValueError):
+        except NO_ANSWER:
             return False
         return True
 

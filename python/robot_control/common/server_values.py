@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import contextlib
+import tempfile
+from collections.abc import Iterator
 from typing import Any
 
 import rospy
@@ -47,6 +50,20 @@ def server_tree(name: str) -> dict[str, Any]:
     if not isinstance(value, dict):
         raise _wrong_type(name, value, "a group of parameters")
     return _without_empty_texts(value)
+
+
+@contextlib.contextmanager
+def described_robot() -> Iterator[tuple[dict[str, Any], str]]:
+    """The parameters of the robot, and a file with its robot_description, which lives as long as the block.
+
+    Raises:
+        ServerValueError: one of them is of another type.
+    """
+    robot = {key: value for key, value in server_tree("robot").items() if key != "urdf"}
+    with tempfile.NamedTemporaryFile("w", suffix=".urdf") as file:
+        file.write(server_description())
+        file.flush()
+        yield {"robot": robot}, file.name
 
 
 def _without_empty_texts(tree: dict[str, Any]) -> dict[str, Any]:

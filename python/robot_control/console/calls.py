@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import io
-import math
 import secrets
 import time
 from collections.abc import Callable, Mapping
@@ -12,15 +11,17 @@ from typing import Any
 
 import rospy
 from actionlib_msgs.msg import GoalID
-from geometry_msgs.msg import PoseStamped, PoseWithCovarianceStamped
+from geometry_msgs.msg import PoseStamped, PoseWithCovariance, PoseWithCovarianceStamped
 from std_srvs.srv import SetBool, Trigger
 
 from robot_control.common.files import printable
 from robot_control.common.robot_kind import ROLES, running_kind
 from robot_control.common.roles import Kind
+from robot_control.common.settings_files import in_range
 from robot_control.console.authority import Authority, Page, RefusedError, Role
-from robot_control.console.messages import SPEED, Fields, MessageError, check_fields, flag, number, text
+from robot_control.console.messages import SPEED, Fields, MessageError, check_fields, flag, text
 from robot_control.msg import FollowPathActionGoal
+from robot_control.path.run import path_of, placed_pose
 from robot_control.path.shapes import SHAPES
 from robot_control.path.waypoints import PathError, Waypoint, checked, placed, read_csv_text
 from robot_control.srv import InjectFault, SetGait, SetOdometry, SetParameters, SetPosture, Step
@@ -29,7 +30,7 @@ RESET_PAUSE, RESET_WINDOW = 0.5, 10.0
 """s; the second step of a reset follows the first one no sooner and no later"""
 FOLLOW = "follow_path"
 
-METRES, RADIANS = number(-1e6, 1e6), number(-7.0, 7.0)
+METRES, RADIANS = in_range(-1e6, 1e6), in_range(-7.0, 7.0)
 PLACE = {"x": METRES, "y": METRES, "yaw": RADIANS}
 NAVIGATE, LOCALIZATION = "clear_costmaps", "global_localization"
 """Services that only these nodes have"""
@@ -62,7 +63,7 @@ CALLS: Mapping[str, Call] = {
     "set_odometry": Call("set_odometry", SetOdometry, PLACE),
     "set_parameters": Call("controller/set_parameter_map", SetParameters, {"parameters": text(8192)}, Role.MAINTAIN),
     "path_points": Call(f"{FOLLOW}/pause", fields={"points": _points, "speed": SPEED}),
-    "path_shape": Call(f"{FOLLOW}/pause", fields={"shape": text(16), "size": number(0.1, 100.0), "speed": SPEED}),
+    "path_shape": Call(f"{FOLLOW}/pause", fields={"shape": text(16), "size": in_range(0.1, 100.0), "speed": SPEED}),
     "path_csv": Call(f"{FOLLOW}/pause", fields={"text": text(60_000), "speed": SPEED}),
     "path_pause": Call(f"{FOLLOW}/pause", Trigger),
     "path_resume": Call(f"{FOLLOW}/resume", Trigger),
@@ -71,7 +72,7 @@ CALLS: Mapping[str, Call] = {
     "goal_cancel": Call(NAVIGATE),
     "place": Call(LOCALIZATION, fields=PLACE),
     "pause": Call("driver/set_pause", SetBool, {"on": flag}, Role.MAINTAIN),
-    "step": Call("driver/step", Step, {"cycles": number(1, 10_000, int)}, Role.MAINTAIN),
+    "step": Call("driver/step", Step, {"cycles": in_range(1, 10_000, int)}, Role.MAINTAIN),
     "simulation_reset": Call("driver/reset", Trigger, role=Role.MAINTAIN),
     "inject_fault": Call("driver/inject_fault", InjectFault, {"component": text(64), "kind": text(32)}, Role.MAINTAIN),
 }
@@ -177,13 +178,11 @@ class Calls:
             raise RefusedError("no map has come: start navigation.launch")
         message = PoseStamped() if name == "goal" else PoseWithCovarianceStamped()
         message.header.stamp, message.header.frame_id = rospy.Time.now(), frame
-        pose = message.pose if name == "goal" else message.pose.pose
-        pose.position.x, pose.position.y = given["x"], given["y"]
-        pose.orientation.z, pose.orientation.w = math.sin(given["yaw"] / 2), math.cos(given["yaw"] / 2)
+        message.pose = placed_pose(**given)
         if name == "place":
             covariance = [0.0] * 36
             covariance[0], covariance[7], covariance[35] = BY_HAND
-            message.pose.covariance = covariance
+            message.pose = PoseWithCovariance(message.pose, covariance)
         (self._goal if name == "goal" else self._initial).publish(message)
         return f"sent: {given['x']:.2f} m, {given['y']:.2f} m, {given['yaw']:.2f} rad in {frame}"
 
@@ -192,12 +191,6 @@ class Calls:
         message.goal_id.stamp = message.header.stamp = rospy.Time.now()
         message.goal_id.id = f"console {secrets.token_hex(4)}"
         message.goal.speed = speed
-        message.goal.path.header.frame_id = "odom"
-        for point in checked(points):
-            pose = PoseStamped()
-            pose.pose.position.x, pose.pose.position.y = point.x, point.y
-            if point.yaw is not None:
-                pose.pose.orientation.z, pose.pose.orientation.w = math.sin(point.yaw / 2), math.cos(point.yaw / 2)
-            message.goal.path.poses.append(pose)
+        message.goal.path = path_of(checked(points), "odom")
         self._goals.publish(message)
         return f"sent: {len(message.goal.path.poses)} points"

@@ -8,10 +8,11 @@ from __future__ import annotations
 
 import json
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from typing import Any
 
 from robot_control.common.files import printable
+from robot_control.common.settings_files import FLAG, Check, in_range
 
 MAX_SIZE = 64 * 1024
 """bytes"""
@@ -20,8 +21,6 @@ SURROGATE = re.compile("[\ud800-\udfff]")
 RATE, BURST = 100.0, 200.0
 """messages per second and client, and what may come at once after a stall"""
 
-Check = Callable[[Any], bool]
-"""True for a value that may be used."""
 Fields = Mapping[str, Check]
 
 
@@ -29,27 +28,17 @@ class MessageError(ValueError):
     """The message is not used; the text names the reason."""
 
 
-def number(lowest: float, highest: float, kind: type = float) -> Check:
-    """A finite number of this range; `kind` int: a whole one."""
-    kinds = (int,) if kind is int else (int, float)
-    return lambda value: isinstance(value, kinds) and not isinstance(value, bool) and lowest <= value <= highest
-
-
 def text(longest: int) -> Check:
     """A text of at most so many characters, which UTF-8 can hold."""
     return lambda value: isinstance(value, str) and len(value) <= longest and not SURROGATE.search(value)
 
 
-def flag(value: Any) -> bool:  # noqa: ANN401 (JSON)
-    """True or false."""
-    return isinstance(value, bool)
-
-
-COUNT, SHARE, SPEED = number(0, 1 << 53, int), number(-1.0, 1.0), number(0.0, 100.0)
+flag = FLAG[1]
+COUNT, SHARE, SPEED = in_range(0, 1 << 53, int), in_range(-1.0, 1.0), in_range(0.0, 100.0)
 TYPES: Mapping[str, Fields] = {
     "drive": {
         "number": COUNT,
-        "sent": number(0.0, 1e12),
+        "sent": in_range(0.0, 1e12),
         "held": flag,
         "linear": SHARE,
         "angular": SHARE,

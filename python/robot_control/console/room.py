@@ -4,33 +4,23 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Sequence
-from typing import Protocol, TypeVar
 
 from robot_control.console.authority import Role
+from robot_control.console.client import Client
 
 
-class Held(Protocol):
-    """A place that a user holds."""
-
-    user: str
-    role: Role
-
-
-Place = TypeVar("Place", bound=Held)
-
-
-def gives_way(places: Sequence[Place], user: str, role: Role) -> Place | None:
-    """The place that a new one of this user takes; None if the new one is refused.
+def gives_way(pages: Sequence[Client], user: str, role: Role) -> Client | None:
+    """The page whose place a new one of this user takes; None if the new one is refused.
 
     It is the user's own oldest one, else the oldest of the user who holds most. Such a user has a lower role, or the
-    same role and several places.
+    same role and several pages.
 
     Args:
-        places: those that may be taken, the oldest first
+        pages: those whose places may be taken, the oldest first
         user: of the new one
         role: of that user
     """
-    own = [each for each in places if each.user == user]
-    counts = Counter(each.user for each in places)
-    others = [each for each in places if each.role < role or (each.role == role and counts[each.user] > 1)]
+    own = [each for each in pages if each.user == user]
+    counts = Counter(each.user for each in pages)
+    others = [each for each in pages if each.role < role or (each.role == role and counts[each.user] > 1)]
     return max(own or others, key=lambda each: counts[each.user], default=None)

@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-import math
-from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
-from robot_control.common.settings_files import SettingsError, overlaid
+from robot_control.common.settings_files import SettingsError, number, overlaid, rules_of, wrong_values
 
 MARGIN = 0.1
 """s for the server's passes, the network beyond it and the robot's nodes; measured below 40 ms on an idle machine"""
@@ -31,21 +29,12 @@ class Settings:
         return self.link_gap + MARGIN
 
 
+RULES = rules_of(Settings, distance=number(0.001, 1000), link_gap=number(0.001, 1000))
+
+
 def read_settings(*paths: Path) -> Settings:
     """The values of these files, each laid over the one before. Raises SettingsError with all problems, OSError."""
-    values, problems = overlaid(paths, _wrong)
+    values, problems = overlaid(paths, lambda tree: wrong_values(tree, RULES))
     if problems:
         raise SettingsError("; ".join(problems))
     return Settings(**{name: float(value) for name, value in values.items()})
-
-
-def _wrong(tree: object) -> Iterator[str]:
-    if not isinstance(tree, dict):
-        yield "must be a map of names and numbers"
-        return
-    for name, value in tree.items():
-        number = isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)
-        if name not in ("distance", "link_gap"):
-            yield f"{name}: unknown; known are distance, link_gap"
-        elif not number or value <= 0:
-            yield f"{name} = {value!r}: must be a number above zero"

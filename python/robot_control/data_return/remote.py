@@ -17,7 +17,8 @@ from pathlib import Path
 from typing import Any
 
 from robot_control.common.files import given_path, printable
-from robot_control.data_return.settings import Settings, redacted
+from robot_control.common.settings_files import redacted
+from robot_control.data_return.settings import Settings
 
 POLL = 0.2
 """s between two checks whether a call has to end"""

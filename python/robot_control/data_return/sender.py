@@ -10,7 +10,16 @@ from typing import NamedTuple
 
 from robot_control.common.file_errors import in_words
 from robot_control.common.files import fit_for_message, printable
-from robot_control.data_return.parts import MANIFEST, MAX_FILE, GapError, manifest, opened, packed, read_manifest, remove
+from robot_control.data_return.parts import (
+    MANIFEST,
+    MAX_FILE,
+    GapError,
+    manifest,
+    opened,
+    packed,
+    read_manifest,
+    remove,
+)
 from robot_control.data_return.plan import GB, Entry, Part, deletable, next_entry, next_parts, progress, wait_after
 from robot_control.data_return.queue_file import QueueFile
 from robot_control.data_return.remote import InterruptedCallError, Remote, RemoteError

@@ -4,30 +4,19 @@ from __future__ import annotations
 
 import re
 import socket
-from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass, fields
+from collections.abc import Iterator
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 from robot_control.blackbox.main import LOGS
 from robot_control.common.file_errors import problems_of
 from robot_control.common.files import given_path, printable
-from robot_control.common.settings_files import SettingsError, overlaid
+from robot_control.common.settings_files import SettingsError, number, overlaid, redacted, rules_of, wrong_values
 
 RCLONE_CONFIG = "~/.config/rclone/rclone.conf"
 """rclone's own place for it"""
 HOURS = re.compile(r"([01]\d|2[0-3]):([0-5]\d)-([01]\d|2[0-3]):([0-5]\d)")
 ROBOT = re.compile(r"(?!\.)[A-Za-z0-9_.-]{1,64}")
-RULES: dict[type, tuple[str, Callable[[Any], bool]]] = {
-    bool: ("true or false", lambda value: isinstance(value, bool)),
-    float: (
-        "a number, 0 or more, at most 1e9",
-        lambda value: isinstance(value, int | float) and not isinstance(value, bool) and 0 <= value <= 1e9,
-    ),
-    str: ("a text of characters that print", lambda value: isinstance(value, str) and value.isprintable()),
-    tuple: ("a list of texts", lambda value: isinstance(value, list) and all(isinstance(each, str) for each in value)),
-}
-"""of a setting, by the type of its default"""
 
 
 @dataclass(frozen=True)
@@ -70,9 +59,8 @@ class Settings:
         return self.robot or socket.gethostname()
 
 
-def redacted(place: str) -> str:
-    """A place as rclone names it, for a message: without the options of a connection string and the user of a URL."""
-    return printable(place if place.startswith("/") else re.sub(r"(?s)(,|//).*", r"\1…", place))
+QUOTA = number(0, 1e9)
+RULES = rules_of(Settings, bandwidth=QUOTA, local_quota=QUOTA, far_quota=QUOTA)
 
 
 def read_settings(*paths: Path) -> Settings:
@@ -82,31 +70,13 @@ def read_settings(*paths: Path) -> Settings:
         SettingsError: with all problems.
         OSError: a file cannot be read.
     """
-    values, problems = overlaid(paths, _wrong_types)
+    values, problems = overlaid(paths, lambda tree: wrong_values(tree, RULES))
     values = {name: tuple(value) if isinstance(value, list) else value for name, value in values.items()}
     settings = Settings(**values)
     problems += _together(settings)
     if problems:
         raise SettingsError("; ".join(problems))
     return settings
-
-
-def _wrong_types(tree: object) -> Iterator[str]:
-    if not isinstance(tree, Mapping):
-        yield "must hold keys with values"
-        return
-    defaults = {each.name: each.default for each in fields(Settings)}
-    for name, value in tree.items():
-        if name not in defaults:
-            yield f"{_shown(name)}: is unknown; known are {', '.join(defaults)}"
-        elif not (rule := RULES[type(defaults[name])])[1](value):
-            yield f"{name} = {_shown(value)}: must be {rule[0]}"
-
-
-def _shown(value: object) -> str:
-    """The value, in which a text may be a place; of a list or of a long number its kind alone."""
-    plain = isinstance(value, str | bool | float) or (isinstance(value, int) and abs(value) < 1 << 64)
-    return redacted(str(value)) if plain else f"a value of the kind {type(value).__name__}"
 
 
 def _together(settings: Settings) -> Iterator[str]:

@@ -19,7 +19,7 @@ import numpy as np
 from robot_control.estimate.samples import FloatArray, IntArray
 
 BLOCK = 0.2  # s
-FARTHEST, GRID = 0.5, 0.02  # s, of τ
+MAX_OFFSET, GRID = 0.5, 0.02  # s, of τ
 STEPS = 8  # of Gauss–Newton
 HUBER = 2.0  # standard deviations
 FEWEST = 20  # blocks
@@ -51,7 +51,7 @@ def fit_turning(
     if wheel_time.size < FEWEST or gyro_time.size < FEWEST:
         return None
     angle = np.concatenate([[0.0], np.cumsum(np.diff(gyro_time) * (yaw_rate[1:] + yaw_rate[:-1]) / 2)])
-    reach = FARTHEST + BLOCK
+    reach = MAX_OFFSET + BLOCK
     inside = (wheel_time > gyro_time[0] + reach) & (wheel_time < gyro_time[-1] - reach)
     rows = _block_ends(wheel_time, np.flatnonzero(inside))
     if rows.size < FEWEST:
@@ -66,7 +66,7 @@ def fit_turning(
 
 
 def _grid() -> FloatArray:
-    return np.arange(-FARTHEST, FARTHEST + GRID / 2, GRID)
+    return np.arange(-MAX_OFFSET, MAX_OFFSET + GRID / 2, GRID)
 
 
 def _block_ends(time: FloatArray, rows: IntArray) -> IntArray:
@@ -100,7 +100,7 @@ class _Problem:
             solution, _ = self._weighted(columns)
             base = float(solution[0])
             offset += float(np.clip(solution[3], -GRID, GRID))
-        if abs(offset) > FARTHEST:
+        if abs(offset) > MAX_OFFSET:
             return None
         columns = self._columns(offset)
         columns[:, 3] *= base

@@ -20,7 +20,7 @@ ACCEL = tuple(f"accel_{axis}" for axis in AXES)
 
 GAP = 0.5
 """s without any sample from which a gap is reported; a robot at 1 m/s is half a metre on"""
-JUMP = 60 * 10**9
+MAX_STEP = 60 * 10**9
 """ns between two rows above which the clock was set, or the recording paused; no law bridges a minute"""
 
 
@@ -45,7 +45,7 @@ class Samples:
     def seconds(self) -> FloatArray:
         """s since the first row; a jump of the time counts as a usual step."""
         steps = np.diff(self.time_ns, prepend=self.time_ns[0])
-        steps[steps > JUMP] = min(int(np.median(steps)), JUMP)
+        steps[steps > MAX_STEP] = min(int(np.median(steps)), MAX_STEP)
         seconds: FloatArray = np.cumsum(steps) / 1e9
         return seconds
 
@@ -81,7 +81,7 @@ class Samples:
         return [
             f"the time jumps by {steps[row] / 1e9:.3f} s to {self.time_ns[row + 1] / 1e9:.3f} s in row {row + 2}: the "
             "clock was set, or the recording paused. It counts as one step"
-            for row in np.flatnonzero(steps > JUMP)[:3].tolist()
+            for row in np.flatnonzero(steps > MAX_STEP)[:3].tolist()
         ]
 
     def gap_note(self) -> str | None:

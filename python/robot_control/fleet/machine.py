@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import tempfile
 import time
 import xml.etree.ElementTree as ET
 
 import numpy as np
 
 from robot_control.common.live_parameters import LiveParameters
-from robot_control.common.server_values import server_description, server_tree
+from robot_control.common.server_values import described_robot, server_description
 from robot_control.fleet.settings import Settings
 from robot_control.fleet.v2.state import Machine
 from robot_control.inspect.description import Description, describe
@@ -31,11 +30,8 @@ def running_description() -> Description:
     end = time.monotonic() + PATIENCE
     while not server_description() and time.monotonic() < end:
         time.sleep(0.1)
-    robot = {key: value for key, value in server_tree("robot").items() if key != "urdf"}
-    with tempfile.NamedTemporaryFile("w", suffix=".urdf") as file:
-        file.write(server_description())
-        file.flush()
-        return describe(file.name, {"robot": robot})
+    with described_robot() as (parameters, urdf):
+        return describe(urdf, parameters)
 
 
 def size_of(robot: Description) -> tuple[float, float, float]:

@@ -37,7 +37,7 @@ SAVE_AGAIN = 1.0
 """s after which a file that could not be written is tried again"""
 END = 3.0
 """s for the robot to stop when the program is ended"""
-MISSING = "needs Debian's python3-paho-mqtt and python3-jsonschema: scripts/setup --fleet"
+MISSING = "needs Debian's python3-paho-mqtt: scripts/setup --fleet"
 
 
 class Node:
@@ -153,8 +153,7 @@ def main() -> None:
     """Entry point of scripts/vda5050.py."""
     given = arguments([each for each in rospy.myargv(sys.argv)[1:] if each])
     try:
-        import jsonschema  # noqa: F401 (a missing module is one message, before anything runs)
-        import paho.mqtt.client  # noqa: F401
+        import paho.mqtt.client  # noqa: F401 (a missing module is one message, before anything runs)
 
         shipped = Path(share_file("config/fleet.yaml"))
         settings = read_settings(shipped, *([given.config] if given.config else []))

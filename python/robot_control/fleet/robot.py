@@ -10,7 +10,7 @@ import actionlib
 import rospy
 from actionlib import CommState
 from actionlib_msgs.msg import GoalStatus, GoalStatusArray
-from geometry_msgs.msg import PoseStamped, TransformStamped
+from geometry_msgs.msg import Transform, TransformStamped, Vector3
 from nav_msgs.msg import Odometry
 from sensor_msgs.msg import BatteryState
 from tf2_msgs.msg import TFMessage
@@ -27,7 +27,8 @@ from robot_control.fleet.v2.state import Facts
 from robot_control.msg import FollowPathAction, FollowPathFeedback, FollowPathGoal, RobotStatus, SafetyStatus
 from robot_control.path.frames import Tf
 from robot_control.path.robot import subscribe_odometry
-from robot_control.path.waypoints import PathError
+from robot_control.path.run import path_of, placed_pose
+from robot_control.path.waypoints import PathError, Waypoint
 from robot_control.safety.states import DRIVABLE, STOPPED
 from robot_control.safety.watch import CATCH_UP, LATE
 
@@ -39,7 +40,7 @@ STATUS_SILENCE = 3.0
 ACTION = "follow_path"
 RESUME = CustomAction(service=f"{ACTION}/resume", timeout=5.0)
 """stopPause for a path that is held at the robot"""
-JUMP = 0.5
+POSE_JUMP = 0.5
 """m, rad beyond the measured motion: odometry was set, and map → odom does not hold any more"""
 MAX_ERRORS = 20
 """of each kind of errors in a state; the monitor has fewer causes"""
@@ -175,8 +176,7 @@ class RosRobot:
         transform = TransformStamped()
         transform.header.frame_id, transform.child_frame_id = MAP, self._odom_frame
         transform.header.stamp = rospy.Time.now()
-        transform.transform.translation.x, transform.transform.translation.y = x, y
-        transform.transform.rotation.z, transform.transform.rotation.w = math.sin(yaw / 2), math.cos(yaw / 2)
+        transform.transform = Transform(Vector3(x, y, 0.0), placed_pose(x, y, yaw).orientation)
         self._static.publish(TFMessage([transform]))
 
     # legs
@@ -188,12 +188,7 @@ class RosRobot:
             self.progress = Progress(ENDED, begin_at, f"{ACTION} is not served: start follow_path.py")
             return
         goal = FollowPathGoal(speed=abs(points[0].speed), begin_at=begin_at)
-        goal.path.header.frame_id = MAP
-        for point in points:
-            pose = PoseStamped()
-            pose.pose.position.x, pose.pose.position.y = point.x, point.y
-            pose.pose.orientation.z, pose.pose.orientation.w = math.sin(point.yaw / 2), math.cos(point.yaw / 2)
-            goal.path.poses.append(pose)
+        goal.path = path_of((Waypoint(each.x, each.y, each.yaw) for each in points), MAP)
         goal.speeds, goal.turn_speeds = [p.speed for p in points], [p.turn_speed for p in points]
         self.progress = Progress(DRIVING, begin_at)
         number = self._goal
@@ -262,8 +257,8 @@ def _jumped(before: Odometry, after: Odometry) -> bool:
     """True if the pose moved by more than the measured speeds allow in the time between the two messages."""
     elapsed = max(0.0, after.header.stamp.to_sec() - before.header.stamp.to_sec())
     a, b, twists = pose_of(before), pose_of(after), (before.twist.twist, after.twist.twist)
-    way = JUMP + elapsed * (SPEED_CHANGE * elapsed + max(abs(twist.linear.x) for twist in twists))
-    turn = JUMP + elapsed * (SPEED_CHANGE * elapsed + max(abs(twist.angular.z) for twist in twists))
+    way = POSE_JUMP + elapsed * (SPEED_CHANGE * elapsed + max(abs(twist.linear.x) for twist in twists))
+    turn = POSE_JUMP + elapsed * (SPEED_CHANGE * elapsed + max(abs(twist.angular.z) for twist in twists))
     return bool(math.dist((a.x, a.y), (b.x, b.y)) > way or abs(turned(b.yaw - a.yaw)) > turn)
 
 

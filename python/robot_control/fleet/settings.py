@@ -2,16 +2,23 @@
 
 from __future__ import annotations
 
-import json
-import math
 from collections.abc import Iterator
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Any
 
 from robot_control.blackbox.main import LOGS
 from robot_control.common.file_errors import problems_of
-from robot_control.common.files import given_path
-from robot_control.common.settings_files import SettingsError, overlaid
+from robot_control.common.files import given_path, printable
+from robot_control.common.settings_files import (
+    SettingsError,
+    list_of,
+    matching,
+    number,
+    overlaid,
+    rules_of,
+    wrong_values,
+)
 from robot_control.console.addresses import is_loopback
 from robot_control.fleet.v2.capability import STANDARD, ActionKind
 from robot_control.fleet.v2.messages import VERSIONS
@@ -79,6 +86,31 @@ class Settings:
         return Path(self.memory_file) if self.memory_file else given_path(str(LOGS / "fleet" / name))
 
 
+LEVEL = matching("[A-Za-z0-9_.:-]{1,64}", "a text of letters, digits and _ . : -, at most 64")
+NAME = matching(r"[^\s\0]+", "a text without blanks")
+RULES = rules_of(
+    Settings,
+    **dict.fromkeys(("interface", "manufacturer", "serial_number"), LEVEL),
+    version=matching("|".join(VERSIONS), " or ".join(VERSIONS)),
+    host=NAME,
+    port=number(1, 65535, int),
+    keep_alive=number(5, 600, int),
+    speed=number(0.02, 10),
+    node_tolerance=number(0.01, 0.3),
+    heading_tolerance=number(0.01, 1),
+    base_reserve=number(0, 100),
+    unknown_battery_charge=number(0, 100),
+    visualization_rate=number(0, 20),
+    actions=("a map of names and actions", lambda value: isinstance(value, dict)),
+)
+ACTION_RULES = rules_of(
+    CustomAction,
+    **dict.fromkeys(("service", "topic"), NAME),
+    **dict.fromkeys(("seconds", "timeout"), number(0.001, 3600)),
+    scopes=list_of(matching("INSTANT|NODE|EDGE", "INSTANT, NODE or EDGE")),
+)
+
+
 def read_settings(*paths: Path) -> Settings:
     """The values of these files, each laid over the one before.
 
@@ -86,17 +118,7 @@ def read_settings(*paths: Path) -> Settings:
         SettingsError: with all problems.
         OSError: a file cannot be read.
     """
-    import jsonschema
-
-    rules = json.loads(Path(__file__).with_name("settings.schema.json").read_text(encoding="utf-8"))
-    schema = jsonschema.Draft202012Validator(rules)
-    values, problems = overlaid(
-        paths,
-        lambda tree: (
-            f"{'.'.join(map(str, error.absolute_path)) or 'a key'}: {error.message}"
-            for error in schema.iter_errors(tree)
-        ),
-    )
+    values, problems = overlaid(paths, _wrong_values)
     custom = {
         str(name): CustomAction(**{**each, "scopes": tuple(each.get("scopes", CustomAction.scopes))})
         for name, each in values.pop("actions", {}).items()
@@ -109,12 +131,17 @@ def read_settings(*paths: Path) -> Settings:
     return settings
 
 
+def _wrong_values(tree: Any) -> Iterator[str]:
+    yield from wrong_values(tree, RULES)
+    actions = tree.get("actions") if isinstance(tree, dict) else None
+    for name, action in actions.items() if isinstance(actions, dict) else ():
+        yield from wrong_values(action, ACTION_RULES, f"actions.{printable(str(name))}.")
+        if isinstance(action, dict) and ("service" in action) == ("topic" in action):
+            yield f"actions.{printable(str(name))}: must have either service or topic"
+
+
 def _together(settings: Settings) -> Iterator[str]:
-    """The rules across values, and what the schema cannot say."""
-    for each in fields(settings):
-        value = getattr(settings, each.name)
-        if isinstance(value, float) and not math.isfinite(value):
-            yield f"{each.name} = {value}: must be finite"
+    """The rules across values."""
     for name in settings.actions.keys() & STANDARD.keys():
         yield f"actions.{name}: is an action of the standard"
     if not (settings.ca_file or settings.insecure or is_loopback(settings.host)):

@@ -22,7 +22,7 @@ FRAME = 1.0
 SILENCE = 3.0
 """s; the values of a node that reports no longer are not shown"""
 
-MEASURED = "period_10s_us"
+FIGURE = "period_10s_us"
 """Key of a report with figures"""
 MAX_SAMPLES = 1_000_000
 """of the plot; four nodes make them in three days"""
@@ -41,14 +41,14 @@ class Listener:
         now = time.monotonic()
         for status in message.status:
             values = values_of(status)
-            if MEASURED in values:
+            if FIGURE in values:
                 self.samples.append((now - self._start, status.name, figures_of(values)))
 
     def nodes(self) -> dict[str, dict[str, str]]:
         """Node → values, of those that report."""
         newest = sorted(self._reports.items(time.monotonic()).items())
         values = {status.name: values_of(status) for _, (_, status) in newest}
-        return {node: each for node, each in values.items() if MEASURED in each}
+        return {node: each for node, each in values.items() if FIGURE in each}
 
 
 def show(listener: Listener, seconds: float) -> None:

@@ -23,7 +23,7 @@ from robot_control.path.follower import Follower, FollowParameters, State
 from robot_control.path.frames import PathFrame, Tf, located
 from robot_control.path.pieces import route
 from robot_control.path.robot import PATIENCE, SOURCE, Robot
-from robot_control.path.run import Drive, PauseServices, message_of, points_of
+from robot_control.path.run import Drive, PauseServices, points_of, shown
 from robot_control.path.shapes import SHAPES
 from robot_control.path.waypoints import PathError, Waypoint, placed, read_csv
 from robot_control.safety.process_start import process_began
@@ -63,7 +63,7 @@ def drive(points: list[Waypoint] | None, given: argparse.Namespace, signals: Sig
         frame = PathFrame(odom, odom, tf)
     planned = route(here)
     wanted = rospy.Publisher("path_wanted", Path, queue_size=1, latch=True)
-    wanted.publish(message_of(here, frame.name))
+    wanted.publish(shown(here, frame.name))
     follower = Follower(planned, FollowParameters(speed=given.speed, scale_error=frame.scale_error))
     run = services.drive = Drive(robot, topic, follower, frame, requested)
     reported = time.monotonic()

@@ -5,10 +5,10 @@ from __future__ import annotations
 import math
 import threading
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 
 import rospy
-from geometry_msgs.msg import PoseStamped
+from geometry_msgs.msg import Point, Pose, PoseStamped
 from nav_msgs.msg import Odometry, Path
 from std_srvs.srv import Trigger, TriggerResponse
 
@@ -132,14 +132,24 @@ def points_of(message: Path) -> list[Waypoint]:
     )
 
 
-def message_of(points: list[Waypoint], frame: str) -> Path:
+def shown(points: list[Waypoint], frame: str) -> Path:
     """For RViz and the console."""
-    path = Path()
-    path.header.frame_id, path.header.stamp = frame, rospy.Time.now()
-    for point in [*points[: -1 : math.ceil(len(points) / MAX_SHOWN)], *points[-1:]]:
-        pose = PoseStamped(header=path.header)
-        pose.pose.position.x, pose.pose.position.y = point.x, point.y
-        half = (point.yaw or 0.0) / 2
-        pose.pose.orientation.z, pose.pose.orientation.w = math.sin(half), math.cos(half)
-        path.poses.append(pose)
+    path = path_of([*points[: -1 : math.ceil(len(points) / MAX_SHOWN)], *points[-1:]], frame)
+    path.header.stamp = rospy.Time.now()  # also that of the poses
     return path
+
+
+def path_of(points: Iterable[Waypoint], frame: str) -> Path:
+    """All points, without a time; the orientation of one without a yaw is zero, which is none."""
+    path = Path()
+    path.header.frame_id = frame
+    path.poses = [PoseStamped(path.header, placed_pose(each.x, each.y, each.yaw)) for each in points]
+    return path
+
+
+def placed_pose(x: float, y: float, yaw: float | None) -> Pose:
+    """A pose in the plane."""
+    pose = Pose(position=Point(x, y, 0.0))
+    if yaw is not None:
+        pose.orientation.z, pose.orientation.w = math.sin(yaw / 2), math.cos(yaw / 2)
+    return pose

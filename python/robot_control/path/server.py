@@ -29,7 +29,7 @@ from robot_control.path.follower import Follower, FollowParameters, State
 from robot_control.path.frames import Tf, located
 from robot_control.path.pieces import route
 from robot_control.path.robot import SOURCE, Robot
-from robot_control.path.run import Drive, PauseServices, message_of, points_of
+from robot_control.path.run import Drive, PauseServices, points_of, shown
 from robot_control.path.waypoints import FARTHEST, PathError, checked, limited, shortened
 from robot_control.safety.interruptions import GAP, requested_at
 
@@ -138,7 +138,7 @@ class Server:
         points, frame = located(points, goal.path.header.frame_id, self._robot.frames, self._tf)
         speed = goal.speed or FollowParameters.speed
         follower = Follower(route(points), FollowParameters(speed=speed, scale_error=frame.scale_error))
-        self._wanted.publish(message_of(points, frame.name))
+        self._wanted.publish(shown(points, frame.name))
         drive = Drive(self._robot, self._topic, follower, frame, message.requested)
         self._services.drive = drive
         reporter = Reporter(self._action, drive, goal.begin_at)

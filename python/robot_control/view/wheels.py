@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import tempfile
 from typing import Any
 
 from robot_control import _robot_control
 from robot_control._robot_control import ParameterError, RobotError
-from robot_control.common.server_values import ServerValueError, server_description, server_tree
+from robot_control.common.server_values import ServerValueError, described_robot
 from robot_control.inspect.description import Description, describe
 from robot_control.parameter_layers import layered
 from robot_control.view.scene import Wheel
@@ -28,11 +27,8 @@ def running_robot() -> tuple[dict[str, Wheel], _robot_control.LegModel | None]:
     be driven.
     """
     try:
-        robot = {key: value for key, value in server_tree("robot").items() if key != "urdf"}
-        with tempfile.NamedTemporaryFile("w", suffix=".urdf") as file:
-            file.write(server_description())
-            file.flush()
-            wheels = wheels_of(describe(file.name, {"robot": robot}))
-            return wheels, None if wheels else _robot_control.legs(*layered({"robot": robot}, file.name))
+        with described_robot() as (parameters, urdf):
+            wheels = wheels_of(describe(urdf, parameters))
+            return wheels, None if wheels else _robot_control.legs(*layered(parameters, urdf))
     except (RobotError, ParameterError, ServerValueError):
         return {}, None

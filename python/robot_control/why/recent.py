@@ -18,8 +18,8 @@ OVERHEAD = 100
 class Diagnostics:
     """The reports on /diagnostics, by the absolute names of the nodes. Usable from every thread.
 
-    A report that is not renewed expires, and beyond a bound the oldest gives way. Each sender has reports of its own, so
-    that one of many names displaces no report of another one.
+    A report that is not renewed expires, and beyond a bound the oldest gives way. Each sender has reports of its own:
+    one of many names displaces no report of another one.
     """
 
     def __init__(self, life: float) -> None:
