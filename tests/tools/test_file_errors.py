@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 from robot_control import _robot_control
-from robot_control.common.file_errors import in_words
+from robot_control.common.files import in_words
 
 PYTHON = Path(__file__).parents[2] / "python"
 

@@ -9,8 +9,7 @@ import sys
 from pathlib import Path
 
 from robot_control._robot_control import RunLogError, TraceError, save_black_box
-from robot_control.common.file_errors import in_words
-from robot_control.common.files import escaped, escaped_lines, fit_for_message, given_path, utf8
+from robot_control.common.files import escaped, escaped_lines, fit_for_message, given_path, in_words, utf8
 
 RING = "ring"
 BEFORE = "ring.before"

@@ -28,8 +28,7 @@ from robot_control.calibrate.law import FloatArray, NotCalibratedError, Square, 
 from robot_control.calibrate.moves import Move, Pilot, square, straight
 from robot_control.calibrate.robot import CalibratedRobot
 from robot_control.calibrate.terminal_dialog import NoAnswerError, Questions
-from robot_control.common.file_errors import in_words
-from robot_control.common.files import fit_for_message, printable, write_text
+from robot_control.common.files import fit_for_message, in_words, printable, write_text
 from robot_control.common.output_files import check_outputs
 from robot_control.common.pose import Pose
 from robot_control.common.roles import CONTROLLER, ESTIMATOR

@@ -1,4 +1,4 @@
-"""Files that a user names, and text from them in a message: the same rules as src/files/."""
+"""Files that a user names, their errors, and text from them in a message: the same rules as src/files/."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ import os
 import shutil
 import stat
 import tempfile
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 from types import TracebackType
 from typing import Self
@@ -55,6 +55,25 @@ def file_error(path: str | os.PathLike[str], why: str) -> str:
     became = str(Path(path).absolute())
     given = _given.get(became, os.fspath(path))
     return f"{given}{'' if given == became else f' ({became})'} cannot be opened or written: {why}"
+
+
+def in_words(error: Exception) -> str:
+    """The message of any exception; of an OSError which file it is and why, without its number."""
+    if not isinstance(error, OSError) or error.strerror is None:
+        return str(error)
+    if error.filename is None:
+        return error.strerror
+    return file_error(str(error.filename), error.strerror)
+
+
+def problems_of(setting: str, path: Path, *, secret: bool, remedy: str = "") -> Iterator[str]:
+    """Why the file that a setting names cannot be used; a secret one must be readable for its owner alone."""
+    try:
+        path.read_bytes()
+        if secret and stat.S_IMODE(path.stat().st_mode) & 0o077:
+            yield f"{setting} = {path}: others can read it; chmod 600 {path}"
+    except OSError as error:
+        yield f"{setting} = {path}: cannot be read: {error.strerror}{remedy}"
 
 
 def check_input(path: Path, max_size: int) -> None:

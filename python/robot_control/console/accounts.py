@@ -6,8 +6,7 @@ import argparse
 import sys
 import time
 
-from robot_control.common.file_errors import in_words
-from robot_control.common.files import fit_for_message
+from robot_control.common.files import fit_for_message, in_words
 from robot_control.console.authority import Role
 from robot_control.console.users import Users, UsersError
 

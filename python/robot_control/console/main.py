@@ -19,8 +19,7 @@ import rospy
 from aiohttp import web
 
 from robot_control.common.boundary import boundary
-from robot_control.common.file_errors import in_words
-from robot_control.common.files import fit_for_message, given_path
+from robot_control.common.files import fit_for_message, given_path, in_words
 from robot_control.common.ros_node import running_node
 from robot_control.common.settings_files import SettingsError
 from robot_control.common.topic_sender import Signals

@@ -8,8 +8,7 @@ from pathlib import Path
 
 import rospy
 
-from robot_control.common.file_errors import in_words
-from robot_control.common.files import escaped, fit_for_message, given_path
+from robot_control.common.files import escaped, fit_for_message, given_path, in_words
 from robot_control.common.ros_node import running_node
 from robot_control.common.settings_files import SettingsError
 from robot_control.data_return.fetch import verify

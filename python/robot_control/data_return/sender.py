@@ -8,8 +8,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import suppress
 from typing import NamedTuple
 
-from robot_control.common.file_errors import in_words
-from robot_control.common.files import fit_for_message, printable
+from robot_control.common.files import fit_for_message, in_words, printable
 from robot_control.data_return.parts import (
     MANIFEST,
     MAX_FILE,

@@ -9,8 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from robot_control.blackbox.main import LOGS
-from robot_control.common.file_errors import problems_of
-from robot_control.common.files import given_path, printable
+from robot_control.common.files import given_path, printable, problems_of
 from robot_control.common.settings_files import SettingsError, number, overlaid, redacted, rules_of, wrong_values
 
 RCLONE_CONFIG = "~/.config/rclone/rclone.conf"

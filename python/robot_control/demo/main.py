@@ -16,8 +16,7 @@ from types import FrameType
 from typing import IO
 
 from robot_control._robot_control import BagError, BagReader
-from robot_control.common.file_errors import in_words
-from robot_control.common.files import printable, utf8
+from robot_control.common.files import in_words, printable, utf8
 from robot_control.common.program import run
 from robot_control.common.roles import DRIVER, LEGGED, LOOP, TELEMETRY, WHEELED, Kind
 from robot_control.common.run_log import LogError, read_log

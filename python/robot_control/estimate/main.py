@@ -14,8 +14,7 @@ import numpy as np
 import yaml  # type: ignore[import-untyped]
 
 from robot_control._robot_control import ParameterError, RobotError, read_run_header
-from robot_control.common.file_errors import in_words
-from robot_control.common.files import NewFiles, escaped, fit_for_message, given_path, utf8
+from robot_control.common.files import NewFiles, escaped, fit_for_message, given_path, in_words, utf8
 from robot_control.common.output_files import check_outputs
 from robot_control.common.picture_file import check_picture
 from robot_control.common.roles import refuse_legs

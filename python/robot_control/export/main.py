@@ -6,8 +6,7 @@ import argparse
 import sys
 
 from robot_control._robot_control import BagError, BagReader, TraceError
-from robot_control.common.file_errors import in_words
-from robot_control.common.files import NewFiles, escaped, fit_for_message, given_path, utf8
+from robot_control.common.files import NewFiles, escaped, fit_for_message, given_path, in_words, utf8
 from robot_control.common.output_files import check_outputs
 from robot_control.common.run_log import LogError, is_bag
 from robot_control.export.csv_table import write_csv

@@ -14,8 +14,7 @@ from std_srvs.srv import Trigger, TriggerResponse
 
 from robot_control._robot_control import ParameterError, RobotError
 from robot_control.common.boundary import boundary
-from robot_control.common.file_errors import in_words
-from robot_control.common.files import InputFileError, fit_for_message, given_path
+from robot_control.common.files import InputFileError, fit_for_message, given_path, in_words
 from robot_control.common.ros_node import running_node
 from robot_control.common.server_values import ServerValueError
 from robot_control.common.settings_files import SettingsError

@@ -6,7 +6,7 @@ import threading
 from pathlib import Path
 from typing import Any
 
-from robot_control.common.file_errors import in_words
+from robot_control.common.files import in_words
 from robot_control.common.kept_file import DamagedError, put_aside, read_kept, write_kept
 
 BLOCK = 1000

@@ -8,8 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from robot_control.blackbox.main import LOGS
-from robot_control.common.file_errors import problems_of
-from robot_control.common.files import given_path, printable
+from robot_control.common.files import given_path, printable, problems_of
 from robot_control.common.settings_files import (
     SettingsError,
     list_of,

@@ -8,8 +8,7 @@ import time
 import rospy
 
 from robot_control import ParameterError, RobotError
-from robot_control.common.file_errors import in_words
-from robot_control.common.files import escaped, fit_for_message, write_text
+from robot_control.common.files import escaped, fit_for_message, in_words, write_text
 from robot_control.common.output_files import check_outputs
 from robot_control.common.pose import Pose
 from robot_control.common.roles import CONTROLLER, refuse_legs

@@ -7,8 +7,7 @@ import json
 import sys
 
 from robot_control._robot_control import DriverError, ParameterError, RobotError
-from robot_control.common.file_errors import in_words
-from robot_control.common.files import escaped, fit_for_message, given_path, write_text
+from robot_control.common.files import escaped, fit_for_message, given_path, in_words, write_text
 from robot_control.common.output_files import check_outputs
 from robot_control.common.picture_file import check_picture
 from robot_control.inspect.description import Description, describe, mjcf, stand

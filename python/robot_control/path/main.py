@@ -13,8 +13,7 @@ from nav_msgs.msg import Path
 from robot_control.common.boundary import MAX_LONG_BYTES, next_message
 from robot_control.common.command import Command
 from robot_control.common.command_topic import CommandTopic
-from robot_control.common.file_errors import in_words
-from robot_control.common.files import fit_for_message
+from robot_control.common.files import fit_for_message, in_words
 from robot_control.common.pose import pose_of
 from robot_control.common.ros_node import running_node
 from robot_control.common.topic_sender import Signals

@@ -7,8 +7,7 @@ from pathlib import Path
 
 import rosgraph.names
 
-from robot_control.common.file_errors import in_words
-from robot_control.common.files import given_path
+from robot_control.common.files import given_path, in_words
 
 TOPICS = (
     "cmd_vel",

@@ -14,8 +14,7 @@ import matplotlib.image
 
 from robot_control import _robot_control
 from robot_control._robot_control import DriverError, ParameterError, RobotError
-from robot_control.common.file_errors import in_words
-from robot_control.common.files import given_path, printable
+from robot_control.common.files import given_path, in_words, printable
 from robot_control.common.program import run
 from robot_control.common.roles import DRIVER
 from robot_control.common.run_log import LogError

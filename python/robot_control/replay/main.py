@@ -11,8 +11,7 @@ from typing import Any
 
 from robot_control import ParameterError, RobotError
 from robot_control._robot_control import BagError, replay_log
-from robot_control.common.file_errors import in_words
-from robot_control.common.files import escaped, escaped_lines, fit_for_message, given_path, utf8
+from robot_control.common.files import escaped, escaped_lines, fit_for_message, given_path, in_words, utf8
 from robot_control.common.picture_file import check_picture
 from robot_control.common.roles import CONTROLLER, ESTIMATOR, MONITOR
 from robot_control.replay.recorded_setup import RecordedSetup, recorded_setup

@@ -7,8 +7,7 @@ import math
 import sys
 from pathlib import Path
 
-from robot_control.common.file_errors import in_words
-from robot_control.common.files import escaped, escaped_lines, fit_for_message, given_path, write_text
+from robot_control.common.files import escaped, escaped_lines, fit_for_message, given_path, in_words, write_text
 from robot_control.common.output_files import check_outputs
 from robot_control.common.pypi import use_packages
 from robot_control.common.run_log import read_run
