@@ -6,6 +6,7 @@ import time
 import pytest
 from data_return_system import DAY, WHOLE_BAG, System, use_small_parts, write
 from mutants import mutants
+from robot_control.common.kept_file import digest_of
 from robot_control.common.settings_files import SettingsError
 from robot_control.data_return.fetch import _names
 from robot_control.data_return.parts import MANIFEST, GapError, put_together
@@ -114,11 +115,11 @@ def settings_files(tmp_path):
 def queues(tmp_path):
     """A queue that is used begins a sender; its next pass harms nothing."""
     system = finished(tmp_path)
-    valid = system.queue.path.read_bytes()
+    valid = system.queue.path.read_bytes().partition(b"\n")[2]
     logs = {path: path.read_bytes() for path in (tmp_path / "logs").rglob("*.bag")}
 
     def take(mutant):
-        write_new(system.queue.path, mutant)
+        write_new(system.queue.path, f"{digest_of(mutant)}\n".encode() + mutant)
         queue = QueueFile(system.queue.folder)
         for each in queue.entries.values():
             assert each.target.count("/") == 1

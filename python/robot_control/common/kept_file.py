@@ -35,7 +35,10 @@ def read_kept(path: Path) -> Any:  # noqa: ANN401 (JSON)
     digest, _, text = path.read_bytes().partition(b"\n")
     if digest != digest_of(text).encode():
         raise DamagedError(f"{path}: its digest is wrong")
-    return json.loads(text)
+    try:
+        return json.loads(text)
+    except (ValueError, RecursionError) as error:
+        raise DamagedError(f"{path}: {error}") from None
 
 
 def write_kept(path: Path, value: object) -> None:

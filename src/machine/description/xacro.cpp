@@ -59,9 +59,10 @@ std::string expand_xacro(const std::string& path) {
            "Run scripts/setup or `pip install xacro`, " + std::string(kByHand));
   }
   if (result.code != 0) {
-    refuse(path, "xacro", on_one_line(result.errors),
-           "Repair the file; set ROS_PACKAGE_PATH so that $(find …) works; write defaults for its arguments into it, or "
-           "take the URDF that its author expanded: a .xacro file is a program, which `xacro FILE` runs unguarded");
+    refuse(
+        path, "xacro", on_one_line(result.errors),
+        "Repair the file; set ROS_PACKAGE_PATH so that $(find …) works; write defaults for its arguments into it, or "
+        "take the URDF that its author expanded: a .xacro file is a program, which `xacro FILE` runs unguarded");
   }
   return result.output;
 }
