@@ -65,6 +65,14 @@ class TimedGoal(unsealed(FollowPathActionGoal, NUMBERS)):  # type: ignore[misc]
         return self
 
 
+class TimedAction(FollowPathAction):  # type: ignore[misc]
+    """The action follow_path with such goals."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.action_goal = TimedGoal()
+
+
 class Server:
     """One goal at a time; the newest counts."""
 
@@ -75,8 +83,8 @@ class Server:
         self._wanted = rospy.Publisher("path_wanted", Path, queue_size=1, latch=True)
         self._idle = threading.Event()
         self._idle.set()
-        guard_action(NAME, goal=TimedGoal, cancel=unsealed(GoalID))
-        self._action = actionlib.SimpleActionServer(NAME, FollowPathAction, self._execute, auto_start=False)
+        guard_action(NAME, cancel=unsealed(GoalID))
+        self._action = actionlib.SimpleActionServer(NAME, TimedAction, self._execute, auto_start=False)
         boundary.stops(self._stop)
         self._action.start()
 
