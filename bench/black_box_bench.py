@@ -18,8 +18,8 @@ from typing import Any
 
 import numpy as np
 from robot_control._robot_control import RunLogError, save_black_box
-from robot_control.common.roles import LOOP, TELEMETRY
-from robot_control.common.run_log import read_log
+from robot_control.data.run_log import read_log
+from robot_control.loop.roles import LOOP, TELEMETRY
 
 from bench.log_bench import row
 from bench.participants import START_LIMIT, command, remove_shared_memory, script, support_program

@@ -21,10 +21,10 @@ from pathlib import Path
 from typing import Any
 
 from robot_control._robot_control import replay_log, save_black_box
-from robot_control.common.roles import DRIVER, LOOP, TELEMETRY
-from robot_control.common.run_log import read_run
-from robot_control.replay.recorded_setup import recorded_setup
-from robot_control.report.main import main as report_main
+from robot_control.data.replay.recorded_setup import recorded_setup
+from robot_control.data.report.main import main as report_main
+from robot_control.data.run_log import read_run
+from robot_control.loop.roles import DRIVER, LOOP, TELEMETRY
 
 from bench.participants import START_LIMIT, command, script
 from bench.robot_corpus import DIFFBOT, QUADBOT, robot_names

@@ -18,7 +18,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
-from robot_control.common.files import write_text
+from robot_control.files.files import write_text
 
 from bench import legs, markdown
 from bench.drives.sensor_errors import LEVELS

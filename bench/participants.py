@@ -6,8 +6,8 @@ import math
 from collections.abc import Mapping
 from pathlib import Path
 
-from robot_control.common.roles import NAMES_ON_LEGS
 from robot_control.installed_files import share_file
+from robot_control.loop.roles import NAMES_ON_LEGS
 
 from bench.robot_corpus import DIFFBOT, QUADBOT, urdf_of
 

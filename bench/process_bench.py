@@ -18,8 +18,8 @@ from typing import Any
 
 import numpy as np
 from robot_control._robot_control import replay_log
-from robot_control.common.roles import CONTROLLER, LOOP, TELEMETRY
-from robot_control.replay.recorded_setup import recorded_setup
+from robot_control.data.replay.recorded_setup import recorded_setup
+from robot_control.loop.roles import CONTROLLER, LOOP, TELEMETRY
 
 from bench.log_bench import row
 from bench.participants import START_LIMIT, command, remove_shared_memory

@@ -12,8 +12,8 @@ import os
 from functools import cache
 from pathlib import Path
 
-from robot_control.inspect.description import describe, stand
 from robot_control.installed_files import share_file
+from robot_control.setup.description import describe, stand
 
 DIFFBOT, QUADBOT = OWN = ("diffbot", "quadbot")
 REFUSED = ("my_bot", "p3dx_amr")  # an empty template; wheels on fixed joints

@@ -27,8 +27,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 from robot_control._robot_control import ParameterError
-from robot_control.closed_loop import ClosedLoop, Log
-from robot_control.common.signal_names import causes_in
+from robot_control.loop.closed_loop import ClosedLoop, Log
+from robot_control.loop.signal_names import causes_in
 
 from bench.robot_corpus import DIFFBOT, robot_names, urdf_of
 from bench.rows import plain

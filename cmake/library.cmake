@@ -1,5 +1,5 @@
 # One library per folder of src/, linked to those whose functions it calls. Who may include whom is held by
-# tests/tools/test_architecture.py.
+# tests/repository/test_architecture.py.
 #   robot_control_library(NAME SOURCES … LINK …)
 
 add_library(robot_control_options INTERFACE)

@@ -9,8 +9,8 @@ for folder in (HERE.parent / "python", HERE.parent / "python3/dist-packages"):  
     if (folder / "robot_control/doctor").is_dir():
         sys.path.insert(0, str(folder))
 
-from robot_control.common.program import run  # noqa: E402
-from robot_control.doctor.main import main  # noqa: E402
+from robot_control.setup.doctor.main import main  # noqa: E402
+from robot_control.ui.program import run  # noqa: E402
 
 if __name__ == "__main__":
     run(main)

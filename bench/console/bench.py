@@ -12,8 +12,8 @@ from typing import Any
 
 import numpy as np
 from robot_control import ClosedLoop
-from robot_control.common.run_log import read_log
-from robot_control.console.settings import Settings
+from robot_control.data.run_log import read_log
+from robot_control.watch.console.settings import Settings
 
 from bench.console.browser import Browser
 from bench.console.page import Page

@@ -13,7 +13,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from robot_control.pad.law import SETTLING
+from robot_control.drive.pad_law import SETTLING
 
 from bench.console.process import wait_for
 

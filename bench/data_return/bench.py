@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from robot_control.data_return.parts import MANIFEST, GapError, put_together, read_manifest
+from robot_control.data.data_return.parts import MANIFEST, GapError, put_together, read_manifest
 
 from bench.data_return.changes import Changes
 from bench.data_return.server import KINDS, missing

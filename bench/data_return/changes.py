@@ -11,11 +11,11 @@ from pathlib import Path
 from typing import Any
 from unittest.mock import patch
 
-from robot_control.data_return import parts, plan
-from robot_control.data_return.parts import MANIFEST, GapError, put_together
-from robot_control.data_return.queue_file import QueueFile
-from robot_control.data_return.sender import Sender
-from robot_control.data_return.settings import Settings
+from robot_control.data.data_return import parts, plan
+from robot_control.data.data_return.parts import MANIFEST, GapError, put_together
+from robot_control.data.data_return.queue_file import QueueFile
+from robot_control.data.data_return.sender import Sender
+from robot_control.data.data_return.settings import Settings
 
 from bench.data_return.virtual_remote import VirtualRemote
 

@@ -15,9 +15,9 @@ from types import TracebackType
 from typing import Self
 
 import yaml  # type: ignore[import-untyped]
-from robot_control.data_return.plan import BATCH, PART_BYTES
-from robot_control.data_return.remote import Remote
-from robot_control.data_return.settings import read_settings
+from robot_control.data.data_return.plan import BATCH, PART_BYTES
+from robot_control.data.data_return.remote import Remote
+from robot_control.data.data_return.settings import read_settings
 
 from bench.console.process import program
 from bench.console.proxy import Proxy

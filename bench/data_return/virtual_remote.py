@@ -6,7 +6,7 @@ import hashlib
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
-from robot_control.data_return.remote import RemoteFile
+from robot_control.data.data_return.remote import RemoteFile
 
 
 class PowerLoss(BaseException):

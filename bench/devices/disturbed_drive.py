@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from robot_control.closed_loop import Log
+from robot_control.loop.closed_loop import Log
 
 from bench.devices.loss_trial import SERIAL, robot_behind
 from bench.faults.sequence_judge import STOPPED_STATES

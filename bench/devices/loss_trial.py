@@ -24,9 +24,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 from robot_control import ClosedLoop
-from robot_control.closed_loop import Log
-from robot_control.common.signal_names import mask_of
 from robot_control.installed_files import share_file
+from robot_control.loop.closed_loop import Log
+from robot_control.loop.signal_names import mask_of
 
 from bench.faults.sequence_judge import BRAKE, STOPPED_STATES
 

@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from robot_control.closed_loop import ClosedLoop, Log
+from robot_control.loop.closed_loop import ClosedLoop, Log
 
 from bench.drives.wheel_command import for_drives
 from bench.robot_corpus import DIFFBOT, urdf_of

@@ -9,7 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from robot_control.closed_loop import ClosedLoop, Log
+from robot_control.loop.closed_loop import ClosedLoop, Log
 
 STEP = 0.1  # s, between two commands
 LINEAR_LIMIT, ANGULAR_LIMIT = 1.0, 2.0  # m/s, rad/s: full speed of the default parameters

@@ -17,11 +17,11 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
-from robot_control.closed_loop import ClosedLoop, Log
-from robot_control.common.signal_names import causes_in, mask_of
-from robot_control.demo.intervals import intervals
-from robot_control.report.drive import Drive as ReportedDrive
-from robot_control.report.figures import DEGRADED
+from robot_control.data.intervals import intervals
+from robot_control.data.report.drive import Drive as ReportedDrive
+from robot_control.data.report.figures import DEGRADED
+from robot_control.loop.closed_loop import ClosedLoop, Log
+from robot_control.loop.signal_names import causes_in, mask_of
 
 from bench.drives import turning_drive
 from bench.drives.normal_drive import LINEAR_LIMIT, WHEEL_COLUMNS, NormalDrive, area_of

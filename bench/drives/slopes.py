@@ -16,8 +16,8 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from robot_control.closed_loop import ClosedLoop
-from robot_control.render.scene import orientation, product
+from robot_control.data.render.scene import orientation, product
+from robot_control.loop.closed_loop import ClosedLoop
 
 from bench.drives.wheel_command import WHEEL_COMMANDS, for_drives
 

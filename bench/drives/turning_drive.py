@@ -14,8 +14,8 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from robot_control.closed_loop import ClosedLoop
-from robot_control.common.signal_names import causes_in
+from robot_control.loop.closed_loop import ClosedLoop
+from robot_control.loop.signal_names import causes_in
 
 from bench.drives.sensor_errors import plant_parameters
 from bench.drives.wheel_command import for_drives

@@ -15,8 +15,8 @@ from dataclasses import dataclass, field
 from functools import partial
 from typing import Any
 
-from robot_control.closed_loop import ClosedLoop
-from robot_control.common.signal_names import causes_in
+from robot_control.loop.closed_loop import ClosedLoop
+from robot_control.loop.signal_names import causes_in
 
 from bench.faults.fault_sequence import ANGULAR_LIMIT, LINEAR_LIMIT, FaultSequence, draw_sequence, draw_walk
 from bench.faults.sequence_judge import RULES, judge

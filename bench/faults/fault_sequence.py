@@ -13,8 +13,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
-from robot_control.common.signal_names import states
-from robot_control.inspect.description import describe
+from robot_control.loop.signal_names import states
+from robot_control.setup.description import describe
 
 from bench.faults.random_drive import Leg, draw_drive
 from bench.robot_corpus import DIFFBOT, QUADBOT, SCENES, urdf_of

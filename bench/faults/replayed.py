@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from robot_control._robot_control import LoopReplay
-from robot_control.closed_loop import ClosedLoop, Log
+from robot_control.loop.closed_loop import ClosedLoop, Log
 
 from bench.faults.fault_sequence import ALL_RUNS as CAMPAIGN_RUNS
 from bench.faults.fault_sequence import draw_sequence

@@ -40,8 +40,8 @@ from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
-from robot_control.closed_loop import Log
-from robot_control.common.signal_names import number_of
+from robot_control.loop.closed_loop import Log
+from robot_control.loop.signal_names import number_of
 
 from bench.faults.fault_sequence import FaultSequence
 from bench.robot_corpus import ICE, stop_deceleration_of

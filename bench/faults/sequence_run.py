@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from robot_control.closed_loop import ClosedLoop, Log
+from robot_control.loop.closed_loop import ClosedLoop, Log
 
 from bench.drives.wheel_command import for_drives
 from bench.faults.fault_sequence import BATTERY_VOLTAGE, Event, FaultSequence

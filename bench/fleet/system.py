@@ -18,8 +18,8 @@ from typing import Any
 import rospy
 import yaml  # type: ignore[import-untyped]
 from nav_msgs.msg import Odometry
-from robot_control.common.pose import Pose, pose_of
 from robot_control.fleet.master import Master
+from robot_control.robot.pose import Pose, pose_of
 
 from bench.console.process import program
 from bench.console.proxy import Proxy

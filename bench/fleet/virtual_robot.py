@@ -7,7 +7,9 @@ import math
 from dataclasses import replace
 from typing import Any
 
-from robot_control.common.pose import Pose
+from robot_control.drive.path.follower import Follower, FollowParameters, Motion, State
+from robot_control.drive.path.pieces import route
+from robot_control.drive.path.waypoints import Waypoint, limited, shortened
 from robot_control.fleet.client import DONE, DRIVING, ENDED, Client, Progress
 from robot_control.fleet.settings import Settings
 from robot_control.fleet.v2.capability import EDGE, INSTANT, NODE, STANDARD, ActionKind
@@ -15,9 +17,7 @@ from robot_control.fleet.v2.leg import PathPoint
 from robot_control.fleet.v2.order import Action
 from robot_control.fleet.v2.state import Facts, Machine
 from robot_control.fleet.v2.vehicle import FINISHED, Vehicle
-from robot_control.path.follower import Follower, FollowParameters, Motion, State
-from robot_control.path.pieces import route
-from robot_control.path.waypoints import Waypoint, limited, shortened
+from robot_control.robot.pose import Pose
 
 PERIOD = 0.02
 """s of one pass"""

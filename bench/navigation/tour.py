@@ -11,8 +11,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 from robot_control import ClosedLoop
-from robot_control.common.pose import turned
 from robot_control.installed_files import share_file
+from robot_control.robot.pose import turned
 
 SCAN_PERIOD = 0.1  # s
 SPEED, TURN = 0.5, 1.0  # m/s, rad/s

@@ -11,11 +11,11 @@ from typing import Any
 import numpy as np
 from robot_control import ClosedLoop
 from robot_control._navigation import Navigation
-from robot_control.common.pose import Pose
+from robot_control.drive.path.follower import Follower, FollowParameters, Motion, State
+from robot_control.drive.path.pieces import route
+from robot_control.drive.path.waypoints import PathError, Waypoint, checked
 from robot_control.installed_files import share_file
-from robot_control.path.follower import Follower, FollowParameters, Motion, State
-from robot_control.path.pieces import route
-from robot_control.path.waypoints import PathError, Waypoint, checked
+from robot_control.robot.pose import Pose
 
 from bench.navigation.scene_map import Map, Obstacle
 from bench.navigation.tour import LASER, new_loop

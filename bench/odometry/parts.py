@@ -22,7 +22,7 @@ from typing import Any
 import numpy as np
 import yaml  # type: ignore[import-untyped]
 from robot_control.installed_files import share_file
-from robot_control.parameter_layers import DEFAULTS
+from robot_control.settings.parameter_layers import DEFAULTS
 
 from bench.drives.sensor_errors import plant_parameters
 from bench.odometry.consistency import nees, pose_error, twist_error

@@ -11,7 +11,7 @@ import matplotlib as mpl
 mpl.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
-from robot_control.common.picture_style import STYLE
+from robot_control.ui.picture_style import STYLE
 
 from bench.odometry.consistency import ROLLING, SLIPPING
 from bench.odometry.judge import SAMPLE, Run

@@ -16,7 +16,7 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from robot_control.closed_loop import ClosedLoop
+from robot_control.loop.closed_loop import ClosedLoop
 
 from bench.odometry.errors import Errors
 from bench.odometry.scenarios import SCENARIOS, Trial, draw_trial

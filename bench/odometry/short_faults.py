@@ -14,7 +14,7 @@ from itertools import product
 
 import numpy as np
 from robot_control import ClosedLoop, Estimator
-from robot_control.offline_estimator import Estimate
+from robot_control.loop.estimator import Estimate
 
 from bench.odometry.program import PERIOD, Array, Program
 

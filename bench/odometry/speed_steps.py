@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from robot_control import Estimator
-from robot_control.offline_estimator import FLAGS
+from robot_control.loop.estimator import FLAGS
 
 from bench.odometry.field_drive import Errors, field_drive
 from bench.odometry.recordings import Recording, merged

@@ -7,7 +7,7 @@ from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
-from robot_control.offline_estimator import FLAGS, Estimate, Estimator
+from robot_control.loop.estimator import FLAGS, Estimate, Estimator
 
 from bench.odometry.recording import TRUTH_EVERY, Recording
 from bench.odometry.truth import Array, Track, Truth

@@ -15,8 +15,8 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from robot_control.common.roles import DRIVER
-from robot_control.common.run_log import FloatArray, Log
+from robot_control.data.run_log import FloatArray, Log
+from robot_control.loop.roles import DRIVER
 
 from bench.realtime.cost import free_port
 from bench.realtime.jitter import median_interval

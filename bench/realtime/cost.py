@@ -16,7 +16,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from robot_control.common.roles import DRIVER, HARDWARE_DRIVER, LOOP, TELEMETRY
+from robot_control.loop.roles import DRIVER, HARDWARE_DRIVER, LOOP, TELEMETRY
 
 from bench.participants import START_LIMIT
 from bench.realtime.machine import start_cyclictest

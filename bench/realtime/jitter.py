@@ -7,8 +7,8 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from robot_control.common.run_log import FloatArray, Log
-from robot_control.doctor.measure import interval
+from robot_control.data.run_log import FloatArray, Log
+from robot_control.setup.doctor.measure import interval
 
 from bench.realtime.loops import loop_for
 from bench.realtime.machine import latencies, load, shallow_sleep, start_cyclictest

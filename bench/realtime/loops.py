@@ -9,8 +9,8 @@ import time
 from collections.abc import Mapping
 from pathlib import Path
 
-from robot_control.common.roles import DRIVER, LOOP, TELEMETRY
-from robot_control.common.run_log import Log, read_log
+from robot_control.data.run_log import Log, read_log
+from robot_control.loop.roles import DRIVER, LOOP, TELEMETRY
 
 from bench.participants import START_LIMIT, command, remove_shared_memory, script
 

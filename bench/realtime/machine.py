@@ -11,7 +11,7 @@ from contextlib import contextmanager
 from pathlib import Path
 
 import numpy as np
-from robot_control.common.run_log import FloatArray
+from robot_control.data.run_log import FloatArray
 
 DMA_LATENCY = Path("/dev/cpu_dma_latency")
 PRIORITY = 83  # LoopPriority::kDriver

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from robot_control.common.run_log import Log
+from robot_control.data.run_log import Log
 
 from bench.realtime.loops import FIRST, LAST, Loop
 from bench.realtime.machine import latencies, start_cyclictest

@@ -6,11 +6,11 @@ import math
 import random
 from collections.abc import Callable, Sequence
 
-from robot_control.common.pose import Pose, turned
-from robot_control.path.follower import Follower, FollowParameters, Motion
-from robot_control.path.pieces import route
-from robot_control.path.shapes import SHAPES
-from robot_control.path.waypoints import Waypoint
+from robot_control.drive.path.follower import Follower, FollowParameters, Motion
+from robot_control.drive.path.pieces import route
+from robot_control.drive.path.shapes import SHAPES
+from robot_control.drive.path.waypoints import Waypoint
+from robot_control.robot.pose import Pose, turned
 
 PERIOD = 0.02  # s, odometry
 MAX_TIME = 60.0  # s, of every path here

@@ -12,11 +12,11 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
-from robot_control.common.command import Command
-from robot_control.common.pose import Pose
-from robot_control.path.follower import Motion
-from robot_control.path.waypoints import Waypoint
-from robot_control.safety.interruptions import GAP, Status
+from robot_control.drive.path.follower import Motion
+from robot_control.drive.path.waypoints import Waypoint
+from robot_control.robot.command import Command
+from robot_control.robot.interruptions import GAP, Status
+from robot_control.robot.pose import Pose
 
 from bench.release.path_jumps import MAX_EXCESS, excess
 from bench.release.senders import CommandSender, GoalSender, PadSender, PathSender, TeleopSender

@@ -10,18 +10,18 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
-from robot_control.common.command import Command
-from robot_control.common.pose import Pose
-from robot_control.drive.release import Phase, Release
-from robot_control.pad.law import Pad
-from robot_control.path.follower import Follower, Motion
-from robot_control.path.pieces import route
-from robot_control.path.waypoints import Waypoint
-from robot_control.safety.interruptions import Interruptions, Status, requested_at
-from robot_control.teleop.backlog import Backlog
-from robot_control.teleop.key_map import ARROWS
-from robot_control.teleop.keyboard import Decoder
-from robot_control.teleop.operator import Limits, Operator
+from robot_control.drive.keys.key_map import ARROWS
+from robot_control.drive.keys.keyboard import Decoder
+from robot_control.drive.keys.operator import Limits, Operator
+from robot_control.drive.pad_law import Pad
+from robot_control.drive.path.follower import Follower, Motion
+from robot_control.drive.path.pieces import route
+from robot_control.drive.path.waypoints import Waypoint
+from robot_control.drive.send_cmd.release import Phase, Release
+from robot_control.drive.teleop.backlog import Backlog
+from robot_control.robot.command import Command
+from robot_control.robot.interruptions import Interruptions, Status, requested_at
+from robot_control.robot.pose import Pose
 
 CHOSEN, LIMITS = Command(0.5, 1.0), Limits(1.0, 2.0, reverse=1.0)
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from urllib.parse import urlsplit
 
-from robot_control.console.addresses import is_loopback
+from robot_control.settings.addresses import is_loopback
 
 
 def check_address(address: str, *, insecure: bool) -> None:

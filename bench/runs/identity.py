@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 
-from robot_control.closed_loop import ClosedLoop
+from robot_control.loop.closed_loop import ClosedLoop
 
 from bench.robot_corpus import robot_names, urdf_of
 

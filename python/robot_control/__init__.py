@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from robot_control._robot_control import DriverError, ParameterError, RobotError
-    from robot_control.closed_loop import ClosedLoop
-    from robot_control.offline_estimator import Estimator
+    from robot_control.loop.closed_loop import ClosedLoop
+    from robot_control.loop.estimator import Estimator
 
 __all__ = ["ClosedLoop", "DriverError", "Estimator", "ParameterError", "RobotError"]
 
@@ -40,11 +40,11 @@ def _without_its_compiled_part() -> str:
 
 def _load(name: str) -> Any:
     if name == "ClosedLoop":
-        from robot_control.closed_loop import ClosedLoop
+        from robot_control.loop.closed_loop import ClosedLoop
 
         return ClosedLoop
     if name == "Estimator":
-        from robot_control.offline_estimator import Estimator
+        from robot_control.loop.estimator import Estimator
 
         return Estimator
     if name in __all__:

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from robot_control import _robot_control
-from robot_control.parameter_layers import layered
+from robot_control.settings.parameter_layers import layered
 
 Array = NDArray[np.float64]
 Robot = str | PathLike[str]

@@ -1,7 +1,7 @@
 # shellcheck shell=bash
 # Sourced by scripts/test: which tests a NAME means.
 
-PYTEST_FOLDERS=(tests/tools tests/console tests/simulation tests/behaviour tests/docs)
+PYTEST_FOLDERS=(tests)
 
 # Slow cases are marked where they stand: a gtest has `Nightly` in its name, a case of pytest the marker `nightly`, one of
 # a rostest the decorator `nightly`, which looks at this environment; a whole CTest entry has the label `nightly`.

@@ -34,7 +34,7 @@ from pathlib import Path
 
 import numpy as np
 from robot_control import ClosedLoop
-from robot_control.common.run_log import FloatArray, Log, read_run
+from robot_control.data.run_log import FloatArray, Log, read_run
 
 from bench.robot_corpus import DIFFBOT, urdf_of
 

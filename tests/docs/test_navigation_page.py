@@ -12,7 +12,7 @@ import rospy
 from bench.navigation.tour import command_to
 from geometry_msgs.msg import Twist
 from nav_msgs.msg import Odometry
-from robot_control.common.pose import pose_of
+from robot_control.robot.pose import pose_of
 rospy.init_node("hand")
 commands, seen = rospy.Publisher("cmd_vel", Twist, queue_size=1), [rospy.wait_for_message("odom", Odometry, 5)]
 rospy.Subscriber("odom", Odometry, lambda message: seen.__setitem__(0, message), queue_size=1)

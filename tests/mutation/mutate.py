@@ -652,7 +652,7 @@ def main() -> int:
     for (name, before, after), met in equal.items():
         if not met:
             fail(f"{EQUAL.name}: {name} has no change any more from '{before}' to '{after}'; remove it")
-    drawn = random.Random(seed).sample(possible, min(count, len(possible)))  # noqa: S311
+    drawn = random.Random(seed).sample(possible, min(count, len(possible)))
     if not drawn:
         fail(f"{', '.join(tests)} has no change of src/{room} in it: the program links nothing of the folder")
     found = 0

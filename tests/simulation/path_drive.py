@@ -3,9 +3,9 @@
 import math
 
 from robot_control import ClosedLoop
-from robot_control.common.pose import Pose
-from robot_control.path.follower import Follower, Motion, State
-from robot_control.path.pieces import route, turned
+from robot_control.drive.path.follower import Follower, Motion, State
+from robot_control.drive.path.pieces import route, turned
+from robot_control.robot.pose import Pose
 
 ODOM = 20
 """cycles between two odometry messages; a command acts before the next message"""

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 import yaml
 from robot_control import ClosedLoop
-from robot_control.calibrate.evaluation import evaluate, wheels_of
-from robot_control.calibrate.law import Square, Straight, Truth, largest_mean_return_error
-from robot_control.calibrate.moves import Pilot, square, straight
-from robot_control.common.pose import Pose
+from robot_control.robot.pose import Pose
+from robot_control.setup.calibrate.evaluation import evaluate, wheels_of
+from robot_control.setup.calibrate.law import Square, Straight, Truth, largest_mean_return_error
+from robot_control.setup.calibrate.moves import Pilot, square, straight
 
 LEFT, RIGHT, BASE = 0.012, 0.004, 0.02
 HIDDEN = {

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from corpus import ABSENT, FOLDER
 from robot_control import ClosedLoop
-from robot_control.common.signal_names import number_of
+from robot_control.loop.signal_names import number_of
 
 from bench.faults.campaign import campaign, run_seed
 from bench.faults.fault_sequence import ALL_RUNS, FaultSequence, draw_sequence, draw_walk

@@ -5,8 +5,8 @@ import math
 import numpy as np
 import pytest
 from robot_control import ClosedLoop, DriverError, ParameterError, RobotError
-from robot_control.common.signal_names import mask_of, number_of
 from robot_control.installed_files import share_file
+from robot_control.loop.signal_names import mask_of, number_of
 
 COMMAND = (0.5, 0.2)  # m/s, rad/s: the article's
 SLOPE = share_file("urdf/scenes/slope_5deg.xml")

@@ -2,9 +2,9 @@
 
 import pytest
 from robot_control import ClosedLoop
-from robot_control.common.signal_names import number_of
-from robot_control.demo.main import ANGULAR, LINEAR
-from robot_control.demo.tracking import judge
+from robot_control.data.demo.main import ANGULAR, LINEAR
+from robot_control.data.demo.tracking import judge
+from robot_control.loop.signal_names import number_of
 
 from bench.drives import drive_figures, drive_promises
 from bench.drives.drive_promises import ROBOTS, coarse_encoders, curves, peer, rest, stops, straight

@@ -7,8 +7,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 from robot_control import ClosedLoop, ParameterError
-from robot_control.common.signal_names import number_of
 from robot_control.installed_files import share_file
+from robot_control.loop.signal_names import number_of
 
 DIALECTS = ("odrive", "cia402", "vesc")
 COMMAND = (0.5, 0.2)

@@ -6,8 +6,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 from robot_control import ClosedLoop
-from robot_control.common.signal_names import causes_in, number_of
 from robot_control.installed_files import share_file
+from robot_control.loop.signal_names import causes_in, number_of
 
 COMMAND = (0.5, 0.2)
 """m/s, rad/s"""

@@ -6,12 +6,12 @@ import yaml
 from corpus import ABSENT, FOLDER
 from robot_control import ClosedLoop
 from robot_control._robot_control import wheel_loops
-from robot_control.common.settings import Settings
-from robot_control.identify.evaluation import Options, evaluate, plan
-from robot_control.identify.fit import identify
-from robot_control.identify.report import ground_friction
-from robot_control.identify.tuning_proposal import base_of
 from robot_control.installed_files import share_file
+from robot_control.settings.block import Settings
+from robot_control.setup.identify.evaluation import Options, evaluate, plan
+from robot_control.setup.identify.fit import identify
+from robot_control.setup.identify.report import ground_friction
+from robot_control.setup.identify.tuning_proposal import base_of
 from skid_steer import write_skid_steer
 
 from bench.robot_corpus import DIFFBOT, urdf_of

@@ -6,15 +6,15 @@ import numpy as np
 import pytest
 from path_drive import driven
 from robot_control import ClosedLoop
-from robot_control.common.roles import LEGGED, Kind
-from robot_control.demo.footfalls import FEET, footfalls_of
-from robot_control.demo.run_picture import draw_run
-from robot_control.demo.run_summary import summarize, to_table
+from robot_control.data.demo.run_picture import draw_run
+from robot_control.data.demo.run_summary import summarize, to_table
+from robot_control.data.footfalls import FEET, footfalls_of
+from robot_control.data.report.drive import Drive, mass_of
+from robot_control.data.report.figures import figures
+from robot_control.data.report.walking import BEARS, footfalls
+from robot_control.drive.path.shapes import SHAPES
 from robot_control.installed_files import share_file
-from robot_control.path.shapes import SHAPES
-from robot_control.report.drive import Drive, mass_of
-from robot_control.report.figures import figures
-from robot_control.report.walking import BEARS, footfalls
+from robot_control.loop.roles import LEGGED, Kind
 
 QUADBOT = share_file("urdf/quadbot.urdf")
 LINEAR, ANGULAR = 0.5, 0.2  # m/s, rad/s, of scripts/demo

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from robot_control import ClosedLoop, ParameterError
-from robot_control.common.signal_names import number_of
+from robot_control.loop.signal_names import number_of
 
 COMMAND = (0.5, 0.2)  # m/s, rad/s
 STOPPED = number_of("SupervisorState", "STOPPED")

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from robot_control import ClosedLoop, Estimator, ParameterError, RobotError
 from robot_control.installed_files import share_file
-from robot_control.offline_estimator import FLAGS, SENSORS
+from robot_control.loop.estimator import FLAGS, SENSORS
 
 DIFFBOT = share_file("urdf/diffbot.urdf")
 GEOMETRY = {"wheel_radius": 0.1, "wheel_base": 0.5, "imu_position": (0.05, 0.02, 0.06)}  # diffbot's

@@ -2,9 +2,9 @@
 
 import pytest
 from robot_control import ClosedLoop
+from robot_control.data.replay.main import EXACT
+from robot_control.data.replay.main import main as replay
 from robot_control.installed_files import share_file
-from robot_control.replay.main import EXACT
-from robot_control.replay.main import main as replay
 
 AMBLE = {"name": "amble", "period": 0.6, "duty": 0.75, "phases": [0.5, 0.0, 0.25, 0.75], "lift": 0.06}
 

@@ -4,9 +4,9 @@ import math
 
 import pytest
 from path_drive import assert_ends_at, driven
+from robot_control.drive.path.shapes import SHAPES
+from robot_control.drive.path.waypoints import Waypoint
 from robot_control.installed_files import share_file
-from robot_control.path.shapes import SHAPES
-from robot_control.path.waypoints import Waypoint
 
 
 @pytest.mark.parametrize(("shape", "size"), [("square", 4.0), ("circle", 3.0), ("eight", 5.0)])

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 from robot_control import ClosedLoop, ParameterError
-from robot_control.common.signal_names import causes_in, mask_of, number_of
 from robot_control.installed_files import share_file
+from robot_control.loop.signal_names import causes_in, mask_of, number_of
 
 from bench.legs import urdfs
 

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from robot_control import Estimator
-from robot_control.offline_estimator import FLAGS
+from robot_control.loop.estimator import FLAGS
 
 from bench.odometry.field_drive import Errors, field_drive, load
 from bench.odometry.recordings import (

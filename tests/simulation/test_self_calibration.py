@@ -5,7 +5,7 @@ At one speed, a radius ratio ε and a bias of the gyro b turn the heading alike:
 
 import pytest
 from robot_control import ClosedLoop
-from robot_control.report.figures import DEGRADED
+from robot_control.data.report.figures import DEGRADED
 
 LEFT = 0.02
 """Relative error of the left radius, hidden in the plant."""

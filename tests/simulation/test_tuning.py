@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from robot_control import ClosedLoop, ParameterError
-from robot_control.common.signal_names import causes_in
+from robot_control.loop.signal_names import causes_in
 
 from bench.robot_corpus import robot_names
 from bench.runs.runner import Processes

@@ -10,7 +10,7 @@ import rospy
 import rostest
 from console_pages import DrivingPage, answer, driving_page, until
 from losses_support import Master
-from robot_control.common.ros_master import Master as RunningMaster
+from robot_control.robot.ros_master import Master as RunningMaster
 from system_support import RobotTestCase, again_after_a_stall, wait_for
 
 from bench.console.process import Console

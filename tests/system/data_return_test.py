@@ -9,7 +9,7 @@ from pathlib import Path
 import rospy
 import rostest
 import yaml
-from robot_control.data_return.fetch import verify
+from robot_control.data.data_return.fetch import verify
 from robot_control.msg import RobotStatus
 from system_support import Program, Robot, init_test_node, wait_for
 

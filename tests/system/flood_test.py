@@ -17,7 +17,7 @@ from pathlib import Path
 import numpy as np
 import rostest
 from losses_support import FAST, FULL_SPEED
-from robot_control.common.run_log import read_log
+from robot_control.data.run_log import read_log
 from system_support import Program, RobotTestCase, wait_for
 
 RATE = 10_000

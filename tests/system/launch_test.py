@@ -14,9 +14,9 @@ import rosgraph
 import rospy
 import rostest
 from launch_support import LAUNCH_LIMIT, Launch
-from robot_control.common.run_log import read_log
+from robot_control.data.record.main import TOPICS
+from robot_control.data.run_log import read_log
 from robot_control.msg import SafetyStatus
-from robot_control.record.main import TOPICS
 from system_support import ESTIMATOR, MONITOR, Robot, init_test_node, refusal, repository, wait_for
 from tf2_msgs.msg import TFMessage
 

@@ -20,9 +20,9 @@ from geometry_msgs.msg import PoseStamped, TwistStamped
 from legs_support import LegsTestCase
 from nav_msgs.msg import Odometry
 from pseudo_terminal import PseudoTerminal
-from robot_control.common.pose import Pose, pose_of
 from robot_control.fleet.master import Master
 from robot_control.msg import FollowPathAction, FollowPathGoal
+from robot_control.robot.pose import Pose, pose_of
 from system_support import LIMIT, Program, again_after_a_stall, repository, wait_for
 
 from bench.console.browser import Browser, missing

@@ -7,7 +7,7 @@ import numpy as np
 import rospy
 import rostest
 from nav_msgs.msg import Odometry
-from robot_control.common.pose import rotation, yaw_of
+from robot_control.robot.pose import rotation, yaw_of
 from robot_control.srv import InjectFault, SetOdometry, SetOdometryResponse
 from sensor_msgs.msg import BatteryState, Imu
 from system_support import DRIVER, ESTIMATOR, LIMIT, RobotTestCase, wait_for

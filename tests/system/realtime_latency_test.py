@@ -21,10 +21,10 @@ import rospy
 import rostest
 from diagnostic_msgs.msg import DiagnosticArray
 from nav_msgs.msg import Odometry
-from robot_control.common.run_log import FloatArray, Log, read_log
-from robot_control.latency.figures import Figures, figures_of
+from robot_control.data.run_log import FloatArray, Log, read_log
 from robot_control.msg import SafetyStatus
 from robot_control.srv import InjectFault, SetParameters
+from robot_control.watch.latency.figures import Figures, figures_of
 from sensor_msgs.msg import Imu
 from system_support import (
     CONTROLLER,

@@ -10,7 +10,7 @@ import numpy as np
 import rospy
 import rostest
 from robot_control import ClosedLoop
-from robot_control.common.run_log import LogError, read_log
+from robot_control.data.run_log import LogError, read_log
 from robot_control.srv import SetParameters, Step
 from std_srvs.srv import SetBool
 from system_support import CONTROLLER, DRIVER, ESTIMATOR, LIMIT, MONITOR, Program, Robot, init_test_node, wait_for

@@ -24,8 +24,8 @@ import rosunit_skips
 from diagnostic_msgs.msg import DiagnosticArray
 from geometry_msgs.msg import Twist
 from nav_msgs.msg import Odometry
-from robot_control.common.pose import Pose, pose_of
 from robot_control.msg import DriveState, SafetyStatus
+from robot_control.robot.pose import Pose, pose_of
 from sensor_msgs.msg import JointState
 from stall_witness import StallWitness
 from std_msgs.msg import Bool, Float64MultiArray

@@ -13,8 +13,8 @@ import roslib.packages
 import rospy
 import rostest
 from pseudo_terminal import PseudoTerminal
-from robot_control.common.run_log import read_log
-from robot_control.teleop.operator import RESET_PAUSE
+from robot_control.data.run_log import read_log
+from robot_control.drive.keys.operator import RESET_PAUSE
 from std_msgs.msg import Empty
 from system_support import Program, RobotTestCase, nightly, wait_for
 

@@ -1,1 +1,1 @@
-"""send_cmd.py: sends a velocity command when the robot is released for it."""
+"""Programs that drive the robot."""

@@ -12,11 +12,11 @@ import rospy
 from std_msgs.msg import Bool
 from std_srvs.srv import Trigger
 
-from robot_control.blackbox.main import LOGS, incidents_of
-from robot_control.common.topic_sender import Sender
+from robot_control.data.black_box import LOGS, incidents_of
 from robot_control.fleet.settings import CustomAction
 from robot_control.fleet.v2.order import Action
 from robot_control.fleet.v2.vehicle import FAILED, FINISHED
+from robot_control.robot.topic_sender import Sender
 
 Result = tuple[str, str, str]
 RELEASE = ("sh", "-c", 'read -r _ || for topic; do timeout 10 rostopic pub -1 "$topic" std_msgs/Bool false & done', "-")

@@ -17,11 +17,11 @@ from typing import Any
 
 import paho.mqtt.client as mqtt
 
-from robot_control.common.boundary import UnfitError, boundary
-from robot_control.common.kept_file import digest_of
+from robot_control.files.kept_file import digest_of
 from robot_control.fleet.memory import Memory
 from robot_control.fleet.settings import Settings
 from robot_control.fleet.v2.messages import INBOUND, MAX_BYTES, Message, encoded, time_text
+from robot_control.robot.boundary import UnfitError, boundary
 
 RETRY = (1, 30)
 """s between two tries to connect: the first, and the longest after doubling"""

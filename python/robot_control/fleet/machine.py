@@ -7,15 +7,15 @@ import xml.etree.ElementTree as ET
 
 import numpy as np
 
-from robot_control.common.live_parameters import LiveParameters
-from robot_control.common.server_values import described_robot, server_description
+from robot_control.drive.path.follower import FollowParameters
+from robot_control.drive.speed_limits import SpeedLimits
 from robot_control.fleet.settings import Settings
 from robot_control.fleet.v2.state import Machine
-from robot_control.inspect.description import Description, describe
-from robot_control.inspect.shapes import triangles_in_base
 from robot_control.installed_files import share_file
-from robot_control.path.follower import FollowParameters
-from robot_control.teleop.speed_limits import SpeedLimits
+from robot_control.robot.live_parameters import LiveParameters
+from robot_control.robot.server_values import described_robot, server_description
+from robot_control.setup.description import Description, describe
+from robot_control.setup.shapes import triangles_in_base
 
 PATIENCE = 5.0
 """s until robot_description is set"""

@@ -13,12 +13,7 @@ import rospy
 from std_srvs.srv import Trigger, TriggerResponse
 
 from robot_control._robot_control import ParameterError, RobotError
-from robot_control.common.boundary import boundary
-from robot_control.common.files import InputFileError, fit_for_message, given_path, in_words
-from robot_control.common.ros_node import running_node
-from robot_control.common.server_values import ServerValueError
-from robot_control.common.settings_files import SettingsError
-from robot_control.common.topic_sender import Signals
+from robot_control.files.files import InputFileError, fit_for_message, given_path, in_words
 from robot_control.fleet.client import DRIVING, Client
 from robot_control.fleet.machine import machine_of, running_description
 from robot_control.fleet.memory import Memory
@@ -27,6 +22,11 @@ from robot_control.fleet.settings import Settings, read_settings
 from robot_control.fleet.v2.messages import Error
 from robot_control.fleet.v2.vehicle import Vehicle
 from robot_control.installed_files import share_file
+from robot_control.robot.boundary import boundary
+from robot_control.robot.ros_node import running_node
+from robot_control.robot.server_values import ServerValueError
+from robot_control.robot.topic_sender import Signals
+from robot_control.settings.files import SettingsError
 
 PERIOD = 0.02
 """s of one pass; odometry comes as often"""

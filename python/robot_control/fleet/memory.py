@@ -6,8 +6,8 @@ import threading
 from pathlib import Path
 from typing import Any
 
-from robot_control.common.files import in_words
-from robot_control.common.kept_file import DamagedError, put_aside, read_kept, write_kept
+from robot_control.files.files import in_words
+from robot_control.files.kept_file import DamagedError, put_aside, read_kept, write_kept
 
 BLOCK = 1000
 """headerIds that are reserved with one write: they grow over restarts, and a write per message is saved"""

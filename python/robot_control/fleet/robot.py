@@ -15,8 +15,10 @@ from nav_msgs.msg import Odometry
 from sensor_msgs.msg import BatteryState
 from tf2_msgs.msg import TFMessage
 
-from robot_control.common.boundary import guard_action, subscribe, unsealed
-from robot_control.common.pose import pose_of, turned
+from robot_control.drive.path.frames import Tf
+from robot_control.drive.path.robot import subscribe_odometry
+from robot_control.drive.path.run import path_of, placed_pose
+from robot_control.drive.path.waypoints import PathError, Waypoint
 from robot_control.fleet.client import DONE, DRIVING, ENDED, Progress
 from robot_control.fleet.custom import Actions
 from robot_control.fleet.settings import CustomAction, Settings
@@ -25,12 +27,10 @@ from robot_control.fleet.v2.messages import Error
 from robot_control.fleet.v2.order import Action
 from robot_control.fleet.v2.state import Facts
 from robot_control.msg import FollowPathAction, FollowPathFeedback, FollowPathGoal, RobotStatus, SafetyStatus
-from robot_control.path.frames import Tf
-from robot_control.path.robot import subscribe_odometry
-from robot_control.path.run import path_of, placed_pose
-from robot_control.path.waypoints import PathError, Waypoint
-from robot_control.safety.states import DRIVABLE, STOPPED
-from robot_control.safety.watch import CATCH_UP, LATE
+from robot_control.robot.boundary import guard_action, subscribe, unsealed
+from robot_control.robot.pose import pose_of, turned
+from robot_control.robot.safety_states import DRIVABLE, STOPPED
+from robot_control.robot.safety_watch import CATCH_UP, LATE
 
 MAP = "map"
 SILENCE = 0.5

@@ -7,9 +7,12 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from robot_control.blackbox.main import LOGS
-from robot_control.common.files import given_path, printable, problems_of
-from robot_control.common.settings_files import (
+from robot_control.data.black_box import LOGS
+from robot_control.files.files import given_path, printable, problems_of
+from robot_control.fleet.v2.capability import STANDARD, ActionKind
+from robot_control.fleet.v2.messages import VERSIONS
+from robot_control.settings.addresses import is_loopback
+from robot_control.settings.files import (
     SettingsError,
     list_of,
     matching,
@@ -18,9 +21,6 @@ from robot_control.common.settings_files import (
     rules_of,
     wrong_values,
 )
-from robot_control.console.addresses import is_loopback
-from robot_control.fleet.v2.capability import STANDARD, ActionKind
-from robot_control.fleet.v2.messages import VERSIONS
 
 
 @dataclass(frozen=True)

@@ -15,7 +15,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kNotInstalled = 69;  // python/robot_control/expand_xacro.py
+constexpr int kNotInstalled = 69;  // python/robot_control/setup/expand_xacro.py
 constexpr const char* kByHand = "or expand the file by hand if you trust it as a program: xacro FILE > robot.urdf";
 
 std::string python() {
@@ -39,7 +39,7 @@ std::string expand_xacro(const std::string& path) {
   }
   const std::string interpreter = python();
   const ProcessResult result =
-      run_program({interpreter, "-P", "-m", "robot_control.expand_xacro", fs::absolute(path).string()},
+      run_program({interpreter, "-P", "-m", "robot_control.setup.expand_xacro", fs::absolute(path).string()},
                   {python_path(), "PYTHONUTF8=1", "PYTHONDONTWRITEBYTECODE=1"}, kXacroSeconds);
   switch (result.end) {
     case ProcessResult::End::kNotStarted:

@@ -2,7 +2,7 @@
 /// Expands a .xacro file to the URDF that it describes.
 ///
 /// xacro (PyPI `xacro`, https://github.com/ros/xacro) runs in a Python process of its own, through
-/// robot_control/expand_xacro.py. That module resolves `$(find PACKAGE)` with rospkg, because PyPI's xacro uses ROS 2's
+/// robot_control/setup/expand_xacro.py. That module resolves `$(find PACKAGE)` with rospkg, because PyPI's xacro uses ROS 2's
 /// index. The default arguments apply; for other arguments the user expands the file by hand.
 ///
 /// The environment variable ROBOT_CONTROL_XACRO_PYTHON names the Python interpreter. Without it, that of build/xacro,

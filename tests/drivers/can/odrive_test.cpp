@@ -1,4 +1,4 @@
-/// Every layout is compared with the DBC files by tests/tools/test_can_codecs.py; these tests are for the rest.
+/// Every layout is compared with the DBC files by tests/drivers/test_can_codecs.py; these tests are for the rest.
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-/// The simulated RoboClaw and our requests, for its maker's own library (tests/tools/test_serial_peers.py).
+/// The simulated RoboClaw and our requests, for its maker's own library (tests/drivers/test_serial_peers.py).
 ///
 ///   roboclaw_peer PATH   the board with two free wheels behind a pseudo-terminal at PATH, in real time. Each line of the
 ///                        input is answered by the speeds of M1 and M2 in counts per s; the end of the input ends it.

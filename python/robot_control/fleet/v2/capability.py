@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
+from robot_control.drive.path.waypoints import JUMP
 from robot_control.fleet.v2.curve import STEP
 from robot_control.fleet.v2.leg import way_of
 from robot_control.fleet.v2.messages import RefusedError
 from robot_control.fleet.v2.order import Action, Node, Order
-from robot_control.path.waypoints import JUMP
 
 MAX_POINTS = 10_000
 """of all edges of an order: 500 m of curves, which are planned in less than 0.1 s"""

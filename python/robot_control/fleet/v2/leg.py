@@ -13,13 +13,13 @@ from dataclasses import dataclass
 from itertools import pairwise
 from typing import NamedTuple
 
-from robot_control.common.pose import turned
+from robot_control.drive.path.follower import FollowParameters
+from robot_control.drive.path.pieces import CORNER
+from robot_control.drive.path.waypoints import APART, JUMP
 from robot_control.fleet.v2.curve import CurveError, Point, points_of
 from robot_control.fleet.v2.messages import Message, RefusedError
 from robot_control.fleet.v2.order import NONE, Edge, Node, Place
-from robot_control.path.follower import FollowParameters
-from robot_control.path.pieces import CORNER
-from robot_control.path.waypoints import APART, JUMP
+from robot_control.robot.pose import turned
 
 SAME_HEADING = math.radians(2.0)
 """rad between two orientations that count as one"""

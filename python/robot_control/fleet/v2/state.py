@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-from robot_control.common.pose import turned
 from robot_control.fleet.v2.capability import ActionKind
 from robot_control.fleet.v2.messages import LIMITS, MAX_BYTES, MAX_ID, Error, Message
 from robot_control.fleet.v2.order import Edge, Node
 from robot_control.fleet.v2.vehicle import ActionState, Vehicle
+from robot_control.robot.pose import turned
 
 STATE_PERIOD = 30.0
 """s between two states at the latest (6.10)"""

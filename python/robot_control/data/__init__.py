@@ -1,0 +1,1 @@
+"""Programs that record what the robot did, and read it."""

@@ -1,0 +1,302 @@
+"""Launches the closed loop in wall-clock time, drives it, ends it, and judges what it did."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import re
+import shutil
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Callable, Iterator, Sequence
+from pathlib import Path
+from types import FrameType
+from typing import IO
+
+from robot_control._robot_control import BagError, BagReader
+from robot_control.data.csv_table import write_csv
+from robot_control.data.demo.arguments import LEGGED_ROBOT, parse
+from robot_control.data.demo.run_picture import draw_run
+from robot_control.data.demo.run_summary import summarize, to_json, to_table
+from robot_control.data.loop_timing import processor_time, stolen_share
+from robot_control.data.run_log import LogError, read_log
+from robot_control.files.files import in_words, printable, utf8
+from robot_control.installed_files import share_file
+from robot_control.loop.roles import DRIVER, LEGGED, LOOP, TELEMETRY, WHEELED, Kind
+from robot_control.loop.signal_names import number_of
+from robot_control.msg import Trace
+from robot_control.ui.program import run
+
+LINEAR, ANGULAR = 0.5, 0.2
+"""m/s, rad/s: what send_cmd.py sends by default; the source article's command."""
+START_LIMIT = 60.0
+"""s for master, nodes and first rows, and again for the sender; 3 s and 1 s on an idle machine."""
+REST_TIME = 2.0
+"""s of the robot's clock before it drives: at rest it learns the bias of its gyro, to 0.35 mrad/s in that time."""
+PERIOD = 1e-3
+"""s, of the package's parameters"""
+RAMP_TIME = 1.5
+"""s between the sender's zero and the end of the log: 0.5 s of ramp at 1 m/s², tripled."""
+END_LIMIT = 20.0
+"""s for an orderly end after SIGINT; roslaunch itself gives its nodes 15 s."""
+BUS = f"demo_{os.getpid()}"
+"""The bus belongs to this demo alone, which removes it: 12 MB that outlive the nodes would fill a small /dev/shm."""
+OUTPUTS = ("run.bag", "run.csv", "summary.json", "run.png", "launch.log", "send_cmd.log", "set_posture.log")
+EVERY_CYCLE = "telemetry: {record: always}\n"
+"""parameters laid over the package's"""
+VELOCITY = "robot: {wheel_command: velocity}\n"
+SIMULATED_VELOCITY = f"{DRIVER}: {{drive: velocity}}\n"
+"""the same, of drives that take speeds; the second one where no other drives stand before the motors"""
+
+
+class DemoError(RuntimeError):
+    """Something did not start, or died; the message names the file with the reason."""
+
+
+class Child:
+    """A program of ours in a process group of its own, its output in a file."""
+
+    def __init__(self, command: Sequence[str], output: Path) -> None:
+        self.output = output
+        self._file: IO[bytes] = output.open("wb")
+        # A shell starts its background jobs with SIGINT ignored, and children would inherit that.
+        hearing = ("env", "--default-signal=INT", *command)
+        self._process = subprocess.Popen(
+            hearing, stdin=subprocess.DEVNULL, stdout=self._file, stderr=subprocess.STDOUT, start_new_session=True
+        )
+
+    @property
+    def running(self) -> bool:
+        """True while it has not ended."""
+        return self._process.poll() is None
+
+    def end(self, limit: float = END_LIMIT) -> bool:
+        """SIGINT; after `limit` seconds SIGTERM, then SIGKILL to its group. True when SIGINT was enough."""
+        orderly = True
+        if self.running:
+            self._process.send_signal(signal.SIGINT)
+            orderly = self._wait(limit)
+        for harder in (signal.SIGTERM, signal.SIGKILL):
+            if self.running:
+                os.killpg(self._process.pid, harder)
+                self._wait(5.0)
+        self._file.close()
+        return orderly
+
+    def _wait(self, limit: float) -> bool:
+        try:
+            self._process.wait(limit)
+        except subprocess.TimeoutExpired:
+            return False
+        return True
+
+
+def run_demo(seconds: float, out: Path, robot: str, drives: Path | None = None, *, velocity: bool = False) -> int:
+    """Drives `robot` for `seconds` and writes everything to `out`; `drives`: a drive file, `velocity`: of
+    speeds.
+    Returns the exit code.
+    """
+    out.mkdir(parents=True, exist_ok=True)
+    for name in OUTPUTS:
+        (out / name).unlink(missing_ok=True)
+    os.environ["ROS_HOME"] = str(out / "ros")
+    shutil.rmtree(out / "ros", ignore_errors=True)
+
+    before = processor_time()
+    parameters = out / "ros" / "overlay.yaml"
+    parameters.parent.mkdir()
+    parameters.write_text(overlay(drives, velocity=velocity))
+    driven = _drive(seconds, out, robot, drives, parameters)
+    stolen = stolen_share(before, processor_time())
+
+    _print_refusals((out / "launch.log").read_text(errors="replace"))
+    try:
+        log = read_log(out / "run.bag")
+        write_csv(out / "run.bag", out / "run.csv")
+    except (OSError, LogError) as error:
+        raise DemoError(f"no log of the run: {in_words(error)}; see {out / 'launch.log'}") from error
+    summary = summarize(log, LINEAR, ANGULAR, driven, stolen, legged=robot == LEGGED_ROBOT)
+    (out / "summary.json").write_text(to_json(summary))
+    verdict = "tracked" if summary.passed else "NOT TRACKED"
+    draw_run(
+        log, summary, f"{robot}, {LINEAR} m/s and {ANGULAR} rad/s, wall clock, 1 ms cycles: {verdict}", out / "run.png"
+    )
+    print(f"\n{to_table(summary)}\n\n{verdict}; see {printable(str(out))}/summary.json, run.bag, run.csv, run.png")
+    return 0 if summary.passed else 1
+
+
+def overlay(drives: Path | None, *, velocity: bool) -> str:
+    """The parameters that are laid over the package's."""
+    if not velocity:
+        return EVERY_CYCLE
+    simulated = SIMULATED_VELOCITY if drives is None else ""
+    return EVERY_CYCLE + VELOCITY + simulated
+
+
+def refusals(launch_log: str) -> list[str]:
+    """The real-time privileges that were not granted, with their remedy. Each kind appears once although every node
+    reports it.
+    """
+    found: dict[str, str] = {}
+    kinds = "memory is|SCHED_FIFO priority|core|cpu_dma_latency"
+    for match in re.finditer(rf"({kinds}) [^(\n]*\([^)\n]*remedy: [^)\n]*\)", launch_log):
+        found.setdefault(match[1], match[0])
+    return list(found.values())
+
+
+def _drive(seconds: float, out: Path, robot: str, drives: Path | None, parameters: Path) -> float:
+    """Starts everything, drives, ends everything. Returns the seconds from the command's arrival, or from full speed of
+    a robot that stands up first, to the command's end.
+    """
+    log = out / "run.bag"
+    with _ended_at_the_end() as children:
+        kind = Kind(LEGGED if robot == LEGGED_ROBOT else WHEELED)
+        print(f"starting roscore, {kind.worded(', '.join(LOOP))}, {TELEMETRY}")
+        port = os.environ["ROS_MASTER_URI"].rsplit(":", 1)[1].strip("/")
+        launch = Child(
+            [
+                *("roslaunch", "-p", port, "robot_control", "sim.launch", f"robot:={robot}"),
+                *("telemetry:=true", "black_box:=false", f"out:={out}", f"bus:={BUS}", f"params:={parameters}"),
+                *(
+                    []
+                    if drives is None
+                    else [
+                        f"drives:={drives}",
+                        f"driver:={drives.stem if drives.stem in ('board', 'roboclaw') else 'can'}",
+                    ]
+                ),
+            ],
+            out / "launch.log",
+        )
+        children.append(launch)
+        _wait_until(lambda: _rested(_last_row(log)), f"rest of {REST_TIME:g} s", launch)
+        print(f"sending {LINEAR} m/s and {ANGULAR} rad/s for {seconds:g} s")
+        sender = Child(["rosrun", "robot_control", "send_cmd.py"], out / "send_cmd.log")
+        children.append(sender)
+        _wait_until(lambda: _commanded(_last_row(log)), "command", launch, sender)
+        if robot == LEGGED_ROBOT:
+            _wait_until(lambda: _walks(_last_row(log)), "walk at full speed", launch, sender)
+        start, due = time.monotonic(), 0.0
+        while (driven := time.monotonic() - start) < seconds:
+            time.sleep(max(0.0, min(1.0, seconds - driven)))
+            _see_alive(launch, sender)
+            if driven >= due:  # the longer the log, the longer it takes to read it
+                print(_progress(log, time.monotonic() - start))
+                due = 1.1 * driven
+        print("stopping")
+        if not sender.end():
+            print(f"send_cmd.py had to be killed; see {sender.output}")
+        if robot == LEGGED_ROBOT:
+            _lie_down(log, launch, children, out)
+        time.sleep(RAMP_TIME)
+        if not launch.end():
+            print(f"roslaunch had to be killed; see {launch.output}")
+    return driven
+
+
+def _lie_down(log: Path, launch: Child, children: list[Child], out: Path) -> None:
+    _wait_until(lambda: _is(_last_row(log), "standing"), "standing robot", launch)
+    print("lying down")
+    children.append(Child(["rosservice", "call", "set_posture", "lying"], out / "set_posture.log"))
+    _wait_until(lambda: _is(_last_row(log), "lying"), "lying robot", launch)
+
+
+@contextlib.contextmanager
+def _ended_at_the_end() -> Iterator[list[Child]]:
+    """Whatever happens, what was started is ended, the last one first, and its shared memory removed."""
+    children: list[Child] = []
+    try:
+        yield children
+    finally:
+        for child in reversed(children):
+            child.end()
+        for left in Path("/dev/shm").glob(f"robot_control.{os.geteuid()}.{BUS}.*"):
+            left.unlink(missing_ok=True)
+
+
+def _wait_until(condition: Callable[[], bool], what: str, *children: Child) -> None:
+    """Polls; raises when one of the children dies or START_LIMIT has passed without a `what`."""
+    deadline = time.monotonic() + START_LIMIT
+    while not condition():
+        _see_alive(*children)
+        if time.monotonic() > deadline:
+            raise DemoError(f"no {what} within {START_LIMIT:g} s:\n{_tail(children[0].output)}")
+        time.sleep(0.1)
+
+
+def _see_alive(*children: Child) -> None:
+    for child in children:
+        if not child.running:
+            raise DemoError(f"a part of the loop has died:\n{_tail(child.output)}")
+
+
+def _progress(log: Path, driven: float) -> str:
+    row = _last_row(log)
+    if row is None:
+        return f"{driven:5.1f} s"
+    (x, y, _), speed, turn = row.truth_position, row.truth_linear[0], row.truth_angular[2]
+    return f"{driven:5.1f} s  true: {speed:6.3f} m/s {turn:6.3f} rad/s at ({x:.2f}, {y:.2f}) m"
+
+
+def _last_row(log: Path) -> Trace | None:
+    """The last complete row of a run.bag that is being written, a second old at most."""
+    try:
+        bag = BagReader(utf8(log))
+    except (OSError, BagError, RuntimeError):  # it has just begun
+        return None
+    rows = {number for number, connection in bag.connections.items() if connection["topic"] == b"trace"}
+    messages = bag.messages(bag.chunks - 1, rows) if bag.chunks > 0 else []
+    return Trace().deserialize(messages[-1][2]) if messages else None
+
+
+def _rested(row: Trace | None) -> bool:
+    return row is not None and row.cycle * PERIOD >= REST_TIME
+
+
+def _commanded(row: Trace | None) -> bool:
+    return row is not None and row.requested_linear[0] == LINEAR
+
+
+def _walks(row: Trace | None) -> bool:
+    return _is(row, "walking") and row is not None and row.limited_linear[0] == LINEAR
+
+
+def _is(row: Trace | None, posture: str) -> bool:
+    return row is not None and row.legged_phase == number_of("LegPhase", posture)
+
+
+def _print_refusals(launch_log: str) -> None:
+    said = refusals(launch_log)
+    for refusal in said:
+        print(f"real time: {refusal}")
+    if said:
+        print("real time: see docs/realtime.md")
+
+
+def _tail(path: Path, lines: int = 25) -> str:
+    return "\n".join(path.read_text(errors="replace").splitlines()[-lines:])
+
+
+def _interrupt(signal_number: int, _frame: FrameType | None) -> None:
+    raise KeyboardInterrupt(signal.Signals(signal_number).name)
+
+
+def main() -> int:
+    """Entry point of scripts/demo."""
+    given = parse()
+    signal.signal(signal.SIGTERM, _interrupt)
+    try:
+        drives = Path(share_file(f"config/drives/{given.drives}.yaml")) if given.drives else None
+        return run_demo(given.seconds, given.out, given.robot, drives, velocity=given.wheel_command == "velocity")
+    except (DemoError, OSError) as error:
+        print(f"scripts/demo: {in_words(error)}", file=sys.stderr)
+        return 2
+    except KeyboardInterrupt:
+        print("scripts/demo: interrupted", file=sys.stderr)
+        return 130
+
+
+if __name__ == "__main__":
+    run(main)

@@ -1,0 +1,1 @@
+"""The program drive_path.py."""

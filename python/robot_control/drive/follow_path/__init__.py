@@ -1,0 +1,1 @@
+"""The program follow_path.py."""

@@ -1,0 +1,1 @@
+"""The running robot: what it reports, and the way to command it."""

@@ -1,0 +1,1 @@
+"""Why the robot does not move: facts, and what follows from them."""

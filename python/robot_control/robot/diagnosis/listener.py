@@ -1,0 +1,101 @@
+"""Receives the messages of the robot and the answers of the master, as facts for a diagnosis."""
+
+import time
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import Any
+
+import rospy
+from geometry_msgs.msg import Twist, TwistStamped
+from nav_msgs.msg import Odometry
+
+from robot_control.msg import SafetyStatus
+from robot_control.robot.boundary import Latest, subscribe
+from robot_control.robot.diagnosis.facts import below, nodes_of, other_robots, safety_of
+from robot_control.robot.diagnosis.recent import Diagnostics, values_of
+from robot_control.robot.diagnosis.state import SILENCE, Facts, Report, Safety, Speeds
+from robot_control.robot.live_parameters import LiveParameters
+from robot_control.robot.robot_kind import running_kind
+from robot_control.robot.ros_master import Master, senders_of
+
+MASTER_PERIOD = 1.0
+"""s between two queries of the master"""
+
+
+class Listener:
+    """The last message of each topic."""
+
+    def __init__(self) -> None:
+        self.namespace = rospy.get_namespace().rstrip("/") or "/"
+        self.master = Master(rospy.get_name())
+        self._state: Sequence[Any] | None = None
+        self._queried_at = 0.0
+        self._registered = True  # with the present master, by all of its topics
+        self._safety: tuple[Safety, float, rospy.Time] | None = None  # when it came, and since when the state is held
+        self._reports = Diagnostics(SILENCE)
+        self._limited, self._measured = Latest("cmd_vel_out", TwistStamped), Latest("odom", Odometry)
+        self._parameters = LiveParameters()
+        subscribe("safety_status", SafetyStatus, self._receive_status)
+
+    def _receive_status(self, message: SafetyStatus) -> None:
+        self._safety = safety_of(message, 0.0, 0.0), time.monotonic(), message.since
+
+    def query_master(self) -> None:
+        """Queries the master at most every MASTER_PERIOD; waits up to ros_master.TIMEOUT.
+
+        A master that was started again does not know this program. The node is registered again, and its connections
+        stay. Over them it still reaches the nodes that the new master does not know either.
+        """
+        now = time.monotonic()
+        if now - self._queried_at < MASTER_PERIOD:
+            return
+        self._queried_at = now
+        self._state = self.master.state()
+        if self._state is not None and not (self._registered and rospy.get_name() in nodes_of(self._state)):
+            self._registered = self.master.register_again()
+
+    def complete(self) -> bool:
+        """True if every node of the loop has reported."""
+        facts = self.facts()
+        return facts.safety is not None and all(facts.there(node) for node in facts.loop)
+
+    def services(self) -> set[str]:
+        """Services of this namespace that the master lists, by their relative names."""
+        start = self.namespace.rstrip("/") + "/"
+        listed = self._state[2] if self._state else []
+        return {name.removeprefix(start) for name, _ in listed if name.startswith(start)}
+
+    def facts(self) -> Facts:
+        """The present facts."""
+        now = time.monotonic()
+        state = self._state or ([], [], [])
+        kind, limited, measured = running_kind(), self._limited.fresh(now, SILENCE), self._measured.fresh(now, SILENCE)
+        newest = self._reports.items(now).items()
+        reports = {name: Report(status.message, values_of(status), now - at) for name, (at, status) in newest}
+        return Facts(
+            master=self.master.uri,
+            master_answers=self._state is not None,
+            namespace=self.namespace,
+            kind=kind,
+            safety=self.safety(now),
+            reports={below(self.namespace, name): report for name, report in reports.items()},
+            registered=frozenset(below(self.namespace, name) for name in nodes_of(state)),
+            elsewhere=other_robots(self.namespace, reports),
+            senders=senders_of(state[0], map(rospy.resolve_name, kind.request_topics), rospy.get_name()),
+            clearance_senders=senders_of(state[0], [rospy.resolve_name("clearance")], rospy.get_name()),
+            limited=None if limited is None else _speeds(limited.twist),
+            measured=None if measured is None else _speeds(measured.twist.twist),
+            command_timeout=self._parameters.command_timeout,
+        )
+
+    def safety(self, now: float) -> Safety | None:
+        """The last status of the monitor."""
+        if self._safety is None:
+            return None
+        safety, at, since = self._safety
+        held = max(0.0, (rospy.Time.now() - since).to_sec()) if since else 0.0
+        return replace(safety, held=held, age=now - at)
+
+
+def _speeds(twist: Twist) -> Speeds:
+    return (twist.linear.x, twist.angular.z, twist.linear.y)

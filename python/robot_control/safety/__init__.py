@@ -1,1 +1,0 @@
-"""Evaluates safety_status for programs that send commands."""

@@ -1,0 +1,1 @@
+"""Settings in YAML: their layers, their checks, their errors."""

@@ -1,0 +1,1 @@
+"""Programs that check, identify and calibrate a robot and its computer."""

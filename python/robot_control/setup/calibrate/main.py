@@ -1,0 +1,277 @@
+"""The ROS side of calibrate.py asks, drives, follows the wheels, and stops whenever something is not as planned."""
+
+from __future__ import annotations
+
+import math
+import sys
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+import rospy
+
+from robot_control import ParameterError, RobotError
+from robot_control._robot_control import describe as describe_robot
+from robot_control.files.files import fit_for_message, in_words, printable, write_text
+from robot_control.files.output_files import check_outputs
+from robot_control.loop.roles import CONTROLLER, ESTIMATOR
+from robot_control.robot.pose import Pose
+from robot_control.robot.running_robot import RefusedError, await_all, master_state, other_senders, running_settings
+from robot_control.robot.topic_sender import Signals, ended_by_signals
+from robot_control.settings.block import Settings
+from robot_control.setup.calibrate.evaluation import (
+    Options,
+    evaluate,
+    implausible_distance,
+    implausible_return,
+    margin,
+    parse_options,
+    place,
+    space,
+    wheels_of,
+)
+from robot_control.setup.calibrate.law import (
+    FloatArray,
+    NotCalibratedError,
+    Square,
+    Straight,
+    Truth,
+    Wheels,
+    of_axle,
+    replay,
+)
+from robot_control.setup.calibrate.moves import Move, Pilot, square, straight
+from robot_control.setup.calibrate.robot import CalibratedRobot
+from robot_control.setup.calibrate.terminal_dialog import NoAnswerError, Questions
+from robot_control.setup.excitation_watch import hindrance, ignored, moves, unattended
+
+PERIOD = 0.05
+"""s between two commands: 25 are lost before the default cmd_vel_timeout"""
+SILENCE = 1.0
+"""s without wheel_odom, which comes 50 times a second"""
+MAX_HOP = 0.3
+"""m between two messages of wheel_odom; a larger step is a reset or another run: 15 m/s at 50 Hz"""
+MIN_DISTANCE = 0.3
+"""m; half of the shortest drive, and more than a robot creeps"""
+STANDSTILL = 0.5
+"""s of standing before a pose is read: the body has stopped rocking"""
+MARKS = (
+    "Mark on the floor where the middle between the wheels stands, and which way the robot points (a string along the "
+    "axle, and one ahead). Each run begins where the robot stands: set it back whenever the path is no longer free."
+)
+REFUSALS = (RefusedError, NotCalibratedError, NoAnswerError, ParameterError, RobotError, OSError, ValueError)
+
+
+@dataclass
+class Drive:
+    """One measurement: its moves, and the area in which they may happen."""
+
+    what: str
+    moves: Sequence[Move]
+    ahead: float  # m beyond the start
+    left: float  # m
+    right: float  # m
+
+    def astray(self, start: Pose, here: Pose) -> str:
+        """Why the robot may not be here; empty if it may."""
+        ahead, left = here.seen_from(start)
+        beside = margin(self.ahead)
+        if -beside <= ahead <= self.ahead + beside and -self.right - beside <= left <= self.left + beside:
+            return ""
+        return f"the robot is {ahead:.2f} m ahead and {left:.2f} m to the left of its start, off its path"
+
+
+@dataclass
+class Wizard:
+    """One dialogue."""
+
+    robot: CalibratedRobot
+    options: Options
+    wheels: Wheels
+    signals: Signals
+    questions: Questions
+    senders: tuple[str, ...] = ()
+    lengths: list[float] = field(default_factory=list)
+    places: list[tuple[float, float]] = field(default_factory=list)
+
+    def run(self) -> tuple[list[Straight], list[Square]]:
+        """All measurements."""
+        options = self.options
+        self.lengths, self.places = list(options.measured), list(options.returned)
+        print(space(options))
+        self._permission("Is the path free, and a hand at the emergency stop?")
+        straights: list[Straight] = []
+        squares: list[Square] = []
+        if options.distance > 0:
+            drive = Drive("straight drive", straight(options.distance), options.distance, 0.0, 0.0)
+            straights = [self._straight(drive, number) for number in range(options.repeats)]
+        if options.side > 0:
+            for clockwise in (True, False):
+                squares += [self._square(number, clockwise=clockwise) for number in range(options.runs)]
+        return straights, squares
+
+    def _straight(self, drive: Drive, number: int) -> Straight:
+        path, truth = self._driven(drive, f"straight drive {number + 1} of {self.options.repeats}")
+        by_wheels = float(np.linalg.norm(replay(path, self.wheels, Truth())[-1, :2]))
+        if self.options.truth:
+            measured = math.hypot(*truth)
+        elif self.lengths:
+            measured = self.lengths.pop(0)
+        else:
+            measured = self.questions.value(
+                f"m between the two marks, by tape (the wheels say {by_wheels:.3f}):",
+                float,
+                lambda value: implausible_distance(value, by_wheels),
+            )
+        self._refuse(implausible_distance(measured, by_wheels) if self.options.truth else "")
+        return Straight(path, measured)
+
+    def _square(self, number: int, *, clockwise: bool) -> Square:
+        side = self.options.side
+        left, right = (0.0, side) if clockwise else (side, 0.0)
+        direction = "clockwise" if clockwise else "counter-clockwise"
+        drive = Drive("square", square(side, clockwise=clockwise), side, left, right)
+        path, truth = self._driven(drive, f"square {number + 1} of {self.options.runs}, {direction}")
+        if self.options.truth:
+            measured = truth
+        elif self.places:
+            measured = self.places.pop(0)
+        else:
+            measured = self.questions.value(
+                "x,y: m of the second mark ahead of and to the left of the first:",
+                place,
+                lambda value: implausible_return(value, side),
+            )
+        self._refuse(implausible_return(measured, side) if self.options.truth else "")
+        return Square(path, measured, clockwise)
+
+    def _driven(self, drive: Drive, title: str) -> tuple[FloatArray, tuple[float, float]]:
+        """The path by wheel odometry, and the true end of the middle of the wheels (in simulation; else zero)."""
+        if not self.options.truth:
+            print(MARKS)
+        self._permission(f"{title}: ready?")
+        print(title)
+        self._rest()
+        begin = self._truth()
+        self.robot.begin()
+        if self.options.manual:
+            self.questions.line("Drive it now, and back to rest; then press Enter.")
+        else:
+            self._follow(drive)
+        self._rest()
+        path = self.robot.path()
+        hops = np.linalg.norm(np.diff(path[:, :2], axis=0), axis=1)
+        if hops.sum() < MIN_DISTANCE:
+            raise RefusedError(f"{title}: the wheels have not turned")
+        if hops.max() > MAX_HOP:
+            raise RefusedError(
+                f"{title}: wheel_odom jumped by {hops.max():.2f} m: was the odometry or the robot reset?"
+            )
+        if begin is None:
+            return path, (0.0, 0.0)
+        end = self._truth() or begin
+        poses = of_axle(np.array([[begin.x, begin.y, begin.yaw], [end.x, end.y, end.yaw]]), self.wheels.axle)
+        return path, Pose(*poses[1]).seen_from(Pose(*poses[0]))
+
+    def _truth(self) -> Pose | None:
+        if not self.options.truth:
+            return None
+        await_all(lambda: self.robot.truth is not None, self.signals)
+        if self.robot.truth is None:
+            raise RefusedError("--truth: ground_truth/odom has no publisher; only a simulated robot has one")
+        return self.robot.truth
+
+    def _follow(self, drive: Drive) -> None:
+        """Drives the measurement; the last message is a zero, whatever happens."""
+        robot, pilot = self.robot, Pilot(drive.moves, self.options.speed, self.options.turn_speed)
+        start = robot.observe().pose or Pose(0.0, 0.0, 0.0)  # hindrance has seen one
+        received, received_at = robot.received, time.monotonic()
+        unanswered, last = 0.0, time.monotonic()
+        try:
+            while not pilot.done:
+                now, observed = time.monotonic(), robot.observe()
+                if robot.received != received:
+                    received, received_at = robot.received, now
+                reason = "" if self.signals.going_on() else "interrupted"
+                reason = reason or unattended(observed) or ignored(unanswered)
+                reason = reason or (drive.astray(start, observed.pose) if observed.pose else "")
+                if now - received_at > SILENCE:
+                    reason = reason or f"no wheel_odom for {SILENCE:g} s: does {ESTIMATOR} run?"
+                self._refuse(reason)
+                linear, angular = pilot.command(robot.wheels or start, now)
+                robot.send(linear, angular)
+                asked = linear != 0 or angular != 0
+                unanswered = unanswered + now - last if asked and not moves(observed) else 0.0
+                last = now
+                time.sleep(PERIOD)
+        finally:
+            robot.send(0, 0)
+
+    def _rest(self) -> None:
+        """Waits until the robot stands."""
+        end = time.monotonic() + 20 * STANDSTILL
+        since = time.monotonic()
+        while time.monotonic() - since < STANDSTILL:
+            self._refuse("" if self.signals.going_on() else "interrupted")
+            if moves(self.robot.observe()):
+                since = time.monotonic()
+            if time.monotonic() > end:
+                raise RefusedError("the robot does not come to rest")
+            time.sleep(PERIOD)
+
+    def _permission(self, question: str) -> None:
+        if not self.options.yes:
+            if not self.questions.yes(question):
+                raise RefusedError("as you say. Nothing is written")
+            self.robot.requested = time.monotonic()
+        reason = "" if self.options.manual else hindrance(self.robot.observe(self.senders))
+        if reason:
+            raise RefusedError(f"{reason}. Nothing is written")
+
+    @staticmethod
+    def _refuse(reason: str) -> None:
+        if reason:
+            raise RefusedError(f"{reason}. Nothing is written")
+
+
+def main() -> None:
+    """Entry point of scripts/calibrate.py: exit code 0 with a YAML written, else 1 with one message."""
+    options = parse_options(rospy.myargv(sys.argv)[1:])
+    try:
+        check_outputs([options.out])
+        with running_settings("calibrate", ESTIMATOR, *OTHERWISE) as settings:
+            with ended_by_signals() as signals:
+                robot, straights, squares = _measured(settings, options, signals)
+            outcome = evaluate(robot, straights, squares, options.side)
+        print(outcome.table)
+        for sentence in outcome.warnings:
+            print(f"! {sentence}")
+        write_text(options.out, outcome.yaml)
+        name = printable(str(options.out))
+        print(f"wrote {name}: rosparam load it (in the robot's namespace), then restart every node")
+    except REFUSALS as error:
+        sys.exit(f"calibrate.py: {fit_for_message(in_words(error))}")
+
+
+OTHERWISE = ("and let the robot stand where it may drive", "as a tape measure does")
+
+
+def _measured(
+    settings: Settings, options: Options, signals: Signals
+) -> tuple[dict[str, object], list[Straight], list[Square]]:
+    described = describe_robot(settings.path, settings.values)
+    robot = CalibratedRobot(sends=not options.manual)
+    all_running: Callable[[], bool] = lambda: (  # noqa: E731
+        robot.received > 0 and robot.reports() and (options.manual or robot.has_receiver())
+    )
+    await_all(all_running, signals)
+    senders = () if options.manual else other_senders(master_state())
+    if robot.received == 0:
+        raise RefusedError(f"no wheel_odom: does {ESTIMATOR} run? Start the robot first")
+    if not options.manual and not robot.has_receiver():
+        raise RefusedError(f"no node subscribes to {rospy.resolve_name('cmd_vel')}: does {CONTROLLER} run?")
+    questions = Questions(signals.going_on)
+    wizard = Wizard(robot, options, wheels_of(described), signals, questions, senders)
+    straights, squares = wizard.run()
+    return described, straights, squares

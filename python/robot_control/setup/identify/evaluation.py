@@ -1,0 +1,122 @@
+"""identify.py without ROS: its command line, and the steps from a log to a table and a YAML."""
+
+from __future__ import annotations
+
+import argparse
+import math
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from robot_control._robot_control import controller_parameters, derived_wheel_loops, wheel_loops
+from robot_control._robot_control import describe as describe_robot
+from robot_control.data.run_log import Log
+from robot_control.files.files import given_path
+from robot_control.loop.roles import CONTROLLER
+from robot_control.robot.send_plan import number_of_sends, positive
+from robot_control.settings.block import Settings
+from robot_control.setup.identify.excitation import AxisLimits, Excitation, plan_excitation
+from robot_control.setup.identify.fit import identify
+from robot_control.setup.identify.report import to_table, to_yaml, warnings
+from robot_control.setup.identify.tuning_proposal import base_of, feed_forward, propose
+
+RIM_RESERVE = 0.9
+"""Share of a joint's velocity limit; nearer to it the gate reduces the torque."""
+
+
+@dataclass(frozen=True)
+class Options:
+    """The command line."""
+
+    space: float  # m ahead of the robot
+    max_speed: float  # m/s
+    repeats: int
+    mass: float | None  # kg, weighed
+    output: Path
+    log: Path | None  # log to fit instead of driving
+    params: Path | None  # parameter file of the log; None: the installed one
+    urdf: Path | None  # robot of the log; None: that of the parameters
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """The report to print and the parameters to write."""
+
+    table: str
+    warnings: list[str]
+    yaml: str
+
+
+def parse_options(arguments: list[str]) -> Options:
+    """Reads the command line (without the program's name); ends the program on a wrong one."""
+    parser = argparse.ArgumentParser(
+        prog="identify.py",
+        description="Drives ramps and turns on the spot, measures inertia, friction and delay of the wheels, and "
+        f"writes feed-forward and gains for {CONTROLLER}.",
+    )
+    parser.add_argument("--space", type=positive, default=1.0, help="m free ahead of the robot (default %(default)s)")
+    parser.add_argument("--max-speed", type=positive, default=0.5, help="m/s, of robot and rims (default %(default)s)")
+    parser.add_argument("--repeats", type=number_of_sends, default=2, help="times all moves (default %(default)s)")
+    parser.add_argument("--mass", type=positive, help="kg of the robot as it drives, if it was weighed")
+    parser.add_argument("--output", type=given_path, default=Path("identified.yaml"), help="(default %(default)s)")
+    parser.add_argument("--log", type=given_path, help="run.bag to fit; nothing is driven")
+    parser.add_argument("--params", type=given_path, help="parameter file of the log; default: the installed one")
+    parser.add_argument("--urdf", type=given_path, help="robot of the log; default: that of the parameters")
+    given = parser.parse_args(arguments)
+    for name in ("params", "urdf"):
+        if getattr(given, name) is not None and given.log is None:
+            parser.error(f"--{name} belongs to --log: a running robot says itself what it is")
+    return Options(**vars(given))
+
+
+def plan(settings: Settings, options: Options) -> Excitation:
+    """The moves for the robot and limits of `settings`.
+
+    Raises:
+        ParameterError, RobotError: of the parameters.
+        NoRoomError: the space is too small.
+    """
+    limits = controller_parameters(settings.path, settings.values)
+    loops = wheel_loops(settings.path, settings.values)
+    rims = (RIM_RESERVE * loop["velocity_limit"] * loop["radius"] for loop in loops if loop["velocity_limit"] > 0)
+    slowest_rim = min(rims, default=math.inf)
+    return plan_excitation(
+        AxisLimits(**limits["linear"]),
+        AxisLimits(**limits["angular"]),
+        wheel_base=base_of(_robot(settings)).effective_wheel_base,
+        space=options.space,
+        max_speed=min(options.max_speed, slowest_rim),
+        repeats=options.repeats,
+    )
+
+
+def evaluate(log: Log, settings: Settings, mass: float | None, source: str) -> Outcome:
+    """Fits and proposes; `source` names the log in the YAML.
+
+    Raises:
+        UnfitError, NoGainsError, ValueError: what the log or the mass does not allow.
+        ParameterError, RobotError: of the parameters.
+    """
+    robot = _robot(settings)
+    base = base_of(robot)
+    now = wheel_loops(settings.path, settings.values)
+    found = identify(log, base)
+    forward = feed_forward(found, base, now[0]["lifted"], mass)
+    overlaid = [(f"{CONTROLLER}.feed_forward.{key}", repr(value)) for key, value in forward.items()]
+    derived = derived_wheel_loops(settings.path, [*settings.values, *overlaid])
+    proposal = propose(found, forward, now, derived, weighed=mass is not None)
+    table = to_table(found, proposal, robot, now)
+    said = warnings(found, proposal)
+    head = [
+        f"Measured on {robot['name']} by identify.py, {found.seconds:.0f} s of motion, {source}.",
+        f"Load it and restart {CONTROLLER}: rosparam load FILE",
+        "",
+        *table.splitlines(),
+        *(f"! {sentence}" for sentence in said),
+    ]
+    return Outcome(table, said, to_yaml(proposal, head))
+
+
+def _robot(settings: Settings) -> dict[str, Any]:
+    robot: dict[str, Any] = describe_robot(settings.path, settings.values)
+    return robot

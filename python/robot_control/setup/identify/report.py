@@ -1,0 +1,129 @@
+"""Reports the identified wheels and the proposal: as a table, and as the YAML that is laid over the parameters."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from typing import Any
+
+from robot_control.loop.roles import CONTROLLER
+from robot_control.setup.identify.fit import Estimate, Identification
+from robot_control.setup.identify.tuning_proposal import RESERVE, Proposal
+
+UNLIKE = 0.2
+"""Difference between the sides relative to their mean; a larger one is a defect of the machine"""
+
+
+def to_table(
+    found: Identification, proposal: Proposal, robot: Mapping[str, Any], now: Sequence[Mapping[str, Any]]
+) -> str:
+    """`robot` as ClosedLoop.robot, `now` as _robot_control.wheel_loops gives them: the nominal values."""
+    nominal = now[0]
+    forward, after = proposal.feed_forward, proposal.after
+    rows = [
+        ("", "nominal", "measured", "proposed"),
+        ("inertia straight, kg·m²", _number(nominal["straight"]), _measured(found.mean("straight")), ""),
+        ("inertia turning, kg·m²", _number(nominal["turning"]), _measured(found.mean("turning")), ""),
+        ("scrub while turning, N·m", "", _measured(found.mean("scrub")), ""),
+        *_ground_friction(found, now),
+        ("delay beyond the bus, cycles", "0", _measured(found.delay), ""),
+        ("feed_forward.mass, kg", _number(robot["mass"]), "", _number(forward["mass"])),
+        ("feed_forward.yaw_inertia, kg·m²", _number(robot["yaw_inertia"]), "", _number(forward["yaw_inertia"])),
+        ("feed_forward.wheel_inertia, kg·m²", _number(nominal["lifted"]), "", _number(forward["wheel_inertia"])),
+        (
+            "feed_forward.wheel_damping, N·m·s/rad",
+            _number(nominal["damping"]),
+            _measured(found.mean("damping")),
+            _number(forward["wheel_damping"]),
+        ),
+        (
+            "feed_forward.wheel_friction, N·m",
+            _number(nominal["friction"]),
+            _measured(found.mean("friction")),
+            _number(forward["wheel_friction"]),
+        ),
+        ("pid_kp, N·m·s/rad", _number(proposal.before.kp), "", _number(after.kp)),
+        ("pid_ki, N·m/rad", _number(proposal.before.ki), "", _number(after.ki)),
+        ("spectral radius", f"{proposal.margins_before.radius:.4f}", "", f"{proposal.margins_after.radius:.4f}"),
+        ("gain margin", f"{proposal.margins_before.gain:.3g}", "", f"{proposal.margins_after.gain:.3g}"),
+        ("delay margin, cycles", str(proposal.margins_before.delay), "", str(proposal.margins_after.delay)),
+    ]
+    widths = [max(len(row[i]) for row in rows) for i in range(4)]
+    return "\n".join(
+        "  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip() for row in rows
+    )
+
+
+def ground_friction(found: Identification, now: Sequence[Mapping[str, Any]]) -> Estimate | None:
+    """Friction of the ground from the torque of scrubbing treads at friction 1 (machine/wheeled/scrub.h); None if none
+    scrub.
+    """
+    at_friction_one = sum(float(wheel["scrub"]) for wheel in now) / len(now)
+    scrub = found.mean("scrub")
+    return Estimate(scrub.value / at_friction_one, scrub.error / at_friction_one) if at_friction_one > 0 else None
+
+
+def _ground_friction(found: Identification, now: Sequence[Mapping[str, Any]]) -> Iterator[tuple[str, str, str, str]]:
+    friction = ground_friction(found, now)
+    if friction is not None:
+        yield ("ground friction", "", _measured(friction), "found in every turn")
+
+
+def warnings(found: Identification, proposal: Proposal) -> list[str]:
+    """Remarks on what the user should examine, a sentence each."""
+    said = []
+    delay = round(found.delay.value)
+    if proposal.margins_before.delay < delay + RESERVE:
+        said.append(
+            f"the gains so far bear {proposal.margins_before.delay} cycles of delay, {delay} were measured: "
+            "wheels that lose grip may fall into a limit cycle"
+        )
+    if not proposal.derived_bear:
+        said.append("the gains are slower than those derived from the robot, for the delay's sake")
+    if not proposal.weighed:
+        said.append("a wheel's own inertia cannot be seen on the ground: give --mass KG of a robot that was weighed")
+    left, right = found.sides
+    for name in ("straight", "turning", "friction"):
+        one, other = getattr(left, name), getattr(right, name)
+        unlike = abs(one.value - other.value)
+        mean = abs(one.value + other.value) / 2
+        if unlike > UNLIKE * mean and unlike > 3 * (one.error + other.error):
+            said.append(
+                f"{name}: left {_measured(one)}, right {_measured(other)}: the sides are unlike, and one value is "
+                "proposed for both. Look at gears, tyres, load"
+            )
+    return said
+
+
+def to_yaml(proposal: Proposal, lines: Iterable[str]) -> str:
+    """The overlay, below `lines` as comments."""
+    head = "".join(f"# {line}".rstrip() + "\n" for line in lines)
+    return head + f"{CONTROLLER}:\n" + "".join(_yaml_lines(proposal.overlay(), "  "))
+
+
+def _yaml_lines(tree: Mapping[str, Any], indent: str) -> Iterator[str]:
+    for key, value in tree.items():
+        if isinstance(value, Mapping):
+            yield f"{indent}{key}:\n"
+            yield from _yaml_lines(value, indent + "  ")
+        else:
+            yield f"{indent}{key}: {_float(value)}\n"
+
+
+def _float(value: float) -> str:
+    """A number that YAML 1.1, ROS' own, reads as a real one: 1.0e-05, not 1e-05."""
+    text = repr(float(value))
+    mantissa, exponent, power = text.partition("e")
+    return mantissa + (".0" if exponent and "." not in mantissa else "") + exponent + power
+
+
+def _number(value: float) -> str:
+    return f"{value:.4g}"
+
+
+def _measured(estimate: Estimate) -> str:
+    if not math.isfinite(estimate.value):
+        return "not in the log"
+    return f"{estimate.value:.4g}" + (
+        f" ± {estimate.error:.1g}" if math.isfinite(estimate.error) else ", error unknown"
+    )

@@ -1,0 +1,115 @@
+"""Selects the cycles of a log that describe the machine: driven ones, by the wheels' own torque, with grip."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Sequence
+
+import numpy as np
+
+from robot_control.data.run_log import BoolArray, FloatArray, Log, joint_names, last
+from robot_control.loop.signal_names import causes_in, mask_of, number_of
+
+EFFORT_MODE = number_of("JointMode", "effort")
+UNCHANGED = tuple(number_of("GateVerdict", name) for name in ("passed", "held"))
+SATURATED = mask_of("CommandReason", "saturated")
+CLAMPED = mask_of("GateReason", "effort_clamped", "rate_clamped", "speed_clamped", "position_clamped")
+SLIP = mask_of("StateFlag", "slip")
+SLIP_SHARE = 0.2
+"""Largest share of slip among the driven cycles; a bump alone does not exceed it."""
+CLAMPED_SHARE = 0.02
+"""Largest share of clamped cycles among the driven ones."""
+
+
+class UnfitError(ValueError):
+    """The log cannot be used; the message names the reason and the remedy."""
+
+
+def fit_rows(log: Log, joints: Sequence[str]) -> tuple[list[slice], float]:
+    """Stretches of consecutive rows in which every wheel follows the controller, and the period [s].
+
+    Raises:
+        UnfitError: another robot's log, nothing driven, slip, saturation.
+    """
+    missing = [joint for joint in joints if f"{joint}_effort_command" not in log]
+    if missing:
+        raise UnfitError(
+            f"the log is of another robot: it has no joint {', '.join(missing)}, but {', '.join(joint_names(log))}; "
+            "give it the parameters it was driven with"
+        )
+    cycle, time = log["cycle"], log["time"]
+    if len(cycle) < 2:
+        raise UnfitError("the log has no two cycles: drive first")
+    period = float((time[-1] - time[0]) / (cycle[-1] - cycle[0]))
+
+    driven = _driven(log, joints)
+    if not driven.any():
+        raise UnfitError(f"no cycle of the log was driven: {_why_not(log)}")
+    moving = driven & _any_wheel_planned(log, joints)
+    if not moving.any():
+        raise UnfitError("the wheels were asked for nothing but zero: drive ramps and turns, or let this tool do it")
+    for joint in joints:
+        effort = log[f"{joint}_effort"][moving]
+        if np.ptp(effort) == 0:
+            raise UnfitError(
+                f"{joint}: its measured effort is {effort[0]:g} N·m throughout: the driver does not measure it; "
+                "let it report at least the commanded effort"
+            )
+    clamped = driven & (_bits(log, "gate_reasons", CLAMPED) | _bits(log, "command_reasons", SATURATED))
+    _refuse(
+        clamped & moving,
+        moving,
+        CLAMPED_SHARE,
+        "torque or speed of a wheel was at its limit",
+        "lower --max-speed, max_linear_acceleration and max_angular_acceleration; where the wheels buzz, drive with "
+        "half of pid_kp and a quarter of pid_ki: gains that are too high for a late torque do that",
+    )
+    slipping = _bits(log, "estimate_flags", SLIP)
+    _refuse(
+        slipping & moving,
+        moving,
+        SLIP_SHARE,
+        "the wheels slipped",
+        "drive on ground that carries, lower max_linear_acceleration and max_angular_acceleration",
+    )
+    return _stretches(driven & ~clamped & ~slipping, cycle), period
+
+
+def _driven(log: Log, joints: Sequence[str]) -> BoolArray:
+    driven: BoolArray = np.isin(log["gate_verdict"], UNCHANGED)
+    for joint in joints:
+        driven &= log[f"{joint}_mode"] == EFFORT_MODE
+        for column in ("position", "effort", "effort_command", "velocity_command"):
+            driven &= np.isfinite(log[f"{joint}_{column}"])
+    return driven
+
+
+def _any_wheel_planned(log: Log, joints: Sequence[str]) -> BoolArray:
+    planned: BoolArray = np.any([log[f"{joint}_velocity_command"] != 0 for joint in joints], axis=0)
+    return planned
+
+
+def _bits(log: Log, column: str, bits: int) -> BoolArray:
+    found: BoolArray = (np.nan_to_num(log[column]).astype(np.int64) & bits) != 0
+    return found
+
+
+def _refuse(bad: BoolArray, considered: BoolArray, share: float, what: str, remedy: str) -> None:
+    found = bad.sum() / considered.sum()
+    if found > share:
+        raise UnfitError(f"{what} in {found:.0%} of the driven cycles, {share:.0%} are allowed: {remedy}")
+
+
+def _why_not(log: Log) -> str:
+    causes = causes_in(log["permit_causes"])
+    if causes:
+        return f"the monitor had stopped the robot: {', '.join(causes)}; remove the cause, then call e_stop_reset"
+    if last(log["requests_received"]) == 0:
+        return "nothing arrived on cmd_vel"
+    return "the gate let no command pass; rosrun robot_control why.py says why"
+
+
+def _stretches(good: BoolArray, cycle: FloatArray) -> list[slice]:
+    breaks = np.flatnonzero(~(good[1:] & good[:-1] & (np.diff(cycle) == 1))) + 1
+    edges = [0, *breaks.tolist(), len(good)]
+    return [slice(a, b) for a, b in itertools.pairwise(edges) if b - a > 1 and good[a]]

@@ -1,0 +1,1 @@
+"""What the programs print and draw, and how they end."""

@@ -1,0 +1,137 @@
+"""The ROS side of the console: commands out, reports in. Used by one thread; calls are made in others."""
+
+from __future__ import annotations
+
+import asyncio
+import math
+import threading
+import time
+from typing import Any
+
+import rospy
+from std_msgs.msg import Empty
+
+from robot_control.drive.speed_limits import SpeedLimits
+from robot_control.robot.boundary import boundary
+from robot_control.robot.command import Pace
+from robot_control.robot.command_topic import CommandTopic
+from robot_control.robot.diagnosis.listener import MASTER_PERIOD, Listener
+from robot_control.robot.diagnosis.state import SILENCE
+from robot_control.robot.robot_kind import running_kind
+from robot_control.robot.safety_watch import SafetyWatch
+from robot_control.robot.services import AGAIN, E_STOP, Answer, Services, in_words
+from robot_control.watch.console.authority import Authority, Page
+from robot_control.watch.console.calls import CALLS, Calls, against
+from robot_control.watch.console.settings import Settings
+from robot_control.watch.console.view import View, finite
+
+SOURCE = "console_vel"
+HEARTBEAT_PERIOD = 0.1
+"""s"""
+E_STOP_LIMIT, E_STOP_LOOK = 3.0, 0.02
+"""s within which an emergency stop is answered, whatever the robot does; s between two looks for the answer"""
+NOT_ANSWERED = Answer(E_STOP, accepted=False, text="the console could not send it. Use the button on the robot")
+
+
+class Backend:
+    """One robot, and the pages that look at it."""
+
+    def __init__(self, settings: Settings) -> None:
+        self.authority = Authority(settings)
+        self.listener, self.view = Listener(), View()
+        self.calls = Calls(self.view.pose, self.view.navigation.frame)
+        self.said: list[str] = []  # for all pages, and taken by the server
+        self.available: set[str] | None = set()  # services of the robot; None: the master does not know the robot
+        self._watch, self._limits = SafetyWatch(), SpeedLimits()
+        self._services = Services(self._watch)
+        self._e_stop, self._e_stop_at = NOT_ANSWERED, -math.inf  # the last answer, and when it came, s
+        self._topic, self._age = CommandTopic(SOURCE), 0.0
+        self._heartbeat = rospy.Publisher("heartbeat", Empty, queue_size=1, tcp_nodelay=True)
+        self._pace = Pace(lambda command: self._topic.send(command, rospy.Time.now() - rospy.Duration(self._age)))
+        self._interruptions, self._beat_at = 0, float("-inf")
+        threading.Thread(target=self._query_master, daemon=True).start()
+
+    def step(self) -> None:
+        """One pass: receives what the robot reports, and sends the command."""
+        now = time.monotonic()
+        answers = self._services.poll()
+        for answer in answers:
+            if answer.service == E_STOP:
+                self._e_stop, self._e_stop_at = answer, now
+        count, why = self._watch.interruptions()
+        if count != self._interruptions:
+            self._interruptions = count
+            self.authority.interrupt(now, why)
+        if self.view.revoked(rospy.get_name()):
+            self.authority.refuse(now)
+        self.authority.permit(self._watch.drivable(SILENCE), legged=running_kind().legged)
+        command, self._age = self.authority.command(self._limits.newest(), now)
+        self._pace.step(command, now)
+        commander = self.authority.commander
+        beats = commander is not None and commander.heartbeat and commander.dead_man.alive(now)
+        if beats and now - self._beat_at >= HEARTBEAT_PERIOD:
+            self._beat_at = now
+            self._heartbeat.publish(Empty())
+        self.said += [in_words(answer, self.listener.facts()) for answer in answers]
+
+    async def e_stop(self) -> Answer:
+        """Requests the emergency stop; whether the robot has confirmed it, or why not."""
+        pressed = time.monotonic()
+        self._services.e_stop()
+        while self._e_stop_at < pressed - AGAIN:
+            if time.monotonic() > pressed + E_STOP_LIMIT:
+                return NOT_ANSWERED
+            await asyncio.sleep(E_STOP_LOOK)
+        return self._e_stop
+
+    def reset(self) -> None:
+        """Requests the reset; the answer comes in `said`."""
+        self._e_stop_at = -math.inf
+        self._services.reset()
+
+    def fast(self) -> dict[str, Any]:
+        """The values that every page shows in each frame."""
+        return self.view.fast(self._pace.last)
+
+    def slow(self) -> dict[str, Any]:
+        """The robot's state for every page."""
+        return self.view.slow(self.listener.facts())
+
+    def authority_of(self, page: Page) -> dict[str, Any]:
+        """The values that this page shows of itself and of the others."""
+        now, commander = time.monotonic(), self.authority.commander
+        dead_man, limits = page.dead_man, self._limits.newest()
+        return finite(
+            {
+                "type": "authority",
+                "you": page.number,
+                "role": str(page.role),
+                "commander": None if commander is None else commander.number,
+                "pages": [
+                    {"number": p.number, "name": p.user, "role": str(p.role)} for p in self.authority.pages.values()
+                ],
+                "against": {
+                    name: against(name, page, self.authority, self.available, running_kind()) for name in CALLS
+                },
+                "dead_man": dead_man.state(now) if commander is page else "",
+                "link": {
+                    "last": dead_man.round_trips.last(),
+                    "p95": dead_man.round_trips.percentile95(now),
+                    "gaps": dead_man.gaps,
+                    "late": dead_man.late,
+                    "replayed": dead_man.replayed,
+                    "cap": page.cap,
+                },
+                "chosen": (page.chosen.linear, page.chosen.angular, page.chosen.lateral),
+                "limits": (limits.linear, limits.angular, limits.lateral),
+                "heartbeat": page.heartbeat,
+            }
+        )
+
+    def _query_master(self) -> None:
+        while True:
+            with boundary.crossing("the master"):
+                self.listener.query_master()
+                forgotten = self.listener.facts().forgotten
+                self.available = None if forgotten else self.listener.services()
+            time.sleep(MASTER_PERIOD)

@@ -1,0 +1,129 @@
+import signal
+import subprocess
+import sys
+import time
+
+import pytest
+from robot_control import ClosedLoop
+from robot_control.data.demo import main as demo
+from robot_control.data.demo.arguments import parse
+
+WAIT = "import time\nprint('ready')\nfor _ in range(6000): time.sleep(0.01)"
+"""The sleeps are short, because a signal just before one is handled at its end."""
+
+
+def test_each_kind_of_refusal_is_said_once_with_its_remedy():
+    line = (
+        "\x1b[33m[ WARN] [123.4]: memory is not locked (limit 8192 KiB; remedy: X), "
+        "SCHED_FIFO priority 81 is not granted (limit 0; remedy: Y): see docs/realtime.md\x1b[0m"
+    )
+    assert demo.refusals("\n".join([line, line.replace("81", "80"), "noise"])) == [
+        "memory is not locked (limit 8192 KiB; remedy: X)",
+        "SCHED_FIFO priority 81 is not granted (limit 0; remedy: Y)",
+    ]
+
+
+def test_nothing_is_said_when_all_was_granted():
+    assert demo.refusals("state_estimator: priority 81 on core 0\n") == []
+
+
+def child(tmp_path, code):
+    started = demo.Child([sys.executable, "-u", "-c", code], tmp_path / "output")
+    deadline = time.monotonic() + 20
+    while "ready" not in (tmp_path / "output").read_text() and time.monotonic() < deadline:
+        time.sleep(0.01)
+    return started
+
+
+def test_a_child_that_heeds_sigint_ends_in_order(tmp_path):
+    one = child(tmp_path, f"try: exec({WAIT!r})\nexcept KeyboardInterrupt: print('bye')")
+    assert one.end()
+    assert not one.running
+    assert "bye" in (tmp_path / "output").read_text()
+
+
+def test_a_child_heeds_sigint_although_this_program_was_started_deaf_to_it(tmp_path):
+    before = signal.signal(signal.SIGINT, signal.SIG_IGN)
+    try:
+        assert child(tmp_path, WAIT).end()
+    finally:
+        signal.signal(signal.SIGINT, before)
+
+
+def test_a_child_that_ignores_sigint_is_killed(tmp_path):
+    one = child(tmp_path, "import signal, time\nsignal.signal(2, signal.SIG_IGN)\nprint('ready')\ntime.sleep(60)")
+    assert not one.end(limit=0.2)
+    assert not one.running
+
+
+def test_what_was_started_is_ended_after_an_error(tmp_path):
+    with pytest.raises(RuntimeError, match="broken"), demo._ended_at_the_end() as children:
+        children.append(child(tmp_path, WAIT))
+        raise RuntimeError("broken")
+    assert not children[0].running
+
+
+def test_the_last_complete_row_of_a_growing_file_is_found(tmp_path):
+    log = tmp_path / "run.bag"
+    assert demo._last_row(log) is None
+    loop = ClosedLoop()
+    loop.log_into(tmp_path)
+    assert demo._last_row(log) is None
+    loop.run(2.5, (0.5, 0.2))
+    assert 1990 <= demo._last_row(log).cycle <= 2010, "whole seconds are in the file"
+    assert demo._commanded(demo._last_row(log))
+    loop.end_log()
+    assert demo._last_row(log).cycle == 2499
+
+
+@pytest.mark.parametrize("seconds", ["0", "-3", "1.9", "nan", "inf", "ten"])
+def test_a_run_too_short_to_judge_is_refused(seconds, capsys):
+    with pytest.raises(SystemExit):
+        parse([f"--seconds={seconds}"])
+    assert "--seconds" in capsys.readouterr().err
+
+
+def test_drives_of_wheels_on_a_robot_on_legs_are_refused(tmp_path, capsys):
+    assert parse(["--robot", "quadbot", "--out", str(tmp_path)]).robot == "quadbot"
+    with pytest.raises(SystemExit):
+        parse(["--robot", "quadbot", "--drives", "odrive", "--out", str(tmp_path)])
+    assert "--drives move wheels alone, and quadbot stands on legs" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("out", ["file", "file/below", "/proc/xx"])
+def test_a_folder_that_cannot_be_written_to_is_refused_before_anything_starts(out, tmp_path, capsys):
+    (tmp_path / "file").touch()
+    with pytest.raises(SystemExit) as ended:
+        parse(["--out", str(tmp_path / out)])
+    assert ended.value.code == 2
+    assert "cannot be written to" in capsys.readouterr().err
+
+
+def test_the_command_line_is_judged_before_anything_is_built(tmp_path):
+    code = "import sys; sys.modules['robot_control._robot_control'] = None"
+    code += f"; from robot_control.data.demo.arguments import parse; parse(['--out', {str(tmp_path)!r}])"
+    assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
+
+
+def test_the_folder_is_made_and_left_empty(tmp_path):
+    assert parse(["--out", str(tmp_path / "new" / "out")]).out == tmp_path / "new" / "out"
+    assert list((tmp_path / "new" / "out").iterdir()) == []
+
+
+def test_a_disk_that_fails_during_the_run_is_reported_without_a_traceback(tmp_path, monkeypatch, capsys):
+    def fail(seconds, out, robot, drives, velocity):
+        raise OSError(28, "No space left on device", str(out / "run.png"))
+
+    monkeypatch.setattr(demo, "run_demo", fail)
+    monkeypatch.setattr(sys, "argv", ["demo", "--out", str(tmp_path)])
+    before = signal.getsignal(signal.SIGTERM)
+    try:
+        assert demo.main() == 2
+    finally:
+        signal.signal(signal.SIGTERM, before)
+    assert "No space left on device" in capsys.readouterr().err
+
+
+def test_sigterm_ends_like_an_interrupt():
+    with pytest.raises(KeyboardInterrupt):
+        demo._interrupt(signal.SIGTERM, None)

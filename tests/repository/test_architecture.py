@@ -1,0 +1,604 @@
+"""The table of folders and their dependencies. A refusal of this test is a change of architecture, not of style."""
+
+import ast
+import re
+import xml.etree.ElementTree as ET
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[2]
+SRC = ROOT / "src"
+PACKAGE = ROOT / "python/robot_control"
+
+LAWS = {
+    "signals",
+    "machine",
+    "machine/legs",
+    "machine/wheeled",
+    "estimation",
+    "estimation/legged",
+    "control",
+    "control/legged",
+    "safety",
+    "safety/conditions/legged",
+    "gate",
+    "gate/wheeled",
+}
+LOOP = LAWS | {"rt", "bus", "timing", "drivers", "parameters", "configuration", "robots", "loop", "log"}
+ALL = LOOP | {"files", "machine/description", "log/bag", "simulation", "simulation/faults", "drivers/mujoco"}
+MAY_IMPORT = {  # rooms of the Python package
+    "files": set(),
+    "settings": {"files"},
+    "ui": {"files"},
+    "loop": {"files", "settings"},
+    "robot": {"files", "settings", "loop"},
+    "drive": {"files", "settings", "loop", "robot"},
+    "data": {"files", "settings", "ui", "loop", "robot"},
+    "setup": {"files", "settings", "ui", "loop", "robot", "data"},
+    "watch": {"files", "settings", "ui", "loop", "robot", "drive", "data", "setup"},
+    "fleet": {"files", "settings", "robot", "drive", "data", "setup"},
+}
+MAY_INCLUDE = {
+    "signals": set(),
+    "files": set(),
+    # The engine; the folders that it configures include parameters/block.h alone.
+    "parameters": {"files"},
+    "rt": {"parameters"},
+    "bus": {"signals", "rt"},
+    # How punctual the loop is, from the rows of the trace.
+    "timing": {"signals", "rt", "bus"},
+    "machine/description": {"files"},
+    "machine": {"signals", "machine/description", "files", "parameters"},
+    # One robot kind on top of it; test_only_the_wheeled_kind_sees_the_drive_train says who may see it.
+    "machine/wheeled": {"signals", "machine", "machine/description", "parameters"},
+    "machine/legs": {"signals", "machine", "machine/description", "parameters"},
+    "estimation": {"signals", "machine", "machine/wheeled", "parameters"},
+    "estimation/legged": {"signals", "machine", "machine/legs"},
+    "control/legged": {"signals", "machine", "machine/legs", "control", "parameters"},
+    "safety/conditions/legged": {"signals", "machine", "machine/legs", "safety"},
+    "control": {"signals", "machine", "machine/wheeled", "parameters"},
+    "safety": {"signals", "machine", "machine/wheeled", "parameters"},
+    "gate": {"signals", "bus", "parameters"},
+    # The stop actions of one robot kind.
+    "gate/wheeled": {"signals", "gate", "machine", "machine/wheeled"},
+    "drivers": {"signals", "bus", "gate", "machine", "parameters"},
+    # This holds simulated faults: of the machine in drivers/mujoco, of nodes in simulation.
+    "simulation/faults": {"signals", "rt", "bus"},
+    "drivers/can": {"signals", "bus", "drivers", "files", "parameters"},
+    "drivers/serial": {"signals", "bus", "drivers", "parameters", "rt"},
+    # Motor drives on a CAN bus, as devices in virtual time.
+    "simulation/devices": {
+        "gate",
+        "signals",
+        "bus",
+        "parameters",
+        "drivers",
+        "drivers/can",
+        "drivers/serial",
+    },
+    # The simulated robot as one machine: the plant, and before its motors the drives, where there are some.
+    "simulation/machines": {
+        "signals",
+        "bus",
+        "configuration",
+        "drivers",
+        "drivers/can",
+        "drivers/mujoco",
+        "drivers/serial",
+        "gate",
+        "machine",
+        "simulation/devices",
+    },
+    # One row per driver of a real machine.
+    "drivers/factory": {
+        "configuration",
+        "drivers",
+        "drivers/can",
+        "drivers/serial",
+        "gate",
+        "machine",
+        "rt",
+    },
+    "drivers/mujoco": {
+        "signals",
+        "simulation/faults",
+        "drivers",
+        "gate",
+        "gate/wheeled",
+        "machine/description",
+        "machine",
+        "machine/wheeled",
+        "rt",
+        "files",
+        "parameters",
+    },
+    "log/bag": {"files"},
+    # The log as a ROS bag; it knows the format, not ROS.
+    "log": {"signals", "files", "log/bag", "parameters"},
+    # All blocks together, and the other files that a user writes.
+    "configuration": LAWS
+    | {"rt", "files", "parameters", "log", "drivers", "drivers/can", "drivers/mujoco", "drivers/serial"},
+    # A robot of each kind, composed of its laws; the roles as interfaces.
+    "robots": LAWS | {"bus", "parameters", "configuration"},
+    # The step of each node in one cycle, and the process around it.
+    "loop": LOOP - {"loop"} | {"files"},
+    # The laws of a log, run again from its rows.
+    "log/replay": LOOP,
+    "simulation": ALL - {"simulation"} | {"simulation/machines"},
+    "bindings": ALL | {"log/replay", "navigation", "navigation/mrpt"},
+    "ros": LOOP | {"files", "machine/description"},
+    # Maps, costmap, planner: services beside the loop, without ROS.
+    "navigation": {"files", "machine"},
+    "navigation/mrpt": {"navigation"},
+    "ros/navigation": {"navigation", "navigation/mrpt", "files"},
+    "main": {
+        "ros",
+        "ros/navigation",
+        "configuration",
+        "files",
+        "robots",
+        "rt",
+        "drivers/factory",
+        "simulation/machines",
+    },
+}
+ROS = re.compile(r"^(ros|tf2?|tf2_\w+|\w+_msgs|std_srvs|rosgraph_msgs|robot_control)/")
+"""of headers that are included in angle brackets; those of src/ros are included in quotes"""
+MUJOCO = re.compile(r"^mujoco")
+CLOCK = re.compile(r"\bclock_gettime\b|\bclock_nanosleep\b|\b\w*_clock::now\b|\bgettimeofday\b|\bnanosleep\b")
+MONOTONIC = re.compile(r"\bmonotonic_ns\b")
+
+BINDINGS = ROOT / "python" / "bindings"
+FILES = sorted(path for root in (SRC, BINDINGS) for path in root.rglob("*") if path.suffix in (".h", ".cpp"))
+
+
+def includes(path):
+    """Names of the project's headers."""
+    return re.findall(r'^\s*#\s*include\s*"([^"]+)"', path.read_text(), re.MULTILINE)
+
+
+def foreign_includes(path):
+    return re.findall(r"^\s*#\s*include\s*<([^>]+)>", path.read_text(), re.MULTILINE)
+
+
+def code(path):
+    """Text without comments and strings."""
+    return re.sub(r'//[^\n]*|/\*.*?\*/|"(?:\\.|[^"\\])*"', "", path.read_text(), flags=re.DOTALL)
+
+
+def room(name):
+    """The room of a file that is named from the include root: the longest entry of the table that begins its path."""
+    parts = name.split("/")
+    names = ["/".join(parts[:count]) for count in range(len(parts) - 1, 0, -1)]
+    return next((each for each in names if each in MAY_INCLUDE), parts[0])
+
+
+def folder(path):
+    return "bindings" if BINDINGS in path.parents else room(str(path.relative_to(SRC)))
+
+
+def violations(rule):
+    return [f"{path.relative_to(ROOT)}: {found}" for path in FILES for found in rule(path)]
+
+
+def test_every_folder_has_its_rule():
+    assert {folder(path) for path in FILES} <= set(MAY_INCLUDE)
+
+
+def test_the_rules_have_no_circle():
+    order, left = [], dict(MAY_INCLUDE)
+    while left:
+        free = [name for name, others in left.items() if others <= set(order)]
+        assert free, f"these depend on each other: {sorted(left)}"
+        order += free
+        for name in free:
+            del left[name]
+
+
+def test_folders_include_only_what_they_may():
+    def rule(path):
+        own = folder(path)
+        for name in includes(path):
+            other = room(name)
+            if "/" in name and other in MAY_INCLUDE and other != own and other not in MAY_INCLUDE[own]:
+                yield f"{own} includes {name}"
+
+    assert violations(rule) == []
+
+
+def test_what_is_configured_sees_only_the_declaration_of_a_block():
+    above = {"parameters", *(name for name, others in MAY_INCLUDE.items() if "configuration" in others | {name})}
+
+    def rule(path):
+        if folder(path) not in above:
+            yield from (name for name in includes(path) if re.match(r"parameters/(?!block\.h$)", name))
+
+    assert violations(rule) == []
+
+
+WHEELED = {"machine/wheeled", "gate/wheeled", "estimation", "control", "safety"}
+"""The rooms of the wheeled kind's laws."""
+COMPOSED = re.compile(
+    r"src/robots/(differential_drive\.|robot_kind\.cpp)"  # the kind itself, and the choice of a kind
+    r"|src/configuration/parameters\.h"  # blocks of all kinds, in one file of the user
+    r"|python/bindings/(module|describe)\.cpp"  # bindings of all kinds, in one module
+)
+"""The files that compose. The interfaces beside them see no kind."""
+
+
+def test_only_the_wheeled_kind_sees_the_drive_train():
+    """Gate, drivers, the driver's cycle, the monitor's common conditions and the joint limits take a MachineModel."""
+    seen = {
+        str(path.relative_to(ROOT))
+        for path in FILES
+        if folder(path) not in WHEELED
+        if "wheeled" not in path.parts and not COMPOSED.match(str(path.relative_to(ROOT)))
+        if path.parent.name != "main"
+        if any(re.match(r"(machine|gate|configuration|ros|bindings)/wheeled/", name) for name in includes(path))
+    }
+    assert seen == set()
+
+
+KINDS = ({"wheeled"}, {"legged", "legs"})
+"""Names of the folders of each kind."""
+COMMON = {"signals", "bus", "loop", "log", "log/replay"}
+ROLES = {"src/robots/laws.h", "src/robots/robot.h"}
+ALL_KINDS = {"src/signals/command_frame.h", "src/signals/state_frame.h", "src/signals/names.h"}
+"""The frames have one member per kind, and the table has the words of all bits."""
+OF_KIND = re.compile(r"^(?:struct|class|enum(?: class)?|inline constexpr [\w:]+) (k?[A-Z]\w+)", re.MULTILINE)
+
+
+def kinds_in(name):
+    return [kind for kind in KINDS if kind & set(str(name).split("/"))]
+
+
+def test_the_common_interfaces_know_no_kind():
+    """Headers of signals, bus, loop and log, and the roles of a robot, use no type and no constant of a kind."""
+    names = {name for path in FILES if path.suffix == ".h" and kinds_in(path) for name in OF_KIND.findall(code(path))}
+    assert {"DriveTuning", "WheeledCommand", "LeggedCommand", "DriveTrain", "LegModel", "kMaxWheels"} <= names
+
+    def rule(path):
+        own = str(path.relative_to(ROOT))
+        if path.suffix == ".h" and (folder(path) in COMMON or own in ROLES) and own not in ALL_KINDS:
+            yield from set() if kinds_in(own) else names & set(re.findall(r"\w+", code(path)))
+
+    assert violations(rule) == []
+
+
+def test_no_kind_knows_another():
+    def rule(path):
+        own = kinds_in(path)
+        yield from (name for name in includes(path) if own and kinds_in(name) not in ([], own))
+
+    assert violations(rule) == []
+
+
+def test_project_headers_are_named_from_the_root():
+    def rule(path):
+        for name in includes(path):
+            if (path.parent / name).is_file() and not (SRC / name).is_file():
+                yield f"write {folder(path)}/{name}"
+
+    assert violations(rule) == []
+
+
+def test_only_ros_and_main_see_ros():
+    def rule(path):
+        if folder(path) not in ("ros", "ros/navigation", "main"):
+            yield from (name for name in foreign_includes(path) if ROS.match(name))
+
+    assert violations(rule) == []
+
+
+def test_only_mapping_and_localisation_see_mrpt():
+    def rule(path):
+        if folder(path) != "navigation/mrpt":
+            yield from (name for name in foreign_includes(path) if name.startswith("mrpt/"))
+
+    assert violations(rule) == []
+
+
+def test_only_its_driver_sees_mujoco():
+    def rule(path):
+        if folder(path) != "drivers/mujoco":
+            yield from (name for name in foreign_includes(path) if MUJOCO.match(name))
+
+    assert violations(rule) == []
+
+
+SIMULATED = {"drivers/mujoco", "simulation/faults", "simulation/devices", "simulation/machines"}
+SIMULATORS = {"main/mujoco_plant.cpp", "main/device_simulator.cpp", "configuration/parameters.h"}
+"""The last one: parameters of the plant."""
+
+
+def test_nothing_simulated_is_in_the_product():
+    def rule(path):
+        own = folder(path)
+        if own in SIMULATED | {"simulation", "bindings"} or str(path.relative_to(SRC)) in SIMULATORS:
+            return
+        yield from (other for other in includes(path) if room(other) in SIMULATED)
+
+    assert violations(rule) == []
+
+
+PROGRAMS = re.compile(r"\b(?:mujoco_plant|state_estimator|(?:diff_drive|leg)_controller(?!\.h)|safety_monitor)\b")
+OTHER_PACKAGES = {"configuration/parameters.h", "configuration/peer_file.h"}
+"""They speak of the diff_drive_controller of ros_controllers."""
+NAME_TABLES = {"signals/roles.h", "signals/robot_kinds.h"}
+
+
+def test_the_core_speaks_of_roles():
+    """Program names stand in main, in two tables of signals and, as its block's name, in a driver's folder."""
+
+    def rule(path):
+        own = str(path.relative_to(SRC if path.is_relative_to(SRC) else ROOT))
+        if own.startswith(("main/", "drivers/")) or own in OTHER_PACKAGES | NAME_TABLES:
+            return
+        yield from (line for line in path.read_text().splitlines() if PROGRAMS.search(line) and "#include" not in line)
+
+    assert violations(rule) == []
+
+
+def test_the_tools_speak_of_roles():
+    """Texts of the tools take program names from common/roles.py; docstrings may name a block of parameters."""
+    named = []
+    for path in (ROOT / "python" / "robot_control").rglob("*.py"):
+        tree = ast.parse(path.read_text())
+        parts = [
+            node
+            for parent in ast.walk(tree)
+            for node in ast.iter_child_nodes(parent)
+            if not isinstance(parent, ast.Expr)
+        ]
+        texts = [node for node in parts if isinstance(node, ast.Constant) and isinstance(node.value, str)]
+        named += [f"{path.name}:{node.lineno}" for node in texts if PROGRAMS.search(node.value)]
+    assert named == []
+
+
+def test_only_rt_reads_clocks():
+    def rule(path):
+        if folder(path) != "rt":
+            yield from CLOCK.findall(code(path))
+
+    assert violations(rule) == []
+
+
+def test_laws_and_drivers_are_given_their_time():
+    """loop hands rt's clock to the cycles; ordinary threads of ros, log and main may read it."""
+
+    def rule(path):
+        if folder(path) not in ("rt", "loop", "ros", "main", "log"):
+            yield from MONOTONIC.findall(code(path))
+
+    assert violations(rule) == []
+
+
+def test_only_ros_knows_ros_time():
+    def rule(path):
+        if folder(path) not in ("ros", "ros/navigation"):
+            yield from re.findall(r"\bros::(?:Time|WallTime|SteadyTime)::now\b", code(path))
+
+    assert violations(rule) == []
+
+
+def test_linked_libraries_are_included_libraries():
+    """The libraries that CMake links obey the same table."""
+    texts = {
+        str(path.parent.relative_to(SRC)): re.sub(r"#[^\n]*", "", path.read_text())
+        for path in SRC.rglob("CMakeLists.txt")
+        if path.parent != SRC
+    }
+    defined_in = {
+        library: name for name, text in texts.items() for library in re.findall(r"robot_control_library\((\w+)", text)
+    }
+    defined_in["signals"] = "signals"  # headers alone, declared above the folders
+    wrong = []
+    for own, text in texts.items():
+        linked = {defined_in[library] for library in re.findall(r"\brc_(\w+)", text)} - {own}
+        wrong += [f"{own} links a library of {other}" for other in sorted(linked - MAY_INCLUDE.get(own, set()))]
+    assert wrong == []
+
+
+def product_folders():
+    """Folders with code of the product, each with the number of files that lie directly in it."""
+    folders = [SRC, BINDINGS, *(path for path in SRC.rglob("*") if path.is_dir())]
+    return {str(path.relative_to(ROOT)): sum(item.is_file() for item in path.iterdir()) for path in folders}
+
+
+def test_folders_stay_small():
+    """At most 25 files, so that a listing is read at a glance."""
+    assert {name: count for name, count in product_folders().items() if count > 25} == {}
+
+
+def test_no_two_headers_share_a_name():
+    names = [path.name for path in FILES if path.suffix == ".h"]
+    assert sorted(name for name in set(names) if names.count(name) > 1) == []
+
+
+def test_gtest_files_are_named_after_what_they_test():
+    assert sorted(str(path.relative_to(ROOT)) for path in (ROOT / "tests").rglob("test_*.cpp")) == []
+
+
+def test_source_files_stay_small():
+    """One concept per file; 400 lines hold one, with the header that states its law."""
+    assert [str(path.relative_to(ROOT)) for path in FILES if len(path.read_text().splitlines()) > 400] == []
+
+
+MAX_FUNCTION = 60
+"""lines, from the line of its name to its last brace; in Python without the docstring"""
+MAX_FUNCTION_IN = {SRC / "estimation": 40}
+"""lines, in folders with a bound of their own; the innermost bound holds"""
+MAX_LINES = {SRC / "estimation": 3670, SRC / "estimation/legged": 950}
+"""lines of a whole folder, comments included; a folder below that is listed counts by itself"""
+MAX_TUNED_CONSTANTS = 12
+"""in src/estimation/tuning.h, before the conventions of statistics"""
+NO_CODE = re.compile(r'//[^\n]*|/\*.*?\*/|R"\w*\(.*?\)\w*"|"(?:\\.|[^"\\\n])*"|\'(?:\\.|[^\'\\\n])\'', re.DOTALL)
+FUNCTION_HEAD = re.compile(r"\)\s*(?:const\b|noexcept\b|override\b|final\b|->|:[^:]|$)")
+NO_FUNCTION = re.compile(r"^\s*(?:if|for|while|switch|do|else|try|return|namespace|struct|class|enum|union)\b")
+
+
+def cpp_functions(text):
+    """Name (the text before its brace) and length of every function; a lambda counts with its enclosing function."""
+    code = NO_CODE.sub(lambda found: re.sub(r"[^\n]", " ", found.group()), text)
+    opened, head = [], 0
+    for at, sign in enumerate(code):
+        if sign == "{":
+            opened.append((head, code[head:at]))
+            head = at + 1
+        elif sign == "}":
+            begin, name = opened.pop()
+            if FUNCTION_HEAD.search(name) and not NO_FUNCTION.match(name):
+                begin += len(name) - len(name.lstrip())
+                yield name.strip().splitlines()[0], code.count("\n", begin, at) + 1
+            head = at + 1
+        elif sign == ";":
+            head = at + 1
+
+
+def python_functions(text):
+    for node in ast.walk(ast.parse(text)):
+        if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef):
+            documentation = node.body[0] if ast.get_docstring(node) is not None else None
+            described = documentation.end_lineno - documentation.lineno + 1 if documentation else 0
+            yield node.name, node.end_lineno - node.lineno + 1 - described
+
+
+def test_the_length_of_a_function_is_counted():
+    body = "\n".join(["  x();"] * 5)
+    text = f"namespace n {{\nstruct S {{\n  S(int a)\n      : a_(a) {{\n{body}\n  }}\n}};\nint f() {{\n{body}\n}}\n}}\n"
+    assert dict(cpp_functions(text)) == {"S(int a)": 8, "int f()": 7}
+    assert dict(python_functions('def f():\n    """One.\n\n    Two.\n    """\n    return 1\n')) == {"f": 2}
+
+
+def test_functions_stay_short():
+    sources = {path: cpp_functions(path.read_text()) for path in FILES}
+    sources |= {
+        path: python_functions(path.read_text())
+        for name in ("scripts", "python")
+        for path in (ROOT / name).rglob("*.py")
+    }
+    lengths = {(path, name): length for path, functions in sources.items() for name, length in functions}
+    assert len(lengths) > 1000
+
+    def longest(path):
+        return next((MAX_FUNCTION_IN[folder] for folder in path.parents if folder in MAX_FUNCTION_IN), MAX_FUNCTION)
+
+    assert {
+        f"{path.relative_to(ROOT)}: {name}": length
+        for (path, name), length in lengths.items()
+        if length > longest(path)
+    } == {}
+
+
+def imported_modules(path):
+    for node in ast.walk(ast.parse(path.read_text())):
+        if isinstance(node, ast.Import):
+            yield from (name.name for name in node.names)
+        elif isinstance(node, ast.ImportFrom) and node.module:
+            yield node.module
+
+
+def test_a_folder_with_a_bound_of_its_own_stays_small():
+    lines = dict.fromkeys(MAX_LINES, 0)
+    for path in SRC.rglob("*"):
+        own = next((folder for folder in path.parents if folder in MAX_LINES), None)
+        if own is not None and path.is_file():
+            lines[own] += len(path.read_text().splitlines())
+    assert [(str(folder), lines[folder]) for folder, limit in MAX_LINES.items() if lines[folder] > limit] == []
+
+
+def test_the_estimator_has_few_tuned_constants():
+    tuned = (SRC / "estimation/tuning.h").read_text().split("conventions of statistics")[0]
+    assert tuned.count("static constexpr") <= MAX_TUNED_CONSTANTS
+
+
+def test_nothing_that_is_installed_imports_the_laboratory():
+    """scripts/*.py and python/robot_control are installed; bench is for tests and scripts/bench."""
+    installed = sorted(path for name in ("scripts", "python") for path in (ROOT / name).rglob("*.py"))
+    assert len(installed) > 40
+    wrong = [
+        f"{path.relative_to(ROOT)} imports {name}"
+        for path in installed
+        for name in imported_modules(path)
+        if name.split(".")[0] in {"bench", "tests"}
+    ]
+    wrong += [f"{path.name} names bench" for path in BINDINGS.rglob("*.*") if '"bench.' in path.read_text()]
+    assert wrong == []
+
+
+def test_every_folder_of_the_python_package_is_installed():
+    folders = {path.parent for path in PACKAGE.rglob("*.py")}
+    assert [str(folder) for folder in folders if not (folder / "__init__.py").is_file()] == []
+
+
+def test_a_program_beside_the_loop_receives_messages_through_the_boundary_alone():
+    found = {}
+    for path in (ROOT / "python" / "robot_control").rglob("*.py"):
+        if path.name != "boundary.py":
+            calls = re.findall(r"rospy\.(?:Subscriber\(|wait_for_message|AnyMsg)", path.read_text(encoding="utf-8"))
+            found |= {str(path): calls} if calls else {}
+    assert found == {}
+
+
+def test_no_folder_of_python_holds_more_than_25_files():
+    folders = {path.parent for name in ("scripts", "python", "bench") for path in (ROOT / name).rglob("*.py")}
+    assert len(folders) > 10
+    counts = {str(folder.relative_to(ROOT)): sum(path.is_file() for path in folder.glob("*")) for folder in folders}
+    assert {name: count for name, count in counts.items() if count > 25} == {}
+
+
+def imports_of_the_package():
+    """(folder of the module, imported module) of each import inside the package, both below it, with dots."""
+    found = [
+        (".".join(path.relative_to(PACKAGE).parts[:-1]), name.removeprefix("robot_control."))
+        for path in sorted(PACKAGE.rglob("*.py"))
+        for name in imported_modules(path)
+        if name.startswith("robot_control.") and name.split(".")[1] not in {"msg", "srv", "_robot_control"}
+    ]
+    assert len(found) > 400
+    return found
+
+
+def test_programs_import_no_program():
+    """A program is a folder with a main.py; what several of them use stands beside them in their room, or below."""
+    programs = {".".join(path.parent.relative_to(PACKAGE).parts) for path in PACKAGE.rglob("main.py")}
+    assert len(programs) > 20
+    wrong = [
+        f"{folder} imports {name}"
+        for folder, name in imports_of_the_package()
+        for program in programs
+        if f"{name}.".startswith(f"{program}.") and not f"{folder}.".startswith(f"{program}.")
+    ]
+    assert wrong == []
+
+
+def test_each_room_of_python_imports_only_what_is_below_it():
+    wrong = [
+        f"{folder} imports {name}"
+        for folder, name in imports_of_the_package()
+        if folder
+        and name.split(".")[0] not in {folder.split(".")[0], "installed_files", *MAY_IMPORT[folder.split(".")[0]]}
+    ]
+    assert wrong == []
+    assert set(MAY_IMPORT) == {path.parent.name for path in PACKAGE.glob("*/__init__.py")}
+
+
+def test_the_laboratory_is_not_installed():
+    for name in ("setup.py", "cmake/ros.cmake"):
+        installs = re.findall(r"(?:package_dir|packages|install)\b[^\n]*", (ROOT / name).read_text())
+        assert installs
+        assert [line for line in installs if "tests" in line or "bench" in line] == []
+
+
+@pytest.mark.parametrize(
+    "path",
+    [
+        path
+        for pattern in ("package.xml", "launch/*.launch", "urdf/**/*.urdf", "urdf/**/*.xml")
+        for path in sorted(ROOT.glob(pattern))
+    ],
+    ids=lambda path: str(path.relative_to(ROOT)),
+)
+def test_xml_is_well_formed(path):
+    ET.parse(path)
