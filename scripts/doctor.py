@@ -6,7 +6,7 @@ from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
 for folder in (HERE.parent / "python", HERE.parent / "python3/dist-packages"):  # in the checkout, installed
-    if (folder / "robot_control/doctor").is_dir():
+    if (folder / "robot_control/setup/doctor").is_dir():
         sys.path.insert(0, str(folder))
 
 from robot_control.setup.doctor.main import main  # noqa: E402

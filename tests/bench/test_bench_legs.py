@@ -34,7 +34,7 @@ def test_a_figure_has_the_bound_of_its_longest_known_beginning(figure, value, ra
 def test_what_has_no_bound_is_measured_alone():
     for figure in ("1.5 m/s, turned over", "neither, motor off", "mean error of the way between two resets"):
         row = legs.judged(measured(f"quadbot {figure}", 1), "push")
-        assert (row["ratio"], row["reference_name"]) == (0, markdown.MEASURED)
+        assert (row["ratio"], row["reference_name"]) == (0, markdown.NO_BOUND)
 
 
 def test_an_unknown_figure_is_an_error():

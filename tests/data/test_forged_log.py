@@ -1,10 +1,9 @@
 """replay.py on logs that were changed with ROS's own tools detects values that the laws did not compute."""
 
-import importlib
-
 import pytest
 from robot_control import ClosedLoop
 from robot_control.data.replay.main import main
+from support.programs import module_of
 
 rosbag = pytest.importorskip("rosbag", reason="logs are changed with Debian's python3-rosbag")
 
@@ -114,7 +113,7 @@ def hostile_log(log, tmp_path):
     [("replay", ["%"]), ("report", ["%", "--ci"]), ("estimate", ["%"]), ("export", ["%", "--csv", "%.csv"])],
 )
 def test_text_of_a_log_reaches_no_terminal_as_control_characters(hostile_log, capsys, program, arguments):
-    entry = importlib.import_module(f"robot_control.{program}.main").main
+    entry = module_of(program).main
     try:
         entry([argument.replace("%", str(hostile_log)) for argument in arguments])
         said = ""
@@ -148,7 +147,7 @@ def timeless_log(log, tmp_path, request):
     ],
 )
 def test_a_period_of_no_loop_is_refused_in_one_sentence(timeless_log, monkeypatch, capsys, program, arguments):
-    entry = importlib.import_module(f"robot_control.{program}.main").main
+    entry = module_of(program).main
     words = [argument.replace("%", timeless_log) for argument in arguments]
     monkeypatch.setattr("sys.argv", [program, *words])
     with pytest.raises(SystemExit) as end:

@@ -1,4 +1,4 @@
-"""The outlines of a motor board's firmware compile against declarations of what they call (tests/data/firmware)."""
+"""The outlines of a motor board's firmware compile against declarations of what they call (tests/fixtures/firmware)."""
 
 import re
 import subprocess
@@ -17,7 +17,7 @@ def test_an_outline_compiles(board, tmp_path):
     assert len(blocks) == 1
     source = tmp_path / "outline"
     source.write_text(blocks[0])
-    folders = ["-I", ROOT / "firmware", "-I", ROOT / "tests/data/firmware"]
+    folders = ["-I", ROOT / "firmware", "-I", ROOT / "tests/fixtures/firmware"]
     warnings = ["-Wall", "-Wextra", "-Werror"]
     command = ["c++" if language == "c++" else "cc", "-x", language, standard, "-fsyntax-only", *warnings, *folders]
     done = subprocess.run([*command, source], capture_output=True, text=True, check=False)

@@ -38,7 +38,7 @@ LOW_WORD = {("0.5", "Motor_Error"), ("0.5", "Shadow_Count"), ("0.5", "Count_in_C
 @pytest.fixture(scope="module")
 def databases():
     cantools = imported("cantools", "can")
-    return {version: cantools.database.load_file(ROOT / "tests/data" / name) for version, name in FILES.items()}
+    return {version: cantools.database.load_file(ROOT / "tests/fixtures" / name) for version, name in FILES.items()}
 
 
 def answers(lines):
@@ -77,7 +77,7 @@ MESSAGE = re.compile(r"^BO_ \d+ Axis0_(\w+):", re.MULTILINE)
 MESSAGES = [
     (version, name)
     for version, file in FILES.items()
-    for name in MESSAGE.findall((ROOT / "tests/data" / file).read_text())
+    for name in MESSAGE.findall((ROOT / "tests/fixtures" / file).read_text())
     if name not in UNUSED[version]
 ]
 

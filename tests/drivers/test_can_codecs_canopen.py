@@ -30,7 +30,7 @@ class Exchange:
     def __init__(self, canopen, eds):
         self.wire, self.network = Wire(), canopen.Network()
         self.network.bus = self.wire
-        self.drive = canopen.LocalNode(NODE, str(ROOT / "tests/data" / eds))
+        self.drive = canopen.LocalNode(NODE, str(ROOT / "tests/fixtures" / eds))
         self.network.add_node(self.drive)
         self.program = subprocess.Popen([PROGRAM], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
 

@@ -69,7 +69,7 @@ class TorqueDrive:
     def __init__(self, canopen, eds):
         self.network, self.wire = canopen.Network(), Wire()
         self.network.bus = self.wire
-        self.node = canopen.LocalNode(NODE, str(ROOT / "tests/data" / eds))
+        self.node = canopen.LocalNode(NODE, str(ROOT / "tests/fixtures" / eds))
         self.network.add_node(self.node)
         self.status, self.position, self.torque = 0x40, 1000, 0
         self.mapped = False

@@ -1,6 +1,7 @@
 """A missing file and a missing build are reported in words."""
 
 import os
+import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -53,9 +54,7 @@ def test_sources_that_are_not_built_say_what_to_do():
 
 
 def test_for_another_python_the_message_names_the_right_one(tmp_path):
-    for source in (PYTHON / "robot_control").glob("*.py"):
-        (tmp_path / "robot_control").mkdir(exist_ok=True)
-        (tmp_path / "robot_control" / source.name).write_text(source.read_text())
+    shutil.copytree(PYTHON / "robot_control", tmp_path / "robot_control", ignore=shutil.ignore_patterns("*.so"))
     (tmp_path / "robot_control" / "_robot_control.cpython-300-x86_64-linux-gnu.so").touch()
     message = imported(tmp_path)
     assert "is not for this Python" in message

@@ -1,6 +1,5 @@
 """Files that a user names: which are read, which are replaced, and how messages quote them."""
 
-import importlib
 import os
 import pwd
 import re
@@ -25,6 +24,7 @@ from robot_control.files.files import (
     write_text,
 )
 from robot_control.installed_files import share_file
+from support.programs import module_of
 
 
 def test_only_regular_files_up_to_a_size_are_read(tmp_path):
@@ -111,7 +111,7 @@ def test_a_parameter_that_is_not_utf8_is_refused(values):
 def test_a_program_refuses_such_a_name_in_one_line(program, arguments, tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     Path(f"{FOREIGN}.bag").write_text("#ROSBAG V2.0\n")
-    main = importlib.import_module(f"robot_control.{program}.main").main
+    main = module_of(program).main
     with pytest.raises(SystemExit) as refusal:
         main([argument.replace("%", FOREIGN) for argument in arguments])
     said = capsys.readouterr().err.rstrip() or str(refusal.value)

@@ -1,6 +1,5 @@
 """A program checks its output files before its work."""
 
-import importlib
 import os
 from pathlib import Path
 
@@ -8,6 +7,7 @@ import pytest
 from robot_control.files.output_files import check_outputs
 from robot_control.installed_files import share_file
 from robot_control.ui.picture_file import check_picture
+from support.programs import module_of
 
 
 def test_what_can_be_written_is_accepted(tmp_path):
@@ -64,14 +64,14 @@ def test_no_program_writes_over_what_it_reads(program, arguments, tmp_path, monk
     Path("run.csv").write_bytes(b"time,left,right\n0,0,0\n")
     before = {path: path.read_bytes() for path in tmp_path.iterdir()}
     with pytest.raises(SystemExit) as refusal:
-        importlib.import_module(f"robot_control.{program}.main").main(arguments)
+        module_of(program).main(arguments)
     assert "is an input of this program" in capsys.readouterr().err + str(refusal.value)
     assert {path: path.read_bytes() for path in tmp_path.iterdir()} == before
 
 
 @pytest.mark.parametrize(("program", "option"), [("identify", "--output"), ("calibrate", "--out")])
 def test_no_robot_is_driven_for_a_file_that_cannot_be_written(program, option, tmp_path, monkeypatch):
-    main = importlib.import_module(f"robot_control.{program}.main")
+    main = module_of(program)
     monkeypatch.setattr(main, "running_settings", None)  # it is not reached
     monkeypatch.setattr("sys.argv", [f"{program}.py", option, str(tmp_path / "none" / "out.yaml")])
     with pytest.raises(SystemExit, match="there is no folder"):

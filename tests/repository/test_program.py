@@ -72,7 +72,7 @@ def test_every_program_writes_its_lines_at_once():
     """
     package = SCRIPTS.parent / "python/robot_control"
     modules = [path for path in package.rglob("*.py") if "__main__" in path.read_text()]
-    python = {*SCRIPTS.rglob("*.py"), *modules} - {package / "expand_xacro.py"}
+    python = {*SCRIPTS.rglob("*.py"), *modules} - {package / "setup/expand_xacro.py"}
     assert [str(path) for path in sorted(python) if not begins_with(path, "run(main)")] == []
     nodes = set((SCRIPTS.parent / "src/main").glob("*.cpp"))
     begins = re.compile(r"return run_(node|service)\(")

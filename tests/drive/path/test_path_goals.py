@@ -9,8 +9,9 @@ from types import SimpleNamespace
 import pytest
 from geometry_msgs.msg import PoseStamped
 from nav_msgs.msg import Odometry
+from robot_control.drive.follow_path import main as server
 from robot_control.drive.follow_path.main import Server, TimedGoal
-from robot_control.drive.path import run, server
+from robot_control.drive.path import run
 from robot_control.msg import FollowPathActionGoal
 from robot_control.robot import boundary as crossing
 from support.mutants import mutants

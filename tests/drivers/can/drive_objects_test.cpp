@@ -13,7 +13,7 @@ namespace {
 /// The dictionary of a drive: keys of each section, as "6071 DataType" → "0x0003".
 std::map<std::string, std::string> read_eds(const std::string& name) {
   std::map<std::string, std::string> entries;
-  std::ifstream file(PROJECT_DIRECTORY "/tests/data/" + name);
+  std::ifstream file(PROJECT_DIRECTORY "/tests/fixtures/" + name);
   std::string section;
   for (std::string line; std::getline(file, line);) {
     if (!line.empty() && line.back() == '\r') line.pop_back();

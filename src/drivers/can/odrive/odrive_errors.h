@@ -1,6 +1,6 @@
 #pragma once
 /// Error bits of both firmwares in the words of their maker. Sources: the enumerations of
-/// tests/data/odrive-cansimple-*.dbc.
+/// tests/fixtures/odrive-cansimple-*.dbc.
 
 #include <cstdint>
 #include <span>
