@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "bench/programs/rows.h"
-#include "drivers/board_machine.h"
+#include "drivers/board/board_machine.h"
 
 namespace robot_control::bench {
 namespace {

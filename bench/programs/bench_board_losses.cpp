@@ -12,8 +12,8 @@
 #include <vector>
 
 #include "bench/programs/rows.h"
-#include "drivers/board_machine.h"
-#include "drivers/roboclaw_machine.h"
+#include "drivers/board/board_machine.h"
+#include "drivers/roboclaw/roboclaw_machine.h"
 
 namespace robot_control::bench {
 namespace {

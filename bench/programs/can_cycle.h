@@ -11,10 +11,10 @@
 #include <vector>
 
 #include "bench/programs/rows.h"
-#include "drivers/can/can_driver.h"
+#include "drivers/drive/can_driver.h"
 #include "gate/wheeled/wheel_stop.h"
 #include "rt/clock.h"
-#include "simulation/devices/can_front.h"
+#include "drivers/drive/can_front.h"
 #include "support/allocation_guard.h"
 
 namespace robot_control::bench {

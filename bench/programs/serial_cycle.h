@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "bench/programs/rows.h"
-#include "drivers/serial/awaited_terminal.h"
+#include "drivers/line/awaited_terminal.h"
 #include "rt/clock.h"
 #include "support/allocation_guard.h"
 

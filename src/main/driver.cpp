@@ -1,4 +1,4 @@
-#include "drivers/factory/factory.h"
+#include "drivers/table/factory.h"
 #include "ros/nodes/driver_node.h"
 #include "ros/nodes/node.h"
 #include "rt/clock.h"

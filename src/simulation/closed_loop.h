@@ -63,7 +63,7 @@ class ClosedLoop {
   void set_parameters(const std::string& request);
 
   /// Injects a fault from the next step on, into the machine as by `~inject_fault`, or into a node
-  /// (simulation/faults/node_faults.h). Simulated drives have faults of their own (simulation/devices/device_front.h).
+  /// (simulation/faults/node_faults.h). Simulated drives have faults of their own (drivers/drive/device_front.h).
   /// Throws std::invalid_argument with the list of words if one is unknown.
   void inject_fault(const std::string& component, const std::string& kind);
 

@@ -4,7 +4,7 @@
 
 #include <limits>
 
-#include "drivers/board_machine.h"
+#include "drivers/board/board_machine.h"
 
 namespace robot_control {
 namespace {

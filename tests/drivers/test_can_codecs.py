@@ -11,7 +11,7 @@ import pytest
 from support.pypi_package import imported
 
 ROOT = Path(__file__).parents[2]
-PROGRAM = ROOT / "build/robot_control/tests/drivers/can/odrive_codec_lines"
+PROGRAM = ROOT / "build/robot_control/tests/drivers/odrive_codec_lines"
 FILES = {"0.5": "odrive-cansimple-0.5.6.dbc", "0.6": "odrive-cansimple-0.6.10.dbc"}
 UNUSED_BY_BOTH = {
     *("Reboot", "Set_Input_Pos", "Set_Pos_Gain", "Set_Traj_Accel_Limits", "Set_Traj_Inertia", "Set_Traj_Vel_Limit")

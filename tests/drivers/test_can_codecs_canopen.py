@@ -10,7 +10,7 @@ from support.can_wire import Wire
 from support.pypi_package import imported
 
 ROOT = Path(__file__).parents[2]
-PROGRAM = ROOT / "build/robot_control/tests/drivers/can/canopen_codec_lines"
+PROGRAM = ROOT / "build/robot_control/tests/drivers/canopen_codec_lines"
 NODE = 5
 DOWNLOAD, DOWNLOAD_SEGMENT, UPLOAD, UPLOAD_SEGMENT, ABORT = "01234"
 """SdoCommand"""

@@ -12,7 +12,7 @@ from support.can_wire import Wire
 from support.pypi_package import imported
 
 ROOT = Path(__file__).parents[2]
-PROGRAM = ROOT / "build/robot_control/tests/simulation/devices/can_peer"
+PROGRAM = ROOT / "build/robot_control/tests/drivers/can_peer"
 NODE = 5
 REMOTE = "R"
 

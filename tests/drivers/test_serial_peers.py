@@ -9,7 +9,7 @@ import pytest
 from support.pypi_package import imported
 
 ROOT = Path(__file__).parents[2]
-PROGRAM = ROOT / "build/robot_control/tests/simulation/devices/roboclaw_peer"
+PROGRAM = ROOT / "build/robot_control/tests/drivers/roboclaw_peer"
 ADDRESS = 0x80
 QPPS = 1.2 * 30 * 1000 / (2 * 3.141592653589793)
 """counts per s, of roboclaw_peer.cpp"""

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <numbers>
 
-#include "configuration/line_silence.h"
+#include "drivers/table/line_silence.h"
 #include "control/wheel_loops/wheel_loop_gains.h"
 #include "safety/derived_limits.h"
 

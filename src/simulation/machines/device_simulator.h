@@ -11,7 +11,7 @@
 
 #include "bus/latest_value.h"
 #include "drivers/mujoco/mujoco_plant.h"
-#include "simulation/devices/device_front.h"
+#include "drivers/drive/device_front.h"
 
 namespace robot_control {
 

@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "drivers/mujoco/mujoco_plant.h"
-#include "simulation/devices/device_front.h"
+#include "drivers/drive/device_front.h"
 
 namespace robot_control {
 

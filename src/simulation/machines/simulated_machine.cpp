@@ -8,16 +8,16 @@
 #include <string>
 #include <vector>
 
-#include "configuration/drive_file.h"
-#include "drivers/can/can_driver.h"
+#include "drivers/table/drive_file.h"
+#include "drivers/drive/can_driver.h"
 #include "drivers/drive_motors.h"
 #include "drivers/mujoco/mujoco_plant.h"
-#include "drivers/serial/board_driver.h"
-#include "drivers/serial/roboclaw_driver.h"
-#include "simulation/devices/can_front.h"
-#include "simulation/devices/serial/board_front.h"
-#include "simulation/devices/serial/pseudo_terminal.h"
-#include "simulation/devices/serial/roboclaw_front.h"
+#include "drivers/board/board_driver.h"
+#include "drivers/roboclaw/roboclaw_driver.h"
+#include "drivers/drive/can_front.h"
+#include "drivers/board/board_front.h"
+#include "drivers/line/pseudo_terminal.h"
+#include "drivers/roboclaw/roboclaw_front.h"
 #include "simulation/machines/driven_plant.h"
 
 namespace robot_control {

@@ -1,0 +1,116 @@
+#pragma once
+/// A motor board on a serial line as a Driver, after docs/board_protocol.md. The board runs the code of `firmware/`.
+///
+/// The driver sends one order in each cycle and the board answers it with one report. The counts of a report are those
+/// of the instant at which the order came. Offset and drift of the board's clock are estimated
+/// (board_clock.h). A sample therefore has its own time, however late it arrived, and its velocity brings it to the
+/// time of `read`.
+///
+/// The board is given torques: every mode, the brake included, is computed here (drivers/joint_law.h). A board that
+/// takes speeds is given the speed of kDriveVelocity, without its effort, and brakes with the speed zero, which it
+/// keeps at rest. `read` reports
+/// kStarting until the board answers without BOARD_WATCHDOG and BOARD_REFUSED. Its faults stay until the operator's
+/// reset; meanwhile the driver orders the brake of the board.
+///
+///   silence         no new report for max_silence cycles
+///   own brake       the board reports BOARD_WATCHDOG: it received no order in time, and its clock did not jump
+///   refusal         the board reports BOARD_REFUSED, or speaks another version of the protocol
+///   restart         the clock of the board jumped by more than kClockJumpNs against the host's
+///   position jump   counts that the joint cannot reach within its velocity limit
+///   fault word      of a wheel; the user's code gives the numbers
+///
+/// A report counts once, and only if it answers an order of the last kOrders cycles within kMaxTripNs.
+
+#include <array>
+#include <functional>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "drivers/drive_speed.h"
+#include "drivers/joint_law.h"
+#include "drivers/board/board_clock.h"
+#include "drivers/board/board_parameters.h"
+#include "drivers/drive/serial_driver.h"
+#include "firmware/board_frame.h"
+#include "firmware/board_messages.h"
+
+namespace robot_control {
+
+enum class BoardCause : std::uint8_t {
+  kNone,
+  kNoAnswer,  ///< none yet
+  kSilent,
+  kOwnBrake,
+  kRefused,
+  kOtherProtocol,
+  kOtherWheels,
+  kRestarted,
+  kPositionJump,
+  kWheelFault,
+};
+
+struct BoardWheel : CountedWheel {
+  double effort = 0;       ///< N·m
+  std::uint8_t fault = 0;  ///< its fault word
+};
+
+class BoardDriver final : public SerialDriver<BoardCause, BoardWheel> {
+ public:
+  static constexpr std::size_t kOrders = 256;                 ///< the answer to an older order is refused
+  static constexpr std::int64_t kMaxTripNs = 50'000'000;      ///< after which the watchdog of a board has braked
+  static constexpr std::int64_t kClockJumpNs = 200'000'000;   ///< two boots lie further apart
+  static constexpr std::int64_t kVelocitySpanNs = 8'000'000;  ///< over which a velocity is measured, at 125 Hz and more
+  static constexpr double kSpeedMargin = 1.5;                 ///< of the velocity limit, above which a position jumped
+  static constexpr double kMaxLineLoad = 0.9;
+
+  /// `brakes`: one per wheel of the board. The wheels move the first joints of a robot that has `joint_count`. `clock`
+  /// states the present time in ns. Throws DriverError if the line cannot carry the messages at this period.
+  BoardDriver(const BoardParameters& parameters, std::span<const Brake> brakes, std::size_t joint_count, double period,
+              std::unique_ptr<SerialLine> line, std::function<std::int64_t()> clock);
+
+  void write(std::span<const JointCommand> commands) noexcept override;
+  /// The next `write` brakes. Until then the board brakes by itself.
+  void stop() noexcept override;
+
+  bool accepts(JointMode mode) const noexcept override { return accepted(mode, parameters_.takes_speeds); }
+  /// The board may measure efforts and have an IMU, which is known after its first report.
+  bool measures(MachineInput input) const noexcept override { return input != MachineInput::kContacts; }
+  std::string description() const override;
+  std::string warning() const override;
+
+  const BoardClock& board_clock() const noexcept { return board_clock_; }
+
+ private:
+  void begin() noexcept override;
+  bool receive() noexcept override;
+  void add_measurements(SensorFrame& sensors) noexcept override;
+  bool is_fault_at_start(BoardCause cause) const noexcept override { return cause == BoardCause::kPositionJump; }
+  void forget_samples() noexcept;
+  void accept(const board_report& report, std::int64_t arrived_ns) noexcept;
+  void accept_counts(const board_report& report, std::int64_t elapsed_us) noexcept;
+  void accept_imu(const board_report& report) noexcept;
+  board_wheel_order order_of(std::size_t i, const JointCommand& command) noexcept;
+  void send_order(board_order& order) noexcept;
+
+  BoardParameters parameters_;
+  double load_;  // of the line; 0: USB
+  std::vector<JointLaw> laws_;
+  board_decoder decoder_{};
+  BoardClock board_clock_;
+  std::array<std::int64_t, kOrders> sent_ns_{};  // of each order, by its cycle
+  std::uint16_t cycle_ = 0;                      // of the last order
+  std::uint64_t orders_ = 0;
+  bool has_report_ = false;
+  std::uint16_t answered_ = 0;    // cycle of the newest report
+  std::uint32_t board_us_ = 0;    // its time, as sent
+  std::int64_t total_us_ = 0;     // the same without wraps
+  std::int64_t answered_ns_ = 0;  // when its order was sent
+  std::uint64_t silent_for_ = 0;  // cycles
+  board_sensors sensors_{};
+  ImuSample imu_;
+  std::int64_t imu_ns_ = 0;
+};
+
+}  // namespace robot_control

@@ -1,0 +1,240 @@
+#include "drivers/drive/can_driver.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <sstream>
+
+#include "drivers/line/can_load.h"
+
+namespace robot_control {
+namespace {
+
+DriverFault fault_of(DriveCause cause) noexcept {
+  switch (cause) {
+    case DriveCause::kSilent:
+    case DriveCause::kNoAnswer:
+      return kFaultLink;
+    case DriveCause::kNotFinite:
+      return kFaultNotFinite;
+    default:
+      return kFaultDrive;
+  }
+}
+
+/// Returns why a drive sends no velocity; "" if it does.
+const char* why_no_velocity(VelocitySource source) noexcept {
+  switch (source) {
+    case VelocitySource::kDrive:
+      break;
+    case VelocitySource::kNotRequested:
+      return "velocity_pdo is off";
+    case VelocitySource::kNoRoom:
+      return "the bus has no room for it: lower robot.rate";
+    case VelocitySource::kNoUnit:
+      return "its unit is not known: state velocity_unit";
+    case VelocitySource::kNotMapped:
+      return "the drive does not map 606C";
+    case VelocitySource::kNotSent:
+      return "the drive maps 606C, and does not send it";
+  }
+  return "";
+}
+
+}  // namespace
+
+CanDriver::CanDriver(const CanParameters& parameters, std::span<const Brake> brakes, std::size_t joint_count,
+                     double period, CanSocket socket, std::function<CanTime()> clock)
+    : joint_count_(joint_count),
+      bus_(std::move(socket)),
+      parameters_(parameters.bus),
+      drives_(parameters, period),
+      takes_speeds_(drives_.size() > 0 && drives_[0].drive_parameters().takes_speeds),
+      load_(bus_load(drives_.plan(), 1 / period, parameters.bus.bit_rate)),
+      clock_(std::move(clock)),
+      brakes_(brakes.begin(), brakes.end()),
+      commands_(drives_.size()) {
+  for (std::size_t i = 0; i < drives_.size(); ++i) {
+    laws_.emplace_back(brakes[i], drives_[i].drive_parameters().torque_limit);
+  }
+}
+
+bool CanDriver::measures(MachineInput input) const noexcept {
+  if (input != MachineInput::kJointEffort) return Driver::measures(input);
+  for (std::size_t i = 0; i < drives_.size(); ++i) {
+    if (!drives_[i].drive_parameters().measures_torque) return false;
+  }
+  return true;
+}
+
+void CanDriver::stop() noexcept {
+  stopped_ = true;
+  if (state_ != DriverState::kRunning) return;
+  std::ranges::fill(commands_, DriveCommand{.enabled = true});
+  send_commands(clock_().time_ns);
+}
+
+void CanDriver::send_commands(std::int64_t now_ns) noexcept {
+  send_.clear();
+  drives_.step(commands_, now_ns, send_);
+  bus_.send(send_.frames());
+}
+
+void CanDriver::start() {
+  stopped_ = false;
+  begin();
+}
+
+void CanDriver::reset() noexcept {
+  if (state_ == DriverState::kFault) begin();
+}
+
+void CanDriver::begin() noexcept {
+  reset_ = true;
+  state_ = DriverState::kStarting;
+  faults_ = 0;
+  for (JointLaw& law : laws_) law.reset();
+}
+
+bool CanDriver::all_are(DriveState state) const noexcept {
+  for (std::size_t i = 0; i < drives_.size(); ++i) {
+    if (drives_[i].status().state != state) return false;
+  }
+  return true;
+}
+
+void CanDriver::judge_faults() noexcept {
+  for (std::size_t i = 0; i < drives_.size(); ++i) {
+    const DriveStatus& status = drives_[i].status();
+    if (status.state == DriveState::kFault && !reset_) faults_ |= fault_of(status.cause);
+  }
+  const bool fell_back = state_ == DriverState::kRunning && !all_are(DriveState::kRunning);
+  if (fell_back && faults_ == 0) faults_ |= kFaultDrive;
+  if (faults_ != 0) {
+    state_ = DriverState::kFault;
+  } else if (all_are(DriveState::kRunning)) {
+    state_ = DriverState::kRunning;
+  }
+}
+
+void CanDriver::read(SensorFrame& sensors) noexcept {
+  const CanTime now = clock_();
+  now_ns_ = now.time_ns;
+  for (int i = 0; i < kMaxBatches; ++i) {
+    const ReceivedFrames received = bus_.receive(now);
+    for (const ReceivedFrame& each : received.frames) drives_.receive(each.frame, each.stamp_ns);
+    if (!received.more) break;
+  }
+  watch_.step(bus_, now_ns_);
+  judge_faults();
+  sensors.driver_state = state_;
+  sensors.faults = faults_;
+  sensors.valid = 0;
+  sensors.joint_count = joint_count_;
+  for (std::size_t i = drives_.size(); i < joint_count_; ++i) sensors.joints[i] = {};
+  sensors.battery_voltage = 0;
+  for (std::size_t i = 0; i < drives_.size(); ++i) {
+    const DriveSample& sample = drives_[i].sample();
+    JointSample& joint = sensors.joints[i];
+    joint = sample.valid ? at_time(sample, now_ns_) : sample.joint;
+    if (!drives_[i].drive_parameters().measures_torque) joint.effort = std::numeric_limits<double>::quiet_NaN();
+    joint.age_ns = now_ns_ - sample.stamp_ns;
+    joint.valid = (sample.valid ? kValidPosition | kValidVelocity : 0U) | (sample.effort_valid ? kValidEffort : 0U);
+    if (drives_[i].drive_parameters().takes_effort) joint.valid |= kTakesEffort;
+    const DriveStatus& status = drives_[i].status();
+    joint.fault = status.state == DriveState::kFault ? static_cast<std::uint32_t>(status.cause) : 0;
+    if (sample.voltage > 0) sensors.battery_voltage = sample.voltage;
+  }
+  if (sensors.battery_voltage > 0) sensors.valid |= kValidBattery;
+  sensors.link_count = 1;
+  sensors.links[0] = link();
+  publish_statuses();
+}
+
+LinkStatus CanDriver::link() const noexcept {
+  const CanCounts& counts = bus_.counts();
+  return {.state = watch_.status().state,
+          .sent = counts.sent,
+          .lost = counts.refused + counts.lost,
+          .late = 0,
+          .errors = counts.errors + counts.error_frames + counts.malformed};
+}
+
+void CanDriver::publish_statuses() noexcept {
+  bool changed = false;
+  const auto update = [&changed](auto& last, const auto& now) {
+    if (last == now) return;
+    last = now;
+    changed = true;
+  };
+  for (std::size_t i = 0; i < drives_.size(); ++i) update(statuses_.drives[i], drives_[i].full_status());
+  update(statuses_.bus, watch_.status());
+  if (changed) published_statuses_.store(statuses_);
+}
+
+std::string CanDriver::description() const {
+  std::ostringstream text;
+  text << word_of(parameters_.dialect) << (takes_speeds_ ? " that takes speeds" : "") << " on " << parameters_.address
+       << " at " << parameters_.bit_rate / 1000 << " kbit/s, load at most " << std::lround(100 * load_) << " %";
+  Statuses statuses;
+  if (!published_statuses_.load(statuses)) return text.str();
+  for (std::size_t i = 0; i < drives_.size(); ++i) {
+    const KnownReaction& known = statuses.drives[i].on_silence;
+    text << (i == 0 ? "; on silence " : ", ") << drives_[i].drive_parameters().joint << ' '
+         << described(known.reaction);
+    if (known.evidence == ReactionEvidence::kRead) text << " (read from the drive)";
+    if (known.evidence == ReactionEvidence::kConfirmed) text << " (stated in the drive file)";
+  }
+  std::string without;
+  for (std::size_t i = 0; i < drives_.size(); ++i) {
+    const char* reason = why_no_velocity(statuses.drives[i].velocity);
+    if (*reason == '\0') continue;
+    without += (without.empty() ? "" : ", ") + drives_[i].drive_parameters().joint + " (" + reason + ")";
+  }
+  if (!without.empty()) {
+    text << "; the velocity follows from the positions, so that frames that are late by up to a period move the joint "
+            "and the robot sways (docs/drivers.md), of "
+         << without;
+  }
+  return text.str();
+}
+
+std::string CanDriver::warning() const {
+  Statuses statuses;
+  if (!published_statuses_.load(statuses)) return "";
+  std::string text = robot_control::words(statuses.bus);
+  for (std::size_t i = 0; i < drives_.size(); ++i) {
+    const DriveStatus& status = statuses.drives[i];
+    if (status.state == DriveState::kRunning) continue;
+    if (!text.empty()) text += ". ";
+    text += drives_[i].words(status);
+  }
+  return text;
+}
+
+DriveCommand CanDriver::wanted(std::size_t joint, const JointCommand& command) noexcept {
+  DriveCommand wanted{.enabled = true, .reset = reset_, .brake_torque = brakes_[joint].effort};
+  wanted.brake_damping = brakes_[joint].damping;
+  const DriveSample& sample = drives_[joint].sample();
+  if (!sample.valid) {
+    laws_[joint].reset();
+  } else if (takes_speeds_) {
+    wanted.speed = wanted_speed(command, drives_[joint].drive_parameters().velocity_limit);
+    if (command.mode == JointMode::kDriveVelocity && finite(command)) wanted.torque = command.effort;
+  } else {
+    const JointSample now = at_time(sample, now_ns_);
+    wanted.torque = laws_[joint].step(command, now.position, now.velocity);
+  }
+  return wanted;
+}
+
+void CanDriver::write(std::span<const JointCommand> commands) noexcept {
+  const bool obeys = !stopped_ && state_ == DriverState::kRunning && commands.size() == joint_count_;
+  for (std::size_t i = 0; i < drives_.size(); ++i) {
+    commands_[i] = wanted(i, obeys ? commands[i] : JointCommand{});
+  }
+  reset_ = false;
+  send_commands(now_ns_);
+}
+
+}  // namespace robot_control

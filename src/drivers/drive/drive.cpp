@@ -1,0 +1,259 @@
+#include "drivers/drive/drive.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+namespace robot_control {
+namespace {
+
+struct CauseWords {
+  const char* words;
+  const char* remedy;
+};
+
+// In the order of DriveCause.
+constexpr CauseWords kCauseWords[] = {
+    {"", ""},
+    {"waits for a first frame of the drive", "look at its power, the cable, the node number and the bit rate"},
+    {"waits for version and identity", ""},
+    {"waits for object", ""},
+    {"waits for the first position", "let the drive send its positions, or request them by the drive file"},
+    {"waits for", "turn it on with the maker's tool"},
+    {"waits to be enabled", ""},
+    {"waits for torque", ""},
+    {"is silent: no", "look at its power and the cable"},
+    {"reports an error:", "remove the cause, then reset"},
+    {"released the motor without an error:", "look at its supply and its own limits, then reset"},
+    {"was switched on again", "look at its supply, then reset"},
+    {"reports a jump of its", "the drive has another zero or was switched on again; reset where it stands still"},
+    {"sent a number that is not finite", "look at the encoder, then reset"},
+    {"is too hot:", "let it cool, then reset"},
+    {"has a low supply:", "charge the battery, then reset"},
+    {"is commanded by another program, with frame", "stop that program, then reset"},
+    {"differs from the drive file:", "correct the drive or the file, then reset"},
+    {"lacks", "use a drive that has it, or state it in the drive file"},
+    {"refused to set", "set it with the maker's tool, or leave it out of the drive file"},
+    {"did not answer a request for", "look at the cable, then reset"},
+    {"stays without torque:", "look at its supply, its calibration and its enable input, then reset"},
+    {"shares its node number with a second drive", "give one of them another number"},
+    {"has another axis in fault", ""},
+    {"has an unknown reaction on silence",
+     "set its watchdog and state on_silence, or accept_unknown_watchdog: true in the drive file"},
+};
+static_assert(std::size(kCauseWords) == static_cast<std::size_t>(DriveCause::kUnknownWatchdog) + 1);
+
+constexpr const char* kStateWords[] = {"starting", "ready", "running", "fault"};
+
+std::string number_words(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.4g", value);
+  return text;
+}
+
+double within(double value, double limit) noexcept {
+  return std::isfinite(value) ? std::clamp(value, -limit, limit) : 0;
+}
+
+}  // namespace
+
+JointSample at_time(const DriveSample& sample, std::int64_t now_ns) noexcept {
+  JointSample joint = sample.joint;
+  joint.position += joint.velocity * 1.0e-9 * static_cast<double>(now_ns - sample.stamp_ns);
+  return joint;
+}
+
+void FrameBatch::add(const can_frame& frame) noexcept {
+  if (count_ == frames_.size()) {
+    ++dropped_;
+  } else {
+    frames_[count_++] = frame;
+  }
+}
+
+Drive::Drive(DriveParameters parameters, double period)
+    : period_ns_(std::llround(1.0e9 * period)),
+      drive_(std::move(parameters)),
+      to_joint_(static_cast<double>(drive_.direction) / drive_.gear),
+      position_(sample_period_ns()) {}
+
+void Drive::step(const DriveCommand& command, std::int64_t now_ns, FrameBatch& send) noexcept {
+  if (command.reset && !reset_before_) {
+    clears_ = 0;
+    if (status_.state == DriveState::kFault) begin(true, now_ns);
+  }
+  reset_before_ = command.reset;
+  judge_silence(now_ns);
+  DriveCommand limited = command;
+  limited.torque = within(command.torque, drive_.torque_limit);
+  limited.speed = within(command.speed, drive_.velocity_limit);
+  advance(limited, now_ns, send);
+  note_order(status_.state == DriveState::kRunning ? limited.torque : 0);
+}
+
+void Drive::begin(bool reset, std::int64_t now_ns) noexcept {
+  status_ = {};
+  sample_ = {};
+  zero_ = 0;
+  position_.clear();
+  difference_.clear();
+  on_silence_ = {};
+  restart(reset, now_ns);
+}
+
+void Drive::judge_silence(std::int64_t now_ns) noexcept {
+  if (sample_.valid && now_ns - sample_.stamp_ns > max_silence_ns()) {
+    if (status_.state == DriveState::kReady) {
+      status_ = {};
+      restart(false, now_ns);
+    } else if (status_.state == DriveState::kRunning) {
+      fail(DriveCause::kSilent, "position");
+    }
+    sample_.valid = false;
+    position_.clear();
+    difference_.clear();
+  }
+  if (now_ns - effort_ns_ > 5 * max_silence_ns()) sample_.effort_valid = false;
+}
+
+std::int64_t Drive::sample_period_ns() const noexcept {
+  return std::max<std::int64_t>(period_ns_, std::llround(1.0e9 * drive_.sample_period));
+}
+
+void Drive::set(DriveState state, DriveCause cause, const char* subject, std::uint64_t code) noexcept {
+  if (status_.state == DriveState::kFault) return;
+  status_ = {.state = state, .cause = cause, .subject = subject, .code = code};
+}
+
+void Drive::fail(DriveCause cause, const char* subject, std::uint64_t code, double found, double expected) noexcept {
+  const bool brakes =
+      cause == DriveCause::kHot || cause == DriveCause::kUnderVoltage || cause == DriveCause::kForeignCommander;
+  if (status_.state == DriveState::kFault && (brakes || !may_brake_)) return;
+  had_torque_ = status_.state >= DriveState::kRunning;
+  may_brake_ = brakes && status_.state == DriveState::kRunning;
+  status_ = {.state = DriveState::kFault,
+             .cause = cause,
+             .subject = subject,
+             .code = code,
+             .found = found,
+             .expected = expected};
+}
+
+namespace {
+
+constexpr double kImpossibleSpeed = 10;  // times the limit: a number that no joint has
+
+}  // namespace
+
+void Drive::accept_position(double position, double velocity, std::int64_t now_ns) noexcept {
+  if (accept_motion(position, velocity, now_ns)) {
+    sample_.joint.position = position_.step(sample_.joint.position, to_joint_ * velocity, now_ns);
+  }
+}
+
+void Drive::accept_position(double position, std::int64_t now_ns) noexcept {
+  if (!accept_motion(position, difference_.velocity(), now_ns)) return;
+  difference_.add(position, now_ns);
+  sample_.joint.velocity = to_joint_ * difference_.velocity();
+}
+
+bool Drive::accept_motion(double position, double velocity, std::int64_t now_ns) noexcept {
+  if (!std::isfinite(position) || !std::isfinite(velocity)) {
+    fail(DriveCause::kNotFinite);
+    return false;
+  }
+  JointSample& joint = sample_.joint;
+  const double moved = to_joint_ * position + zero_ - joint.position;
+  // A frame may be late by a period; a joint that is pushed may be twice as fast as its limit.
+  const double elapsed = 1.0e-9 * static_cast<double>(now_ns - sample_.stamp_ns + 2 * period_ns_);
+  const double maximum = 2 * drive_.velocity_limit * std::fmax(elapsed, 2 * drive_.sample_period) +
+                         std::abs(to_joint_) * drive_.position_step;
+  if (sample_.valid && std::abs(moved) > maximum) {
+    if (status_.state >= DriveState::kRunning) {
+      fail(DriveCause::kPositionJump, "position", 0, moved, maximum);
+    } else {
+      zero_ -= moved;
+      position_.clear();
+      difference_.clear();
+    }
+  }
+  if (!is_possible(velocity)) return false;
+  joint.position = to_joint_ * position + zero_;
+  joint.velocity = to_joint_ * velocity;
+  sample_.stamp_ns = now_ns;
+  sample_.valid = true;
+  return true;
+}
+
+bool Drive::is_possible(double velocity) noexcept {
+  const double fastest = kImpossibleSpeed * drive_.velocity_limit;
+  if (std::abs(to_joint_ * velocity) <= fastest) return true;
+  fail(DriveCause::kPositionJump, "velocity", 0, to_joint_ * velocity, fastest);
+  return false;
+}
+
+void Drive::accept_velocity(double velocity) noexcept {
+  if (std::isfinite(velocity) && is_possible(velocity)) sample_.joint.velocity = to_joint_ * velocity;
+}
+
+void Drive::note_order(double torque) noexcept {
+  std::shift_right(ordered_.begin(), ordered_.end(), 1);
+  ordered_.front() = torque;
+  if (follows_) sample_.joint.effort = torque;
+}
+
+void Drive::accept_motor_torque(double torque, std::int64_t now_ns) noexcept {
+  if (!std::isfinite(torque)) return fail(DriveCause::kNotFinite);
+  const double measured = torque / to_joint_;
+  const auto [lowest, highest] = std::ranges::minmax(ordered_);
+  const double tolerance = kFollows * drive_.torque_limit;
+  follows_ = drive_.effort_is_rare && lowest - tolerance <= measured && measured <= highest + tolerance;
+  if (!follows_) sample_.joint.effort = measured;
+  sample_.effort_valid = true;
+  effort_ns_ = now_ns;
+}
+
+void Drive::accept_temperature(double celsius) noexcept {
+  if (!std::isfinite(celsius)) return;
+  sample_.joint.temperature = celsius;
+  if (celsius > drive_.max_temperature) fail(DriveCause::kHot, "temperature", 0, celsius, drive_.max_temperature);
+}
+
+void Drive::accept_voltage(double voltage) noexcept {
+  if (!std::isfinite(voltage)) return;
+  sample_.voltage = voltage;
+  if (voltage < drive_.min_voltage) fail(DriveCause::kUnderVoltage, "voltage", 0, voltage, drive_.min_voltage);
+}
+
+void Drive::settle_reaction() noexcept {
+  if (on_silence_.evidence == ReactionEvidence::kNone && drive_.on_silence != SilenceReaction::kUnknown) {
+    on_silence_ = {drive_.on_silence, ReactionEvidence::kConfirmed};
+  }
+  if (on_silence_.reaction == SilenceReaction::kUnknown && !drive_.accept_unknown_watchdog) {
+    fail(DriveCause::kUnknownWatchdog);
+  }
+}
+
+DriveStatus Drive::full_status() const noexcept {
+  DriveStatus status = status_;
+  status.on_silence = on_silence_;
+  status.velocity = velocity_source();
+  add_details(status);
+  return status;
+}
+
+std::string Drive::words(const DriveStatus& status) const {
+  const CauseWords& cause = kCauseWords[static_cast<std::size_t>(status.cause)];
+  std::string text = drive_.joint + " (node " + std::to_string(drive_.node) +
+                     "): " + kStateWords[static_cast<std::size_t>(status.state)];
+  if (status.cause == DriveCause::kNone) return text;
+  text += std::string("; the drive ") + cause.words;
+  if (*status.subject != '\0') text += std::string(" ") + status.subject;
+  if (const std::string code = code_words(status); !code.empty()) text += " " + code;
+  if (status.found != status.expected) {
+    text += ", " + number_words(status.found) + " instead of " + number_words(status.expected);
+  }
+  return *cause.remedy == '\0' ? text : text + "; " + cause.remedy;
+}
+
+}  // namespace robot_control

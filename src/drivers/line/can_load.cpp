@@ -1,0 +1,156 @@
+#include "drivers/line/can_load.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+
+namespace robot_control {
+namespace {
+
+constexpr unsigned kMaxEqualBits = 5;          // after which a stuff bit follows
+constexpr std::uint32_t kPolynomial = 0x4599;  // CRC-15 of CAN, without its highest bit
+
+constexpr std::uint32_t next_crc(std::uint32_t crc, bool bit) noexcept {
+  const bool divide = bit != ((crc & 0x4000U) != 0);
+  return (crc << 1U & 0x7FFFU) ^ (divide ? kPolynomial : 0);
+}
+
+/// The last bit on the bus, and how many bits were equal to it.
+struct Run {
+  bool bit = true;  // the idle bus is recessive
+  unsigned equal = 0;
+
+  /// Returns the number of bits on the bus, of which one may be stuffed.
+  constexpr unsigned add(bool next) noexcept {
+    equal = next == bit ? equal + 1 : 1;
+    bit = next;
+    if (equal < kMaxEqualBits) return 1;
+    bit = !bit;
+    equal = 1;
+    return 2;
+  }
+};
+
+/// The tables hold the effect of one byte on the checksum, on the run, and on the number of bits.
+struct ByteTables {
+  std::array<std::uint32_t, 256> crc{};
+  std::array<std::array<Run, 256>, 2 * kMaxEqualBits> run{};
+  std::array<std::array<unsigned, 256>, 2 * kMaxEqualBits> bits{};
+
+  static constexpr std::size_t row(const Run& run) noexcept { return std::size_t{2} * run.equal + (run.bit ? 1U : 0U); }
+  constexpr ByteTables() noexcept {
+    for (unsigned byte = 0; byte < 256; ++byte) {
+      for (unsigned bit = 8; bit-- > 0;) crc[byte] = next_crc(crc[byte], (byte >> bit & 1U) != 0);
+      for (unsigned equal = 0; equal < kMaxEqualBits; ++equal) {
+        for (const bool last : {false, true}) {
+          Run now{.bit = last, .equal = equal};
+          const std::size_t from = row(now);
+          for (unsigned bit = 8; bit-- > 0;) bits[from][byte] += now.add((byte >> bit & 1U) != 0);
+          run[from][byte] = now;
+        }
+      }
+    }
+  }
+};
+constexpr ByteTables kBytes;
+
+/// Counts the bits of a frame as they pass, with those that are stuffed, and computes the checksum.
+class BitCounter {
+ public:
+  void add(std::uint32_t value, unsigned bits) noexcept {
+    while (bits >= 8) {
+      bits -= 8;
+      add_byte(value >> bits & 0xFFU);
+    }
+    while (bits-- > 0) {
+      const bool bit = (value >> bits & 1U) != 0;
+      crc_ = next_crc(crc_, bit);
+      count_ += run_.add(bit);
+    }
+  }
+
+  /// The number of all bits up to the end of the checksum, which is sent, too.
+  unsigned finish() noexcept {
+    const std::uint32_t crc = crc_;
+    add(crc, 15);
+    return count_;
+  }
+
+ private:
+  void add_byte(std::uint32_t byte) noexcept {
+    crc_ = (crc_ << 8U & 0x7FFFU) ^ kBytes.crc[(crc_ >> 7U ^ byte) & 0xFFU];
+    const std::size_t from = ByteTables::row(run_);
+    count_ += kBytes.bits[from][byte];
+    run_ = kBytes.run[from][byte];
+  }
+
+  std::uint32_t crc_ = 0;
+  unsigned count_ = 0;
+  Run run_;
+};
+
+struct Bits {
+  double per_cycle = 0, per_second = 0;
+};
+
+Bits bits_of(std::span<const PlannedFrames> plan) noexcept {
+  Bits sum;
+  for (const PlannedFrames& frames : plan) {
+    const unsigned bits = max_frame_bits(frames.extended, frames.data_bytes);
+    sum.per_cycle += bits * frames.per_cycle;
+    sum.per_second += bits * frames.per_second;
+  }
+  return sum;
+}
+
+}  // namespace
+
+unsigned frame_bits(const can_frame& frame) noexcept {
+  const bool remote = is_remote_request(frame);
+  BitCounter counter;
+  counter.add(0, 1);  // start of frame
+  if (is_extended(frame)) {
+    counter.add(frame.can_id >> 18U & CAN_SFF_MASK, 11);
+    counter.add(3, 2);  // SRR and IDE, recessive
+    counter.add(frame.can_id & 0x3FFFFU, 18);
+    counter.add(remote ? 1 : 0, 1);
+    counter.add(0, 2);  // reserved
+  } else {
+    counter.add(frame.can_id & CAN_SFF_MASK, 11);
+    counter.add(remote ? 1 : 0, 1);
+    counter.add(0, 2);  // IDE and the reserved bit
+  }
+  const std::uint8_t length = std::min<std::uint8_t>(frame.len, CAN_MAX_DLEN);
+  counter.add(length, 4);
+  for (std::uint8_t i = 0; i < length && !remote; ++i) counter.add(frame.data[i], 8);
+  return counter.finish() + 13;
+}
+
+double bus_load(std::span<const PlannedFrames> plan, double rate, double bit_rate) noexcept {
+  const Bits bits = bits_of(plan);
+  return (bits.per_cycle * rate + bits.per_second) / bit_rate;
+}
+
+std::optional<std::string> bus_load_problem(std::span<const PlannedFrames> plan, double rate, double bit_rate,
+                                            double min_rate) {
+  const double load = bus_load(plan, rate, bit_rate);
+  if (load <= kMaxBusLoad) return std::nullopt;
+  const Bits bits = bits_of(plan);
+  const double fits = bits.per_cycle > 0 ? std::floor((kMaxBusLoad * bit_rate - bits.per_second) / bits.per_cycle) : 0;
+  char text[256];
+  int length = std::snprintf(
+      text, sizeof text,
+      "the planned frames load the bus with %.0f %% of %.0f kbit/s at a robot.rate of %g Hz, more than %.0f %%: ",
+      100 * load, bit_rate / 1000, rate, 100 * kMaxBusLoad);
+  const auto room = sizeof text - static_cast<std::size_t>(length);
+  if (fits >= min_rate) {
+    std::snprintf(text + length, room, "set robot.rate to at most %.0f", fits);
+  } else {
+    std::snprintf(text + length, room, "no robot.rate fits; set a bit rate of at least %.0f kbit/s, or use two buses",
+                  std::ceil((bits.per_cycle * min_rate + bits.per_second) / kMaxBusLoad / 1000));
+  }
+  return text;
+}
+
+}  // namespace robot_control

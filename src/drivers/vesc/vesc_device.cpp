@@ -1,0 +1,105 @@
+#include "drivers/vesc/vesc_device.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace robot_control {
+namespace {
+
+constexpr double kVescSupply = 24;  // V
+constexpr double kVescLowSupply = 8;
+constexpr double kResistance = 0.1;  // Ω, of the motor
+constexpr double kCoolVesc = 35;     // °C
+constexpr double kHotVesc = 120;
+
+}  // namespace
+
+VescDevice::VescDevice(const VescDeviceParameters& parameters, VirtualCan& bus, DeviceMotor& motor)
+    : parameters_(parameters),
+      bus_(bus),
+      motor_(motor),
+      party_(bus.join([this](const can_frame& frame, std::int64_t now_ns) { receive(frame, now_ns); })),
+      status_timer_(parameters.status_period, parameters.clock_ppm, 0.3 + 0.09 * parameters.node),
+      temperature_timer_(parameters.temperature_period, parameters.clock_ppm, 0.1 + 0.07 * parameters.node),
+      timeout_timer_(parameters.timeout, parameters.clock_ppm, 1) {}
+
+void VescDevice::boot(std::int64_t now_ns) {
+  boot_ns_ = now_ns + kBootNs;
+  order_ = Order::kNone;
+  zero_ = motor_.position;
+  motor_.torque = 0;
+}
+
+void VescDevice::inject(DeviceFault fault) {
+  if (fault == DeviceFault::kReset || (fault_ == DeviceFault::kOff && fault != DeviceFault::kOff)) boot(bus_.now_ns());
+  fault_ = fault;
+  if (fault == DeviceFault::kOtherZero) zero_ += kOtherZero;
+  if (fault == DeviceFault::kReleased) released_ns_ = bus_.now_ns() + kFaultNs;
+  if (fault == DeviceFault::kOff) motor_.torque = 0;
+}
+
+void VescDevice::obey(Order order, double value) {
+  if (order != order_) speed_loop_.reset();
+  order_ = order;
+  value_ = value;
+}
+
+void VescDevice::receive(const can_frame& frame, std::int64_t now_ns) {
+  if (silent(now_ns) || !is_extended_data(frame)) return;
+  const bool is_to_it = vesc::node_of(frame) == parameters_.node || vesc::node_of(frame) == vesc::kEveryNode;
+  if (!is_to_it || !vesc::commands_motion(vesc::command_of(frame))) return;
+  timeout_timer_.restart(now_ns);
+  if (const auto order = vesc::decode<vesc::SetCurrent>(frame)) obey(Order::kCurrent, order->current);
+  if (const auto order = vesc::decode<vesc::SetBrakeCurrent>(frame)) obey(Order::kBrake, order->current);
+  if (const auto order = vesc::decode<vesc::SetSpeed>(frame))
+    obey(Order::kSpeed, order->speed / parameters_.pole_pairs);
+}
+
+double VescDevice::driven_torque(double seconds) {
+  const double limit = parameters_.max_current * parameters_.torque_constant;
+  switch (order_) {
+    case Order::kNone:
+      return 0;
+    case Order::kCurrent:
+      return std::clamp(value_ * parameters_.torque_constant, -limit, limit);
+    case Order::kBrake: {
+      const double brake = std::min(limit, value_ * parameters_.torque_constant);
+      return std::clamp(-parameters_.speed_gain * motor_.velocity, -brake, brake);
+    }
+    case Order::kSpeed:
+      return speed_loop_.step(value_ - motor_.velocity, parameters_.speed_gain, limit, seconds);
+  }
+  return 0;
+}
+
+void VescDevice::step(std::int64_t now_ns) {
+  const double seconds = 1.0e-9 * static_cast<double>(now_ns - now_ns_);
+  now_ns_ = now_ns;
+  if (silent(now_ns)) return;
+  if (timeout_timer_.expired(now_ns)) obey(Order::kBrake, parameters_.brake_current);
+  if (fault_ == DeviceFault::kEncoder || fault_ == DeviceFault::kUnderVoltage) released_ns_ = now_ns + kFaultNs;
+  const bool released = now_ns < released_ns_;
+  if (released) speed_loop_.reset();
+  motor_.torque = released ? 0 : driven_torque(seconds);
+  if (status_timer_.expired(now_ns)) send_statuses();
+  if (temperature_timer_.expired(now_ns)) send_temperature();
+}
+
+void VescDevice::send_statuses() {
+  const double current = motor_.torque / parameters_.torque_constant;
+  const double duty = (kResistance * current + parameters_.torque_constant * motor_.velocity) / kVescSupply;
+  send(vesc::Status{.speed = motor_.velocity * parameters_.pole_pairs,
+                    .current = duty < 0 ? -current : current,
+                    .duty = std::clamp(duty, -1.0, 1.0)});
+  const double counts =
+      (motor_.position - zero_) / (2 * std::numbers::pi) * parameters_.pole_pairs * parameters_.counts_per_turn;
+  send(vesc::Status5{.tachometer = static_cast<std::int32_t>(static_cast<std::int64_t>(std::llround(counts))),
+                     .voltage = fault_ == DeviceFault::kUnderVoltage ? kVescLowSupply : kVescSupply});
+}
+
+void VescDevice::send_temperature() {
+  send(vesc::Status4{.transistors = kCoolVesc, .motor = fault_ == DeviceFault::kHot ? kHotVesc : kCoolVesc});
+}
+
+}  // namespace robot_control

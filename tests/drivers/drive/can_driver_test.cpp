@@ -1,0 +1,242 @@
+/// The driver on simulated devices, through a real file descriptor, held to the contract of every driver.
+
+#include "drivers/drive/can_driver.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include "drivers/driver_contract.h"
+#include "drivers/drive/device_rig.h"
+
+namespace robot_control {
+namespace {
+
+using ::testing::HasSubstr;
+
+/// Two drives on devices in virtual time. A datagram socket stands between the driver and the bus.
+class CanMachine final : public Driver {
+ public:
+  static constexpr double kPeriod = 0.001;
+
+  explicit CanMachine(CanDialect dialect, std::size_t joints = 2) : rig_(1 / kPeriod) {
+    int ends[2];
+    if (socketpair(AF_UNIX, SOCK_DGRAM | SOCK_NONBLOCK, 0, ends) != 0) throw DriverError("no socket");
+    wire_ = ends[1];
+    party_ = rig_.bus().join([this](const can_frame& frame, std::int64_t) {
+      if (write_frame(frame) != sizeof frame) ADD_FAILURE() << "the wire is full";
+    });
+    rig_.host_lives = false;
+    CanParameters parameters;
+    switch (dialect) {
+      case CanDialect::kOdrive:
+        parameters.joints = std::vector{add_odrive(0), add_odrive(1)};
+        break;
+      case CanDialect::kCia402:
+        parameters.joints = std::vector{add_cia402(1), add_cia402(2)};
+        break;
+      case CanDialect::kVesc:
+        parameters.joints = std::vector{add_vesc(0), add_vesc(1)};
+        break;
+    }
+    // At the joint 0.0625 kg·m²: d h/J = 0.16.
+    const Brake brake{.effort = 3, .hold_effort = 3, .damping = 10, .stiffness = 400, .hold_speed = 0.3};
+    driver_.emplace(parameters, std::vector{brake, brake}, joints, kPeriod, CanSocket(ends[0]),
+                    [this] { return CanTime{.time_ns = rig_.now_ns(), .utc_ns = rig_.now_ns()}; });
+  }
+  ~CanMachine() override { close(wire_); }
+  CanMachine(const CanMachine&) = delete;
+  CanMachine& operator=(const CanMachine&) = delete;
+
+  /// The contract begins with a machine that is ready.
+  void start() override {
+    driver_->start();
+    SensorFrame frame;
+    for (int i = 0; i < 5000 && frame.driver_state != DriverState::kRunning; ++i) {
+      read(frame);
+      write(std::vector<JointCommand>(2));
+    }
+  }
+  void read(SensorFrame& sensors) noexcept override { driver_->read(sensors); }
+  void write(std::span<const JointCommand> commands) noexcept override {
+    driver_->write(commands);
+    run_bus(1);
+  }
+  void stop() noexcept override { driver_->stop(); }
+
+  /// Carries the frames of the driver and runs the devices.
+  void run_bus(int cycles) {
+    can_frame frame;
+    while (recv(wire_, &frame, sizeof frame, 0) == sizeof frame) rig_.bus().send(party_, frame);
+    for (int i = 0; i < cycles; ++i) rig_.cycle();
+  }
+
+  DeviceRig& rig() { return rig_; }
+  CanDriver& driver() { return *driver_; }
+
+ private:
+  ssize_t write_frame(const can_frame& frame) const { return ::send(wire_, &frame, sizeof frame, 0); }
+  odrive::OdriveParameters add_odrive(std::uint8_t node) {
+    const OdrivePair pair = odrive_pair(node);
+    rig_.add_device(std::make_unique<OdriveDevice>(pair.device, rig_.bus(), rig_.add_motor()));
+    return pair.drive;
+  }
+  vesc::VescParameters add_vesc(std::uint8_t node) {
+    VescPair pair = vesc_pair(node);
+    pair.drive.drive.max_silence = 10;  // of 2 ms
+    rig_.add_device(std::make_unique<VescDevice>(pair.device, rig_.bus(), rig_.add_motor()));
+    return pair.drive;
+  }
+  cia402::Cia402Parameters add_cia402(std::uint8_t node) {
+    const Cia402Pair pair = cia402_pair(node);
+    rig_.add_device(
+        std::make_unique<Cia402Device>(pair.device, rig_.bus(), std::vector<DeviceMotor*>{&rig_.add_motor()}));
+    return pair.drive;
+  }
+
+  DeviceRig rig_;
+  int wire_ = -1;
+  std::size_t party_ = 0;
+  std::optional<CanDriver> driver_;
+};
+
+MachineUnderTest machine(const std::string& name, CanDialect dialect) {
+  return {.name = name,
+          .make = [dialect] { return std::make_unique<CanMachine>(dialect); },
+          .effort_limit = 4,
+          .effort = 0.5,
+          .damping = 2,
+          .stiffness = 20};
+}
+
+INSTANTIATE_TEST_SUITE_P(CanMachines, DriverContract,
+                         testing::Values(machine("Odrive", CanDialect::kOdrive), machine("Cia402", CanDialect::kCia402),
+                                         machine("Vesc", CanDialect::kVesc)),
+                         machine_name);
+
+class CanDriverOn : public ::testing::TestWithParam<CanDialect> {
+ protected:
+  SensorFrame cycle(const JointCommand& command = {}) {
+    SensorFrame frame;
+    machine_.read(frame);
+    machine_.write(std::vector<JointCommand>(2, command));
+    return frame;
+  }
+  SensorFrame cycles(int count, const JointCommand& command = {}) {
+    SensorFrame frame;
+    for (int i = 0; i < count; ++i) frame = cycle(command);
+    return frame;
+  }
+
+  double joint_speed(std::size_t joint) { return std::abs(machine_.rig().motor(joint).velocity) / 2.5; }
+
+  CanMachine machine_{GetParam()};
+  const JointCommand drive_{.mode = JointMode::kVelocity, .velocity = 5, .damping = 2};
+};
+
+TEST_P(CanDriverOn, StartReturnsAtOnceAndReadReportsStarting) {
+  machine_.rig().device(0).inject(DeviceFault::kOff);
+  machine_.driver().start();
+  const SensorFrame frame = cycles(10'000, drive_);
+  EXPECT_EQ(frame.driver_state, DriverState::kStarting);
+  EXPECT_EQ(frame.faults, 0u);
+  EXPECT_FALSE(has(frame.joints[0], kValidPosition));
+  EXPECT_THAT(machine_.driver().drives()[0].words(), HasSubstr("starting; the drive waits for a first frame"));
+  EXPECT_THAT(machine_.driver().drives()[1].words(), HasSubstr("running"));
+  EXPECT_EQ(machine_.rig().motor(1).velocity, 0);
+  machine_.rig().device(0).inject(DeviceFault::kNone);
+  EXPECT_EQ(cycles(5000).driver_state, DriverState::kRunning);
+}
+
+TEST_P(CanDriverOn, TheOtherJointBrakesWhenADriveIsLost) {
+  machine_.start();
+  cycles(500, drive_);
+  machine_.rig().device(0).inject(DeviceFault::kOff);
+  int seen = 0;
+  while (cycle(drive_).driver_state != DriverState::kFault && seen < 100) ++seen;
+  EXPECT_LE(seen, 22);
+  const double speed = std::abs(machine_.rig().motor(1).velocity);
+  cycles(5, drive_);
+  EXPECT_LT(std::abs(machine_.rig().motor(1).velocity), speed - 0.5);
+  const SensorFrame frame = cycles(1000, drive_);
+  EXPECT_EQ(frame.faults, std::uint64_t{kFaultLink});
+  EXPECT_LT(joint_speed(1), 0.05);
+}
+
+TEST_P(CanDriverOn, TheMotorsHaveNoTorqueAfterAStopWithoutAWrite) {
+  cycles(3000, drive_);
+  machine_.driver().stop();
+  machine_.run_bus(2);
+  EXPECT_EQ(machine_.rig().motor(0).torque, 0);
+  EXPECT_EQ(machine_.rig().motor(1).torque, 0);
+}
+
+TEST_P(CanDriverOn, AJointWithoutADriveHasNoSampleAndHindersNothing) {
+  CanMachine machine(GetParam(), 4);
+  machine.start();
+  SensorFrame frame;
+  for (int i = 0; i < 3000; ++i) {
+    machine.read(frame);
+    machine.write(std::vector<JointCommand>(4, drive_));
+  }
+  EXPECT_EQ(frame.joint_count, 4u);
+  EXPECT_EQ(frame.joints[2].valid, 0u);
+  EXPECT_NEAR(std::abs(machine.rig().motor(0).velocity) / 2.5, 5, 0.5);
+}
+
+TEST_P(CanDriverOn, SaysWhatEachJointDoesOnSilence) {
+  cycles(3000);
+  const std::string text = machine_.driver().description();
+  EXPECT_THAT(text, HasSubstr("load at most"));
+  EXPECT_THAT(text, HasSubstr(GetParam() == CanDialect::kCia402 ? "holds (read from the drive)"
+                                                                : "coasts (stated in the drive file)"));
+}
+
+TEST_P(CanDriverOn, SaysThatTheBusIsSilent) {
+  machine_.start();
+  EXPECT_EQ(cycle().links[0].state, LinkState::kUp);
+  EXPECT_EQ(machine_.driver().warning(), "");
+  machine_.rig().bus().lose(1);
+  EXPECT_EQ(cycles(1600).links[0].state, LinkState::kDown);
+  EXPECT_THAT(machine_.driver().warning(), HasSubstr("the bus: no frame was received"));
+  machine_.rig().bus().lose(0);
+  EXPECT_EQ(cycles(200).links[0].state, LinkState::kUp);
+}
+
+TEST_P(CanDriverOn, ASampleThatIsMissingMovesOnWithItsVelocity) {
+  cycles(3000, drive_);
+  const JointSample last = cycle(drive_).joints[0];
+  machine_.rig().bus().lose(1);
+  cycle(drive_);
+  const JointSample missing = cycle(drive_).joints[0];
+  EXPECT_EQ(missing.age_ns, 1'000'000);
+  EXPECT_NEAR(missing.position, last.position + 0.002 * last.velocity, 1.0e-4);
+}
+
+TEST_P(CanDriverOn, NothingMovesAfterAFaultUntilTheNextStart) {
+  machine_.start();
+  machine_.rig().device(0).inject(DeviceFault::kReset);
+  cycles(3000, drive_);
+  EXPECT_EQ(cycle(drive_).driver_state, DriverState::kFault);
+  EXPECT_LT(joint_speed(1), 0.05);
+  machine_.start();
+  EXPECT_EQ(cycle().driver_state, DriverState::kRunning);
+  EXPECT_GT(cycles(500, drive_).joints[0].velocity, 4);
+}
+
+TEST_P(CanDriverOn, BrakesAndHoldsOnASlope) {
+  machine_.start();
+  cycles(500, drive_);
+  machine_.rig().slope = 0.3;
+  cycles(1000);
+  const double held = cycle().joints[0].position;
+  EXPECT_NEAR(cycles(1000).joints[0].position, held, 0.01);
+}
+
+INSTANTIATE_TEST_SUITE_P(Dialects, CanDriverOn,
+                         ::testing::Values(CanDialect::kOdrive, CanDialect::kCia402, CanDialect::kVesc),
+                         [](const auto& each) { return word_of(each.param); });
+
+}  // namespace
+}  // namespace robot_control

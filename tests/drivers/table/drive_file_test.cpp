@@ -1,0 +1,215 @@
+#include "drivers/table/drive_file.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <regex>
+
+#include "parameters/problem_list.h"
+#include "support/message_of.h"
+
+namespace robot_control {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+
+const std::vector<std::string> kWheels = {"left_wheel_joint", "right_wheel_joint"};
+
+constexpr const char* kOdrive = R"(
+bus: {dialect: odrive}
+every_joint: {torque_constant: 0.1, torque_limit: 3, velocity_limit: 30, on_silence: coasts}
+left_wheel_joint: {node: 0}
+right_wheel_joint: {node: 1, direction: -1, gear: 5}
+)";
+
+constexpr const char* kCia402 = R"(
+bus: {dialect: cia402}
+every_joint: {torque_limit: 3, velocity_limit: 30}
+left_wheel_joint: {node: 1}
+right_wheel_joint: {node: 2}
+)";
+
+constexpr const char* kVesc = R"(
+bus: {dialect: vesc}
+every_joint: {pole_pairs: 15, torque_constant: 0.5, torque_limit: 3, velocity_limit: 30, on_silence: coasts}
+left_wheel_joint: {node: 0}
+right_wheel_joint: {node: 1}
+)";
+
+class DriveFile : public ::testing::Test {
+ protected:
+  CanParameters read(const std::string& text, double rate = 500) const {
+    std::ofstream(path_) << text;
+    return read_drive_file(path_, kWheels, rate);
+  }
+  std::string refusal(std::string text, const std::string& part, const std::string& replacement, double rate = 500) {
+    text.replace(text.find(part), part.size(), replacement);
+    return refusal_of(text, rate);
+  }
+  std::string refusal_of(const std::string& text, double rate = 500) {
+    return message_of<ParameterError>([&] { read(text, rate); });
+  }
+  /// Returns an example in which the defaults are no comments.
+  static std::string uncommented(const std::string& name) {
+    std::ifstream file(PROJECT_DIRECTORY "/config/drives/" + name + ".yaml");
+    std::string text;
+    const std::regex line_of_key("  (# )?(\\w+): ([^ ]+).*");
+    for (std::string line; std::getline(file, line);) {
+      std::smatch found;
+      if (std::regex_match(line, found, line_of_key)) {
+        text += "  " + found[2].str() + ": " + found[3].str() + "\n";
+      } else if (!line.starts_with(" ") && !line.starts_with("#")) {
+        text += line + "\n";
+      }
+    }
+    return text;
+  }
+  void TearDown() override { std::filesystem::remove(path_); }
+
+  std::string path_ = ::testing::TempDir() + "drives.yaml";
+};
+
+TEST_F(DriveFile, TheExamplesAreAccepted) {
+  for (const char* name : {"odrive", "cia402", "vesc"}) {
+    const std::string path = PROJECT_DIRECTORY "/config/drives/" + std::string(name) + ".yaml";
+    EXPECT_NO_THROW(read_drive_file(path, kWheels, 1000)) << name;
+  }
+}
+
+TEST_F(DriveFile, EveryJointHoldsForAllAndTheBlockOfAJointOutweighsIt) {
+  const auto joints = std::get<std::vector<odrive::OdriveParameters>>(read(kOdrive).joints);
+  ASSERT_EQ(joints.size(), 2u);
+  EXPECT_EQ(joints[0].drive.joint, "left_wheel_joint");
+  EXPECT_EQ(joints[0].torque_constant, 0.1);
+  EXPECT_EQ(joints[0].drive.gear, 1);
+  EXPECT_EQ(joints[1].drive.gear, 5);
+  EXPECT_EQ(joints[1].drive.direction, -1);
+}
+
+TEST_F(DriveFile, AllProblemsAreInOneMessage) {
+  const std::string message = refusal(R"(
+bus: {dialect: odrive, bit_rat: 1000000}
+every_joint: {torque_constant: 0.1, torque_limit: -3, velocity_limit: 30}
+left_wheel_joint: {node: 99, direction: 0}
+third_wheel_joint: {node: 1}
+)",
+                                      "99", "99");
+  EXPECT_THAT(message,
+              AllOf(HasSubstr("6 problems"), HasSubstr("bus.bit_rat = 1000000: unknown key"),
+                    HasSubstr("every_joint.torque_limit = -3: must be"), HasSubstr("third_wheel_joint: unknown block"),
+                    HasSubstr("right_wheel_joint.node: missing"), HasSubstr("left_wheel_joint.node = 99: must be 0"),
+                    HasSubstr("left_wheel_joint.direction = 0: must be 1 or -1")));
+}
+
+/// Each line of the examples, its commented defaults included, is spoilt in turn.
+TEST_F(DriveFile, EverySpoiltLineOfTheExamplesIsNamed) {
+  int spoilt = 0;
+  for (const char* name : {"odrive", "cia402", "vesc"}) {
+    const std::string text = uncommented(name);
+    ASSERT_NO_THROW(read(text)) << text;
+    for (std::size_t at = text.find("  "); at != std::string::npos; at = text.find("\n  ", at + 1)) {
+      const std::size_t key = text.find_first_not_of(" \n", at);
+      const std::size_t colon = text.find(':', key);
+      const std::size_t end = text.find('\n', key);
+      const std::string word = text.substr(key, colon - key);
+      if (word == "address") continue;  // Any text is an address.
+      std::string renamed = text;
+      renamed.insert(colon, "_");
+      EXPECT_THAT(refusal_of(renamed), HasSubstr(word + "_")) << word;
+      std::string mistyped = text;
+      mistyped.replace(colon, end - colon, ": [wrong]");
+      EXPECT_THAT(refusal_of(mistyped), HasSubstr(word + " = [wrong]")) << word;
+      spoilt += 2;
+    }
+  }
+  EXPECT_GE(spoilt, 100);
+}
+
+TEST_F(DriveFile, AMissingJointAndAForeignJointAreNamed) {
+  EXPECT_THAT(refusal(kOdrive, "right_wheel_joint", "rigth_wheel_joint"),
+              AllOf(HasSubstr("rigth_wheel_joint: unknown block"), HasSubstr("right_wheel_joint.node: missing")));
+}
+
+TEST_F(DriveFile, AMissingOrUnknownDialectIsNamed) {
+  EXPECT_THAT(refusal(kOdrive, "dialect: odrive", ""), HasSubstr("bus.dialect: missing"));
+  EXPECT_THAT(refusal(kOdrive, "odrive", "kelly"), HasSubstr("bus.dialect = kelly: "));
+}
+
+TEST_F(DriveFile, TwoJointsOfOneDriveAreRefused) {
+  EXPECT_THAT(refusal(kOdrive, "node: 1", "node: 0"), HasSubstr("is the drive of left_wheel_joint, too"));
+  EXPECT_THAT(refusal(kCia402, "node: 2", "node: 1"), HasSubstr("is the drive of left_wheel_joint, too"));
+  EXPECT_EQ(refusal(kCia402, "node: 2", "node: 1, axis: 1"), "");
+}
+
+TEST_F(DriveFile, WhatADialectCannotDoIsRefused) {
+  EXPECT_THAT(refusal(kOdrive, "coasts", "holds"), HasSubstr("an ODrive releases the motor"));
+  EXPECT_THAT(refusal(kOdrive, "node: 0", "node: 0, enable_watchdog_endpoint: 7"),
+              HasSubstr("left_wheel_joint.watchdog_timeout_endpoint: is missing"));
+  EXPECT_THAT(refusal(kCia402, "node: 2", "node: 127"), HasSubstr("must be 1 … 127 and not bus.host_node"));
+  EXPECT_THAT(refusal(kCia402, "node: 2", "node: 128"), HasSubstr("must be 1 … 127 and not bus.host_node"));
+}
+
+TEST_F(DriveFile, WhatAVescCannotDoIsRefused) {
+  EXPECT_EQ(refusal(kVesc, "node: 1", "node: 254"), "");
+  EXPECT_THAT(refusal(kVesc, "node: 1", "node: 255"), HasSubstr("right_wheel_joint.node = 255: must be"));
+  EXPECT_THAT(refusal(kVesc, "node: 1", "node: 0"), HasSubstr("is the drive of left_wheel_joint, too"));
+  EXPECT_THAT(refusal(kVesc, "pole_pairs: 15", "pole_pairs: 0"), HasSubstr("every_joint.pole_pairs = 0: must be"));
+  EXPECT_THAT(refusal(kVesc, "pole_pairs: 15, ", ""), HasSubstr("left_wheel_joint.pole_pairs: missing"));
+  EXPECT_THAT(refusal(kVesc, "coasts", "holds"), HasSubstr("the timeout of a VESC holds nothing at rest"));
+  EXPECT_THAT(refusal(kVesc, "torque_constant: 0.5, ", ""),
+              HasSubstr("left_wheel_joint.torque_constant: is missing: with robot.wheel_command: torque the currents "
+                        "follow from it"));
+  EXPECT_THAT(refusal(kVesc, "node: 1", "node: 1, status_period: 0.001", 1000), HasSubstr("load the bus with"));
+}
+
+TEST_F(DriveFile, AVescThatTakesSpeedsNeedsNoTorqueConstant) {
+  std::string text = kVesc;
+  text.erase(text.find("torque_constant: 0.5, "), 22);
+  std::ofstream(path_) << text;
+  const CanParameters can = read_drive_file(path_, kWheels, 1000, true);
+  EXPECT_TRUE(std::get<std::vector<vesc::VescParameters>>(can.joints)[0].drive.takes_speeds);
+}
+
+TEST_F(DriveFile, ATimeoutOfLessThanTenPeriodsIsRefused) {
+  EXPECT_THAT(refusal(kCia402, "node: 2", "node: 2, host_timeout: 0.019"),
+              HasSubstr("right_wheel_joint.host_timeout = 0.019: must be at least ten periods of the loop"));
+  EXPECT_EQ(refusal(kCia402, "node: 2", "node: 2, host_timeout: 0.02"), "");
+}
+
+TEST_F(DriveFile, ATimeoutThatIsLeftOutHasTenPeriods) {
+  for (const auto& [rate, timeout] : {std::pair{500.0, 0.1}, {50.0, 0.2}, {20.0, 0.5}}) {
+    const CanParameters can = read(kCia402, rate);
+    EXPECT_DOUBLE_EQ(std::get<std::vector<cia402::Cia402Parameters>>(can.joints)[0].host_timeout, timeout) << rate;
+  }
+}
+
+TEST_F(DriveFile, AVelocityIsDerivedWhereTheBusHasRoom) {
+  for (const auto& [rate, room] : {std::pair{1000.0, true}, {1200.0, false}}) {
+    const CanParameters can = read(kCia402, rate);
+    EXPECT_EQ(std::get<std::vector<cia402::Cia402Parameters>>(can.joints)[0].velocity_has_room, room) << rate;
+  }
+}
+
+TEST_F(DriveFile, AReactionOnSilenceWithoutAnActionIsRefused) {
+  EXPECT_THAT(refusal(kCia402, "node: 2", "node: 2, abort_option: 0, on_silence: holds"),
+              HasSubstr("right_wheel_joint.on_silence = holds: contradicts abort_option: 0"));
+  EXPECT_EQ(refusal(kCia402, "node: 2", "node: 2, abort_option: 0, accept_unknown_watchdog: true"), "");
+}
+
+TEST_F(DriveFile, TorquesThatTheDriveSendsByItselfCountForTheLoad) {
+  EXPECT_THAT(refusal(kOdrive, "node: 0", "node: 0, effort_rate: 0"), HasSubstr("left_wheel_joint.effort_rate = 0: "));
+  EXPECT_EQ(refusal(kOdrive, "node: 0", "node: 0, effort_period: 0.01"), "");
+  EXPECT_EQ(refusal(kOdrive, "coasts", "coasts", 1000), "");
+  EXPECT_THAT(refusal(kOdrive, "coasts", "coasts, effort_period: 0.001", 1000), HasSubstr("load the bus with"));
+}
+
+TEST_F(DriveFile, AnOverloadedBusIsRefusedWithTheRateThatFits) {
+  EXPECT_THAT(refusal(kOdrive, "dialect: odrive", "dialect: odrive, bit_rate: 500000", 1000),
+              HasSubstr("set robot.rate to at most 5"));
+}
+
+}  // namespace
+}  // namespace robot_control
