@@ -34,5 +34,6 @@ function(robot_control_node name)
 endfunction()
 
 install(DIRECTORY config urdf launch DESTINATION ${CATKIN_PACKAGE_SHARE_DESTINATION})
+install(FILES src/drivers/drive_table.def DESTINATION ${CATKIN_PACKAGE_SHARE_DESTINATION}/src/drivers)
 file(GLOB tools RELATIVE ${CMAKE_CURRENT_SOURCE_DIR} CONFIGURE_DEPENDS scripts/*.py scripts/*/*.py)
 catkin_install_python(PROGRAMS ${tools} DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION})

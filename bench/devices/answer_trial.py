@@ -11,12 +11,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from robot_control.loop.drives import DRIVES
 
-from bench.devices.loss_trial import BOARD, DIALECTS, ROBOCLAW, SERIAL, STANDING, robot_behind, speed_of
+from bench.devices.loss_trial import STANDING, robot_behind, speed_of
 
 KINDS = ("answers_lost", "answers_damaged", "answers_shifted", "answers_late")
-STATED = {(drive, command): 1.0 for drive in (*DIALECTS, BOARD) for command in ("torque", "velocity")}
-STATED[ROBOCLAW, "velocity"] = 1.0
+STATED = {(name, command): 1.0 for name, row in DRIVES.items() for command in row.wheel_commands}
 """s until rest from 1 m/s, by drive and wheel command (docs/drivers.md)"""
 FAULT_TIME = 10.0  # s
 AFTER_TIME = 1.0  # s, in which the answers are good again
@@ -39,7 +39,7 @@ def time_to_rest(trial: AnswerTrial) -> float:
     request = random.choice((-1, 1)) * random.uniform(0.2, 1.0), random.uniform(-0.4, 0.4)
     loop.run(0.5, (0.0, 0.0))
     loop.run(random.uniform(1.5, 2.5), request)
-    component = "line" if trial.drive in SERIAL else "bus"
+    component = "bus" if DRIVES[trial.drive].driver == "can" else "line"
     loop.inject_fault(component, trial.kind)
     fault = loop.run(FAULT_TIME, request)
     loop.inject_fault(component, "ok")

@@ -1,7 +1,7 @@
 """Drives behind motor drives on a disturbed bus or line, beside the same drives on an undisturbed one.
 
 The request changes every `SEGMENT`, in the middle of which the ripple is measured. The clocks of the drives are always
-apart (drivers/drive/simulated_drives.h).
+apart (drivers/drive/can_front.h).
 """
 
 from __future__ import annotations

@@ -15,10 +15,11 @@
 #include "bench/programs/kernel.h"
 #include "bench/programs/rows.h"
 #include "bench/programs/serial_cycle.h"
-#include "drivers/table/drive_file.h"
 #include "control/drive_controller.h"
 #include "drivers/board/board_machine.h"
 #include "drivers/roboclaw/roboclaw_machine.h"
+#include "drivers/table/drive_table.h"
+#include "drivers/table/read_drive_file.h"
 #include "estimation/estimator.h"
 #include "gate/gate.h"
 #include "loop/gate_setup.h"
@@ -150,9 +151,11 @@ int run(const std::string& path) {
   const std::filesystem::path drives = std::filesystem::path(path).parent_path() / "drives";
   std::vector<std::string> joints;
   for (const WheelModel& wheel : robot.wheels) joints.push_back(robot.joints[wheel.joint].name);
-  for (const char* dialect : {"odrive", "cia402", "vesc"}) {
-    const std::string file = drives / (std::string(dialect) + ".yaml");
-    add_can_cycle(rows, dialect, read_drive_file(file, joints, parameters.loop.rate), robot, period);
+  for (const DriveRow& row : kDriveRows) {
+    const std::string file = drives / (std::string(row.name) + ".yaml");
+    const auto read = read_drive_file(file, row.driver, {.joints = joints, .rate = parameters.loop.rate});
+    if (const auto* can = dynamic_cast<const CanDriveFile*>(read.get()))
+      add_can_cycle(rows, std::string(row.name), *can, robot, period);
   }
   add_serial_cycle<BoardMachine>(rows, "board", {.mode = JointMode::kEffort, .effort = 0});
   add_serial_cycle<RoboclawMachine>(rows, "roboclaw", {.mode = JointMode::kDriveVelocity, .velocity = 5});

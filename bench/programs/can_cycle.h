@@ -12,9 +12,9 @@
 
 #include "bench/programs/rows.h"
 #include "drivers/drive/can_driver.h"
+#include "drivers/table/simulated_front.h"
 #include "gate/wheeled/wheel_stop.h"
 #include "rt/clock.h"
-#include "drivers/drive/can_front.h"
 #include "support/allocation_guard.h"
 
 namespace robot_control::bench {
@@ -54,14 +54,15 @@ class BareFrames {
 };
 
 /// Adds the rows of one drive file.
-inline void add_can_cycle(std::vector<Row>& rows, const std::string& name, const CanParameters& can,
+inline void add_can_cycle(std::vector<Row>& rows, const std::string& name, const CanDriveFile& can,
                           const DriveTrain& robot, double period) {
   constexpr int kCycles = 20'000;
   constexpr int kStart = 3'000;  // until the drives run
   const Line line, bare_line;
-  const std::vector<Brake> brakes = brakes_of_slow_drives(robot, period);
-  CanFront devices(can, brakes, period, 1, CanSocket(line.end(1)));
-  CanDriver driver(can, brakes, devices.size(), period, CanSocket(line.end(0)),
+  const DriveMotors motors = drive_motors(robot, brakes_of_slow_drives(robot, period));
+  const auto front = make_front(can, {.motors = motors, .line = CanSocket(line.end(1))});
+  DeviceFront& devices = *front;
+  CanDriver driver(can.bus, can.drives(), motors.brakes, devices.size(), period, CanSocket(line.end(0)),
                    [&devices] { return CanTime{.time_ns = devices.now_ns(), .utc_ns = devices.now_ns()}; });
   BareFrames bare;
   SensorFrame sensors;

@@ -34,7 +34,7 @@ void check_stop_delay(const Parameters& parameters, GivenValues& given) {
 }  // namespace
 
 Programs programs_of(const Parameters& parameters, std::string_view kind) noexcept {
-  const bool simulator = parameters.driver == DriverChoice::kMujoco;
+  const bool simulator = parameters.driver == DriverName::kMujoco;
   return {.kind = kind, .driver = simulator ? program_of(Role::kDriver) : "driver"};
 }
 

@@ -27,19 +27,17 @@
 
 namespace robot_control {
 
-/// The driver that stands before the machine.
-enum class DriverChoice {
-  kMujoco,    ///< the simulated machine
-  kCan,       ///< motor drives on CAN, as the drive file says
-  kBoard,     ///< a motor board on a serial line, with the code of firmware/
-  kRoboclaw,  ///< a RoboClaw on a serial line
-};
+/// The driver that stands before the machine: the simulated machine, or a word of drivers/drive_table.def.
+enum class DriverName : std::uint8_t { kMujoco };
 
-inline std::vector<Word> words_of(DriverChoice) {
-  return {{"mujoco", DriverChoice::kMujoco},
-          {"can", DriverChoice::kCan},
-          {"board", DriverChoice::kBoard},
-          {"roboclaw", DriverChoice::kRoboclaw}};
+inline std::vector<Word> words_of(DriverName) {
+  std::vector<Word> words{{"mujoco", DriverName::kMujoco}};
+  const auto add = [&](std::string_view driver) {
+    if (words.back().text != driver) words.emplace_back(driver, static_cast<DriverName>(words.size()));
+  };
+#define DRIVE(name, driver, ...) add(#driver);
+#include "drivers/drive_table.def"
+  return words;
 }
 
 /// The IMU of a real machine.
@@ -58,8 +56,9 @@ struct Parameters {
   DriveTrainParameters robot;
   LegParameters legs;  ///< in the block `robot`, too
   LoopParameters loop;
-  DriverChoice driver = DriverChoice::kMujoco;
-  std::string drives;  ///< path, see drive_file.h; empty: the simulated motors are given their torques directly
+  DriverName driver = DriverName::kMujoco;
+  std::string drives;  ///< path, see drivers/table/read_drive_file.h; empty: the simulated motors are given their
+                       ///< torques directly
   ImuChoice imu = ImuChoice::kDriver;
   MujocoPlantParameters plant;
   EstimatorParameters estimator;

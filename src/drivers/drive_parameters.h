@@ -30,6 +30,8 @@ inline std::string described(SilenceReaction reaction) {
 }
 
 struct DriveParameters {
+  static constexpr const char *kPlace = "node", *kMotor = "drive";
+
   std::string joint;               ///< name in the robot's model; the name of the block
   std::uint64_t node = 0;          ///< of the drive on the bus
   std::int64_t direction = 1;      ///< 1 or −1: the joint turns with the motor, or against it
@@ -57,7 +59,7 @@ inline Keys keys(DriveParameters& drive) {
       {"direction", &drive.direction, {}, -1, 1, kOptional},
       {"gear", &drive.gear, "turns of the motor per turn of the joint", 1.0e-3, 1.0e5, kOptional},
       {"torque_limit", &drive.torque_limit, "N·m", 1.0e-3, 1.0e4},
-      {"velocity_limit", &drive.velocity_limit, "rad/s", 1.0e-3, 1.0e4},
+      {"velocity_limit", &drive.velocity_limit, "rad/s", 0.01, 1000},
       {"max_temperature", &drive.max_temperature, "°C", 20, 200, kOptional},
       {"min_voltage", &drive.min_voltage, "V", 0, 1000, kOptional},
       {"max_silence", &drive.max_silence, "samples", 3, 1000, kOptional},

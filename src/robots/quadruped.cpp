@@ -35,7 +35,7 @@ void Quadruped::require_drivable() const {
     throw ParameterError(
         "robot.fail_action = coast: without torque a robot on legs falls. Leave it out: it folds its legs");
   }
-  if (parameters_.driver != DriverChoice::kMujoco || !parameters_.drives.empty()) {
+  if (parameters_.driver != DriverName::kMujoco || !parameters_.drives.empty()) {
     throw ParameterError(
         "robot.driver: motor drives move robots on wheels alone. Leave robot.driver and robot.drives out");
   }

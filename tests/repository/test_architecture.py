@@ -11,6 +11,8 @@ ROOT = Path(__file__).parents[2]
 SRC = ROOT / "src"
 PACKAGE = ROOT / "python/robot_control"
 
+DRIVES = re.findall(r"^DRIVE\((\w+),", (SRC / "drivers/drive_table.def").read_text(), re.MULTILINE)
+
 LAWS = {
     "signals",
     "machine",
@@ -65,17 +67,24 @@ MAY_INCLUDE = {
     "drivers": {"signals", "bus", "gate", "machine", "parameters"},
     # This holds simulated faults: of the machine in drivers/mujoco, of nodes in simulation.
     "simulation/faults": {"signals", "rt", "bus"},
-    "drivers/can": {"signals", "bus", "drivers", "files", "parameters"},
-    "drivers/serial": {"signals", "bus", "drivers", "parameters", "rt"},
-    # Motor drives on a CAN bus, as devices in virtual time.
-    "simulation/devices": {
-        "gate",
-        "signals",
-        "bus",
-        "parameters",
+    # The CAN bus and the serial port, and both in virtual time.
+    "drivers/line": {"signals", "bus", "drivers", "files", "parameters", "rt"},
+    # The common part of all drives of drive_table.def.
+    "drivers/drive": {"signals", "bus", "gate", "drivers", "drivers/line", "parameters", "rt"},
+    **{
+        f"drivers/{name}": {"signals", "bus", "gate", "drivers", "drivers/line", "drivers/drive", "parameters"}
+        for name in DRIVES
+    },
+    # The table, the drive file and the drivers of real machines; simulated devices for all of them.
+    "drivers/table": {
+        "configuration",
         "drivers",
-        "drivers/can",
-        "drivers/serial",
+        "drivers/line",
+        "drivers/drive",
+        *(f"drivers/{name}" for name in DRIVES),
+        "gate",
+        "machine",
+        "parameters",
     },
     # The simulated robot as one machine: the plant, and before its motors the drives, where there are some.
     "simulation/machines": {
@@ -83,22 +92,11 @@ MAY_INCLUDE = {
         "bus",
         "configuration",
         "drivers",
-        "drivers/can",
+        "drivers/drive",
         "drivers/mujoco",
-        "drivers/serial",
+        "drivers/table",
         "gate",
         "machine",
-        "simulation/devices",
-    },
-    # One row per driver of a real machine.
-    "drivers/factory": {
-        "configuration",
-        "drivers",
-        "drivers/can",
-        "drivers/serial",
-        "gate",
-        "machine",
-        "rt",
     },
     "drivers/mujoco": {
         "signals",
@@ -117,10 +115,9 @@ MAY_INCLUDE = {
     # The log as a ROS bag; it knows the format, not ROS.
     "log": {"signals", "files", "log/bag", "parameters"},
     # All blocks together, and the other files that a user writes.
-    "configuration": LAWS
-    | {"rt", "files", "parameters", "log", "drivers", "drivers/can", "drivers/mujoco", "drivers/serial"},
+    "configuration": LAWS | {"rt", "files", "parameters", "log", "drivers", "drivers/mujoco"},
     # A robot of each kind, composed of its laws; the roles as interfaces.
-    "robots": LAWS | {"bus", "parameters", "configuration"},
+    "robots": LAWS | {"bus", "parameters", "configuration", "drivers/drive", "drivers/table"},
     # The step of each node in one cycle, and the process around it.
     "loop": LOOP - {"loop"} | {"files"},
     # The laws of a log, run again from its rows.
@@ -139,7 +136,7 @@ MAY_INCLUDE = {
         "files",
         "robots",
         "rt",
-        "drivers/factory",
+        "drivers/table",
         "simulation/machines",
     },
 }
@@ -307,7 +304,12 @@ def test_only_its_driver_sees_mujoco():
     assert violations(rule) == []
 
 
-SIMULATED = {"drivers/mujoco", "simulation/faults", "simulation/devices", "simulation/machines"}
+SIMULATED = {"drivers/mujoco", "simulation/faults", "simulation/machines"}
+DEVICES = re.compile(
+    r"drivers/\w+/(?:device|\w+_device|\w+_front|simulated_\w+|virtual_\w+|answer_faults|object_dictionary|pseudo_\w+|"
+    r"speed_loop)\.(?:h|cpp)"
+)
+"""The simulated device of a drive lies beside it, in a library of its own."""
 SIMULATORS = {"main/mujoco_plant.cpp", "main/device_simulator.cpp", "configuration/parameters.h"}
 """The last one: parameters of the plant."""
 
@@ -315,11 +317,32 @@ SIMULATORS = {"main/mujoco_plant.cpp", "main/device_simulator.cpp", "configurati
 def test_nothing_simulated_is_in_the_product():
     def rule(path):
         own = folder(path)
-        if own in SIMULATED | {"simulation", "bindings"} or str(path.relative_to(SRC)) in SIMULATORS:
+        name = str(path.relative_to(SRC)) if path.is_relative_to(SRC) else ""
+        if own in SIMULATED | {"simulation", "bindings"} or name in SIMULATORS or DEVICES.fullmatch(name):
             return
-        yield from (other for other in includes(path) if room(other) in SIMULATED)
+        yield from (other for other in includes(path) if room(other) in SIMULATED or DEVICES.fullmatch(other))
 
     assert violations(rule) == []
+
+
+MAX_NAMING_A_DRIVE = 3
+"""files of the product outside its own folder and its example in config/drives"""
+
+
+def test_few_files_name_a_drive():
+    """As a word, a class, a namespace, a header or its example."""
+    tops = ("src", "python", "launch", "scripts", "config", "cmake")
+    paths = [path for top in tops for path in (ROOT / top).rglob("*") if path.is_file() and path.suffix != ".pyc"]
+    texts = {str(path.relative_to(ROOT)): path.read_text(errors="ignore") for path in paths}
+
+    def naming(name):
+        names = rf"\b{name}::|[\"']{name}[\"']|\({name},|drivers/{name}/|{name}\.yaml|\b{name.capitalize()}(?=[A-Z])"
+        own = re.compile(rf"src/drivers/{name}/|config/drives/{name}\.yaml")
+        return sorted(path for path, text in texts.items() if re.search(names, text) and not own.match(path))
+
+    found = {name: naming(name) for name in DRIVES}
+    assert all("src/drivers/drive_table.def" in files for files in found.values())
+    assert {name: files for name, files in found.items() if len(files) > MAX_NAMING_A_DRIVE} == {}
 
 
 PROGRAMS = re.compile(r"\b(?:mujoco_plant|state_estimator|(?:diff_drive|leg)_controller(?!\.h)|safety_monitor)\b")

@@ -58,13 +58,18 @@ TEST(SafetyLimits, KnowWhatTheDerivedGainsMakeOfACount) {
   EXPECT_EQ(filled.count_ripple[2], 0);
 }
 
+DriverName driver_named(std::string_view word) {
+  const std::vector<Word> words = words_of(DriverName());
+  return static_cast<DriverName>(std::ranges::find(words, word, &Word::text)->value);
+}
+
 TEST(SafetyLimits, ASerialBoardMayBeSilentForTwelveCyclesAndNoLongerThanItsWatchdog) {
   Parameters parameters;
   for (const auto& [rate, silence] : {std::pair{1000.0, 0.012}, std::pair{250.0, 0.048}, std::pair{20.0, 0.05}}) {
     parameters.loop.rate = rate;
-    parameters.driver = DriverChoice::kCan;
+    parameters.driver = driver_named("can");
     EXPECT_EQ(safety_limits(parameters, two_wheels()).encoders_lost.persistence, 0.01);
-    parameters.driver = DriverChoice::kBoard;
+    parameters.driver = driver_named("board");
     EXPECT_NEAR(safety_limits(parameters, two_wheels()).encoders_lost.persistence, silence, 1.0e-12) << rate;
   }
   parameters.safety.encoders_lost.persistence = 0.1;

@@ -5,6 +5,7 @@ from functools import cache
 from pathlib import Path
 
 import pytest
+from robot_control.loop.drives import DRIVES
 
 from bench.devices.answer_trial import KINDS, STATED, AnswerTrial, time_to_rest
 from bench.devices.bench import ODOMETRY, RIPPLE
@@ -15,6 +16,10 @@ from bench.devices.slope_trial import as_stated
 SEED = 1000
 DISTURBED = ["disturbed", pytest.param("lossy", marks=pytest.mark.nightly)]
 """A disturbed bus loses as many frames as a lossy one, and is late."""
+
+
+def test_every_drive_has_its_losses():
+    assert set(LATEST | SERIAL_LATEST) == set(DRIVES)
 
 
 @pytest.mark.parametrize(

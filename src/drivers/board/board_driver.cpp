@@ -29,16 +29,16 @@ std::size_t velocity_samples(double period) {
   return std::min(PositionDifference::kSamples, static_cast<std::size_t>(span));
 }
 
-const char* words_of_reset(std::uint64_t reason) noexcept {
+const char* words_of_reset(std::uint8_t reason) noexcept {
   switch (reason) {
     case BOARD_BROWN_OUT:
-      return "its supply was too low";
+      return "after its supply was too low";
     case BOARD_RESET_BUTTON:
-      return "its reset button or the opening of its line";
+      return "by its reset button or the opening of its line";
     case BOARD_RESET_WATCHDOG:
-      return "its own watchdog, because its program hung";
+      return "by its own watchdog, because its program hung";
     default:
-      return "it was switched on";
+      return "";
   }
 }
 
@@ -84,7 +84,7 @@ bool BoardDriver::receive() noexcept {
       if (board_read_report(decoder_.body, size, &report) != 0) {
         accept(report, std::min(chunk.time_ns, now_ns_));
       } else if (decoder_.body[0] != BOARD_PROTOCOL) {
-        fail(BoardCause::kOtherProtocol, decoder_.body[0]);
+        evaluate(DriveCause::kDiffers, "version of the protocol", 0, decoder_.body[0], BOARD_PROTOCOL);
       }
     }
   }
@@ -93,9 +93,11 @@ bool BoardDriver::receive() noexcept {
 }
 
 void BoardDriver::accept(const board_report& report, std::int64_t arrived_ns) noexcept {
-  status_.firmware = report.firmware;
-  if (report.wheels != wheels_.size()) return fail(BoardCause::kOtherWheels, report.wheels);
-  if ((report.flags & BOARD_REFUSED) != 0) return fail(BoardCause::kRefused);
+  firmware_ = report.firmware;
+  if (report.wheels != wheels_.size())
+    return evaluate(DriveCause::kDiffers, "number of wheels", 0, report.wheels, static_cast<double>(wheels_.size()));
+  if ((report.flags & BOARD_REFUSED) != 0)
+    return evaluate(DriveCause::kDiffers, "the board refuses the orders: version of the protocol or number of wheels");
   const auto behind = static_cast<std::uint16_t>(cycle_ - report.cycle);
   const auto after = static_cast<std::uint16_t>(report.cycle - answered_);
   const std::int64_t sent_ns = sent_ns_[report.cycle % kOrders];
@@ -107,13 +109,13 @@ void BoardDriver::accept(const board_report& report, std::int64_t arrived_ns) no
   if (has_report_) link_.lost += after - 1U;
   const std::int64_t elapsed_us = has_report_ ? static_cast<std::uint32_t>(report.time_us - board_us_) : 0;
   if (has_report_ && std::abs(1000 * elapsed_us - (sent_ns - answered_ns_)) > kClockJumpNs) {
-    fail(BoardCause::kRestarted, report.sensors.reset);
+    evaluate(DriveCause::kRestarted, words_of_reset(report.sensors.reset));
     forget_samples();
     return;
   }
   // A board that restarted braked as well: that is not its cause.
   const bool braked = (report.flags & BOARD_WATCHDOG) != 0;
-  if (braked) fail(BoardCause::kOwnBrake);
+  if (braked) evaluate(DriveCause::kOwnBrake);
   total_us_ += elapsed_us;
   board_clock_.add(sent_ns, total_us_, total_us_ + report.delay_us, arrived_ns);
   sample_ns_ = board_clock_.host_ns(total_us_);
@@ -125,7 +127,7 @@ void BoardDriver::accept(const board_report& report, std::int64_t arrived_ns) no
   silent_for_ = 0;
   sensors_ = report.sensors;
   accept_imu(report);
-  if (status_.state == DriverState::kStarting && !braked) run();
+  if (status().state == DriveState::kStarting && !braked) run();
 }
 
 void BoardDriver::accept_counts(const board_report& report, std::int64_t elapsed_us) noexcept {
@@ -141,7 +143,8 @@ void BoardDriver::accept_counts(const board_report& report, std::int64_t elapsed
       const double reach = kSpeedMargin * parameters.velocity_limit *
                                (kMicro * static_cast<double>(elapsed_us) + 1.0e-9 * static_cast<double>(period_ns_)) +
                            2 * std::abs(wheel.rad_per_count);
-      if (std::abs(wheel.rad_per_count * moved) > reach) fail(BoardCause::kPositionJump, i);
+      const double turned = wheel.rad_per_count * moved;
+      if (std::abs(turned) > reach) evaluate(DriveCause::kPositionJump, "counts of", i, turned, reach);
       wheel.total += moved;
     } else {
       wheel.total = counts;
@@ -150,7 +153,7 @@ void BoardDriver::accept_counts(const board_report& report, std::int64_t elapsed
     const double direction = static_cast<double>(parameters.direction);
     wheel.effort = direction * kMicro * report.sensors.effort[parameters.wheel];
     wheel.fault = report.sensors.fault[parameters.wheel];
-    if (wheel.fault != 0) fail(BoardCause::kWheelFault, i);
+    if (wheel.fault != 0) evaluate(DriveCause::kDriveError, "fault word of", i);
   }
 }
 
@@ -228,10 +231,10 @@ void BoardDriver::stop() noexcept {
 }
 
 std::string BoardDriver::description() const {
-  const Status status = published();
+  const std::uint64_t firmware = published().firmware;
   std::ostringstream text;
   text << "board on " << line_->name() << ", protocol " << int{BOARD_PROTOCOL};
-  if (status.firmware != 0) text << ", firmware " << status.firmware;
+  if (firmware != 0) text << ", firmware " << firmware;
   if (load_ > 0) text << ", load of the line " << std::lround(100 * load_) << " %";
   text << (parameters_.takes_speeds ? ", takes speeds" : ", takes torques") << "; on silence it "
        << described(parameters_.line.on_silence) << " (stated in the drive file)";
@@ -239,38 +242,9 @@ std::string BoardDriver::description() const {
 }
 
 std::string BoardDriver::warning() const {
-  const Status status = published();
-  const auto joint = [&] { return parameters_.wheels.at(status.detail).joint; };
-  const std::string board = "the board on " + line_->name();
-  switch (status.cause) {
-    case BoardCause::kNoAnswer:
-    case BoardCause::kSilent:
-      return board +
-             (status.connected == 0 ? " is not there: look at its cable and at the address in the drive file"
-                                    : " sends no report: look at its power, its program and the bit rate") +
-             (status.state == DriverState::kFault ? ", then reset" : "");
-    case BoardCause::kOwnBrake:
-      return board + " braked by itself, because it received no order in time: look at the line, then reset";
-    case BoardCause::kRefused:
-      return board + " refuses the orders: it has another version of the protocol or another number of wheels";
-    case BoardCause::kOtherProtocol:
-      return board + " speaks version " + std::to_string(status.detail) +
-             " of the protocol, and this program version " + std::to_string(int{BOARD_PROTOCOL}) +
-             ": flash the firmware of this version";
-    case BoardCause::kOtherWheels:
-      return board + " has " + std::to_string(status.detail) + " wheels, and the drive file " +
-             std::to_string(parameters_.wheels.size()) + ": correct one of both";
-    case BoardCause::kRestarted:
-      return board + " restarted: " + words_of_reset(status.detail) + ". Look at its supply, then reset";
-    case BoardCause::kPositionJump:
-      return "the counts of " + joint() +
-             " moved faster than velocity_limit allows: look at its encoder and counts_per_turn, then reset";
-    case BoardCause::kWheelFault:
-      return "the board reports a fault of " + joint() + ": repair it, then reset";
-    case BoardCause::kNone:
-      break;
-  }
-  return "";
+  const DriveStatus drive = published().drive;
+  const bool names_wheel = drive.cause == DriveCause::kPositionJump || drive.cause == DriveCause::kDriveError;
+  return words("board", names_wheel ? parameters_.wheels.at(drive.code).joint : "");
 }
 
 }  // namespace robot_control

@@ -28,35 +28,22 @@
 #include <string>
 #include <vector>
 
-#include "drivers/drive_speed.h"
-#include "drivers/joint_law.h"
 #include "drivers/board/board_clock.h"
 #include "drivers/board/board_parameters.h"
 #include "drivers/drive/serial_driver.h"
+#include "drivers/drive_speed.h"
+#include "drivers/joint_law.h"
 #include "firmware/board_frame.h"
 #include "firmware/board_messages.h"
 
 namespace robot_control {
-
-enum class BoardCause : std::uint8_t {
-  kNone,
-  kNoAnswer,  ///< none yet
-  kSilent,
-  kOwnBrake,
-  kRefused,
-  kOtherProtocol,
-  kOtherWheels,
-  kRestarted,
-  kPositionJump,
-  kWheelFault,
-};
 
 struct BoardWheel : CountedWheel {
   double effort = 0;       ///< N·m
   std::uint8_t fault = 0;  ///< its fault word
 };
 
-class BoardDriver final : public SerialDriver<BoardCause, BoardWheel> {
+class BoardDriver final : public SerialDriver<BoardWheel> {
  public:
   static constexpr std::size_t kOrders = 256;                 ///< the answer to an older order is refused
   static constexpr std::int64_t kMaxTripNs = 50'000'000;      ///< after which the watchdog of a board has braked
@@ -86,7 +73,7 @@ class BoardDriver final : public SerialDriver<BoardCause, BoardWheel> {
   void begin() noexcept override;
   bool receive() noexcept override;
   void add_measurements(SensorFrame& sensors) noexcept override;
-  bool is_fault_at_start(BoardCause cause) const noexcept override { return cause == BoardCause::kPositionJump; }
+  bool is_fault_at_start(DriveCause cause) const noexcept override { return cause == DriveCause::kPositionJump; }
   void forget_samples() noexcept;
   void accept(const board_report& report, std::int64_t arrived_ns) noexcept;
   void accept_counts(const board_report& report, std::int64_t elapsed_us) noexcept;

@@ -182,4 +182,9 @@ std::string BoardFront::fault_words() const {
   return "board (with ok, off, reset, brown_out, fault, e_stop, other_protocol)";
 }
 
+std::unique_ptr<DeviceFront> make_board_front(const DriveFile& file, FrontSetup setup) {
+  return std::make_unique<BoardFront>(parameters_of(dynamic_cast<const BoardBlocks&>(file)), setup.motors.brakes,
+                                      file.request().period(), std::move(setup));
+}
+
 }  // namespace robot_control

@@ -14,9 +14,9 @@
 #include <vector>
 
 #include "drivers/board/board_parameters.h"
+#include "drivers/drive/serial_front.h"
 #include "firmware/board.h"
 #include "gate/brake_law.h"
-#include "drivers/drive/serial_front.h"
 
 namespace robot_control {
 

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "drivers/drive/serial_drive_file.h"
 #include "drivers/drive_parameters.h"
 
 namespace robot_control {
@@ -31,6 +32,8 @@ inline Keys keys(BoardLineParameters& line) {
 }
 
 struct BoardWheelParameters {
+  static constexpr const char *kPlace = "wheel", *kMotor = "wheel";
+
   std::string joint;           ///< name in the robot's model; the name of the block
   std::uint64_t wheel = 0;     ///< number on the board
   std::int64_t direction = 1;  ///< 1 or −1: the joint turns with the counts, or against them
@@ -38,6 +41,8 @@ struct BoardWheelParameters {
   std::uint64_t counter_bits = 32;
   double torque_limit = 0;    ///< N·m, of the joint
   double velocity_limit = 0;  ///< rad/s, of the joint
+
+  std::uint64_t place() const noexcept { return wheel; }
 };
 
 inline Keys keys(BoardWheelParameters& wheel) {
@@ -47,7 +52,7 @@ inline Keys keys(BoardWheelParameters& wheel) {
       {"counts_per_turn", &wheel.counts_per_turn, "counts per turn of the joint", 1, 1.0e8},
       {"counter_bits", &wheel.counter_bits, {}, 16, 32, kOptional},
       {"torque_limit", &wheel.torque_limit, "N·m", 1.0e-3, 2000},
-      {"velocity_limit", &wheel.velocity_limit, "rad/s", 1.0e-3, 1.0e4},
+      {"velocity_limit", &wheel.velocity_limit, "rad/s", 0.01, 1000},
   };
 }
 
@@ -56,5 +61,11 @@ struct BoardParameters {
   std::vector<BoardWheelParameters> wheels;  ///< in the order of the robot's joints
   bool takes_speeds = false;  ///< The board closes the loops of the wheels' speeds (JointMode::kDriveVelocity).
 };
+
+using BoardBlocks = FileOfJoints<SerialDriveFile<BoardLineParameters>, BoardWheelParameters>;
+
+inline BoardParameters parameters_of(const BoardBlocks& file) {
+  return {file.line, file.joints(), file.request().takes_speeds};
+}
 
 }  // namespace robot_control

@@ -12,9 +12,9 @@
 #include "drivers/cia402/canopen.h"
 #include "drivers/cia402/drive_objects.h"
 #include "drivers/cia402/drive_units.h"
+#include "drivers/cia402/object_dictionary.h"
 #include "drivers/cia402/power_state.h"
 #include "drivers/drive/device.h"
-#include "drivers/cia402/object_dictionary.h"
 #include "drivers/drive/speed_loop.h"
 
 namespace robot_control {

@@ -5,7 +5,7 @@
 ///   enable operation → running
 ///
 /// Each step of the power state machine waits for the statusword of the one before. In `running` the axis receives
-/// controlword and target in each cycle, and answers each SYNC (canopen_host.h). In a fault the controlword requests
+/// controlword and target in each cycle, and answers each SYNC (cia402_drives.h). In a fault the controlword requests
 /// a quick stop. A velocity with a PDO of its own replaces that of the position's PDO before it. One that the drive
 /// file demands is judged for silence by itself; any other one is used while it comes. The error of a drive is reset
 /// with the operator's reset alone.

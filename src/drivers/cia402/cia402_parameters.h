@@ -2,6 +2,7 @@
 /// Cia402Parameters are the statements of the drive file about one axis of a CiA 402 drive.
 
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "drivers/drive_parameters.h"
@@ -66,6 +67,8 @@ struct Cia402Parameters {
   std::int64_t quick_stop_option = 6;  ///< 605A
   std::int64_t abort_option = 3;       ///< 6007
   std::int64_t fault_reaction = 2;     ///< 605E
+
+  std::pair<std::uint64_t, std::uint64_t> place() const noexcept { return {drive.node, axis}; }
 };
 
 inline Keys keys(Cia402Parameters& p) {

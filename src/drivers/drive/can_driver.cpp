@@ -10,18 +10,6 @@
 namespace robot_control {
 namespace {
 
-DriverFault fault_of(DriveCause cause) noexcept {
-  switch (cause) {
-    case DriveCause::kSilent:
-    case DriveCause::kNoAnswer:
-      return kFaultLink;
-    case DriveCause::kNotFinite:
-      return kFaultNotFinite;
-    default:
-      return kFaultDrive;
-  }
-}
-
 /// Returns why a drive sends no velocity; "" if it does.
 const char* why_no_velocity(VelocitySource source) noexcept {
   switch (source) {
@@ -43,14 +31,14 @@ const char* why_no_velocity(VelocitySource source) noexcept {
 
 }  // namespace
 
-CanDriver::CanDriver(const CanParameters& parameters, std::span<const Brake> brakes, std::size_t joint_count,
-                     double period, CanSocket socket, std::function<CanTime()> clock)
+CanDriver::CanDriver(CanBusParameters parameters, DriveSet drives, std::span<const Brake> brakes,
+                     std::size_t joint_count, double period, CanSocket socket, DriverClock clock)
     : joint_count_(joint_count),
       bus_(std::move(socket)),
-      parameters_(parameters.bus),
-      drives_(parameters, period),
+      parameters_(std::move(parameters)),
+      drives_(std::move(drives)),
       takes_speeds_(drives_.size() > 0 && drives_[0].drive_parameters().takes_speeds),
-      load_(bus_load(drives_.plan(), 1 / period, parameters.bus.bit_rate)),
+      load_(bus_load(drives_.plan(), 1 / period, parameters_.bit_rate)),
       clock_(std::move(clock)),
       brakes_(brakes.begin(), brakes.end()),
       commands_(drives_.size()) {

@@ -21,13 +21,13 @@
 #include <vector>
 
 #include "bus/latest_value.h"
-#include "drivers/line/bus_watch.h"
-#include "drivers/line/can_bus.h"
-#include "drivers/drive/can_parameters.h"
+#include "drivers/drive/can_drive_file.h"
 #include "drivers/drive/drive_set.h"
 #include "drivers/drive_speed.h"
 #include "drivers/driver.h"
 #include "drivers/joint_law.h"
+#include "drivers/line/bus_watch.h"
+#include "drivers/line/can_bus.h"
 
 namespace robot_control {
 
@@ -35,8 +35,8 @@ class CanDriver final : public Driver {
  public:
   /// The drives move the first joints of a robot that has `joint_count`; the others have no sample. `brakes`: one per
   /// drive. `clock` states the present time and is called in each cycle.
-  CanDriver(const CanParameters& parameters, std::span<const Brake> brakes, std::size_t joint_count, double period,
-            CanSocket socket, std::function<CanTime()> clock);
+  CanDriver(CanBusParameters parameters, DriveSet drives, std::span<const Brake> brakes, std::size_t joint_count,
+            double period, CanSocket socket, DriverClock clock);
 
   void start() override;
   void reset() noexcept override;
@@ -80,7 +80,7 @@ class CanDriver final : public Driver {
   DriveSet drives_;
   bool takes_speeds_;
   double load_;  // of the bus, planned
-  std::function<CanTime()> clock_;
+  DriverClock clock_;
   std::vector<Brake> brakes_;
   std::vector<JointLaw> laws_;
   std::vector<DriveCommand> commands_;

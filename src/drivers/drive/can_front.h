@@ -1,34 +1,53 @@
 #pragma once
-/// A CanFront is the simulated drives of a drive file behind a CAN bus.
+/// A CanFront is the simulated drives of a drive file on a CAN bus in virtual time. Each is set up as its drive file
+/// expects it. Their clocks run fast and slow by kClockPpm in turn.
 ///
 /// `inject` takes a joint or `bus` as the component. The kinds of the bus are ok, off, lossy and disturbed. Off means
-/// that the driver's cable is out, lossy that 5 % of the frames are lost. On a disturbed bus the others are late as
-/// well, by up to one period. With a word of AnswerFault this happens to the frames to the driver.
+/// that the driver's cable is out, lossy that frames are lost with the probability kFrameLoss. On a disturbed bus the
+/// others are late as well, by up to one period. With a word of AnswerFault this happens to the frames to the driver.
+/// A fault of a drive with two axes belongs to both.
 
 #include <deque>
+#include <map>
+#include <memory>
 #include <random>
 #include <span>
 #include <string>
 #include <vector>
 
-#include "drivers/line/can_bus.h"
-#include "drivers/line/answer_faults.h"
+#include "drivers/drive/can_drive_file.h"
+#include "drivers/drive/device.h"
 #include "drivers/drive/device_front.h"
-#include "drivers/drive/simulated_drives.h"
+#include "drivers/line/answer_faults.h"
+#include "drivers/line/can_bus.h"
 
 namespace robot_control {
 
 class CanFront final : public DeviceFront {
  public:
-  /// `brakes`: one per joint, that of a drive which brakes by itself. `period` is the loop's in s. `socket` is the end
-  /// of the line that is not the driver's.
-  CanFront(const CanParameters& parameters, std::span<const Brake> brakes, double period, std::uint64_t seed,
-           CanSocket socket);
+  /// ns between two steps of a device; frames arrive at their own times.
+  static constexpr std::int64_t kStepNs = 250'000;
 
-  std::size_t size() const override { return drives_.size(); }
-  std::int64_t now_ns() const override { return drives_.bus().now_ns(); }
+  static constexpr double kClockPpm = 200;
+  static constexpr double kFrameLoss = 0.05;  ///< of a lossy bus
+
+  /// Without devices. `setup.line` is the end of the line that is not the driver's.
+  CanFront(const CanDriveFile& file, FrontSetup setup);
+  CanFront(const CanFront&) = delete;
+  CanFront& operator=(const CanFront&) = delete;
+
+  /// Adds the motor of the next joint.
+  DeviceMotor& add_motor(const DriveParameters& joint);
+  /// Adds a device that turns the motors of these joints. Its clock runs fast by `next_clock_ppm`.
+  void add_device(std::unique_ptr<Device> device, std::span<const std::size_t> joints);
+  double next_clock_ppm() const noexcept { return devices_.size() % 2 == 0 ? kClockPpm : -kClockPpm; }
+  VirtualCan& bus() noexcept { return bus_; }
+
+  std::size_t size() const override { return motors_.size(); }
+  std::int64_t now_ns() const override { return bus_.now_ns(); }
+  LineEnd driver_end() override { return std::move(*driver_end_); }
   void run(std::span<const JointSample> joints) override;
-  double torque(std::size_t joint) const override { return drives_.torque(joint); }
+  double torque(std::size_t joint) const override { return torques_.at(joint); }
   std::string inject(std::string_view component, std::string_view kind) override;
 
  private:
@@ -38,8 +57,10 @@ class CanFront final : public DeviceFront {
   };
 
   void carry(can_frame frame, std::int64_t now_ns);
+  void run_devices(std::span<const JointSample> joints);
 
-  SimulatedDrives drives_;
+  VirtualCan bus_;
+  std::optional<CanSocket> driver_end_;  // of a line in virtual time
   CanBus line_;
   std::int64_t period_ns_;
   std::vector<std::string> joints_;
@@ -47,6 +68,44 @@ class CanFront final : public DeviceFront {
   std::deque<Answer> answers_;  // on their way to the driver
   AnswerFault fault_ = AnswerFault::kNone;
   std::mt19937_64 random_;
+
+  std::vector<double> to_motor_;  // motor angle / joint angle
+  std::vector<std::unique_ptr<DeviceMotor>> motors_;
+  std::vector<std::unique_ptr<Device>> devices_;
+  std::vector<std::size_t> device_of_;  // each joint
+  std::vector<double> torques_;         // N·m, of the joints, mean over the last period
 };
+
+/// Returns the gain of a motor's speed loop: the damping of the brake, which is stable also for a lifted wheel.
+inline double motor_damping(const DriveParameters& drive, const Brake& brake) {
+  return brake.damping / (drive.gear * drive.gear);
+}
+
+/// Returns the front of a drive file with one device per node, make(joint, brake, clock_ppm, bus, motors). `joint` and
+/// `brake` are those of the node's first axis.
+template <class Parameters, class Make>
+std::unique_ptr<DeviceFront> one_device_per_node(const DriveFile& file, FrontSetup setup, Make make) {
+  const auto& drives = dynamic_cast<const CanFileOf<Parameters>&>(file);
+  const std::vector<Parameters>& joints = drives.joints();
+  const std::vector<Brake>& brakes = setup.motors.brakes;
+  auto front = std::make_unique<CanFront>(drives, std::move(setup));
+  std::vector<DeviceMotor*> motors;
+  std::map<std::uint64_t, std::map<decltype(joints[0].place()), std::size_t>> nodes;
+  for (std::size_t i = 0; i < joints.size(); ++i) {
+    motors.push_back(&front->add_motor(joints[i].drive));
+    nodes[joints[i].drive.node][joints[i].place()] = i;
+  }
+  for (const auto& [node, axes] : nodes) {
+    std::vector<std::size_t> of_node;
+    std::vector<DeviceMotor*> its_motors;
+    for (const auto& [place, joint] : axes) {
+      of_node.push_back(joint);
+      its_motors.push_back(motors[joint]);
+    }
+    const std::size_t first = of_node.front();
+    front->add_device(make(joints[first], brakes[first], front->next_clock_ppm(), front->bus(), its_motors), of_node);
+  }
+  return front;
+}
 
 }  // namespace robot_control

@@ -6,8 +6,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "parameters/block.h"
 #include "drivers/line/virtual_can.h"
+#include "parameters/block.h"
 
 namespace robot_control {
 

@@ -3,13 +3,21 @@
 /// driver sees them through the messages on the line alone.
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
 
+#include "drivers/drive/drive_file.h"
 #include "signals/joint.h"
 
 namespace robot_control {
+
+struct FrontSetup {
+  const DriveMotors& motors;  ///< the brakes are those of drives that brake by themselves
+  std::uint64_t seed = 1;
+  std::optional<LineEnd> line{};  ///< the devices' end of a true line; none: one in virtual time
+};
 
 class DeviceFront {
  public:
@@ -21,6 +29,9 @@ class DeviceFront {
   /// Returns the virtual time.
   virtual std::int64_t now_ns() const = 0;
 
+  /// Returns the driver's end of a line in virtual time, once.
+  virtual LineEnd driver_end() = 0;
+
   /// Runs the devices for one period, with what the driver sent since the last call. Their own messages reach the
   /// driver at the end. `joints` hold the true position and velocity of each joint at the beginning.
   virtual void run(std::span<const JointSample> joints) = 0;
@@ -31,5 +42,9 @@ class DeviceFront {
   /// From now on a device has a fault. Returns the problem with the list of words; "" if there is none.
   virtual std::string inject(std::string_view component, std::string_view kind) = 0;
 };
+
+/// The devices of each drive of the table, as its drive file describes them.
+#define DRIVE(name, ...) std::unique_ptr<DeviceFront> make_##name##_front(const DriveFile& file, FrontSetup setup);
+#include "drivers/drive_table.def"
 
 }  // namespace robot_control

@@ -2,54 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 namespace robot_control {
 namespace {
-
-struct CauseWords {
-  const char* words;
-  const char* remedy;
-};
-
-// In the order of DriveCause.
-constexpr CauseWords kCauseWords[] = {
-    {"", ""},
-    {"waits for a first frame of the drive", "look at its power, the cable, the node number and the bit rate"},
-    {"waits for version and identity", ""},
-    {"waits for object", ""},
-    {"waits for the first position", "let the drive send its positions, or request them by the drive file"},
-    {"waits for", "turn it on with the maker's tool"},
-    {"waits to be enabled", ""},
-    {"waits for torque", ""},
-    {"is silent: no", "look at its power and the cable"},
-    {"reports an error:", "remove the cause, then reset"},
-    {"released the motor without an error:", "look at its supply and its own limits, then reset"},
-    {"was switched on again", "look at its supply, then reset"},
-    {"reports a jump of its", "the drive has another zero or was switched on again; reset where it stands still"},
-    {"sent a number that is not finite", "look at the encoder, then reset"},
-    {"is too hot:", "let it cool, then reset"},
-    {"has a low supply:", "charge the battery, then reset"},
-    {"is commanded by another program, with frame", "stop that program, then reset"},
-    {"differs from the drive file:", "correct the drive or the file, then reset"},
-    {"lacks", "use a drive that has it, or state it in the drive file"},
-    {"refused to set", "set it with the maker's tool, or leave it out of the drive file"},
-    {"did not answer a request for", "look at the cable, then reset"},
-    {"stays without torque:", "look at its supply, its calibration and its enable input, then reset"},
-    {"shares its node number with a second drive", "give one of them another number"},
-    {"has another axis in fault", ""},
-    {"has an unknown reaction on silence",
-     "set its watchdog and state on_silence, or accept_unknown_watchdog: true in the drive file"},
-};
-static_assert(std::size(kCauseWords) == static_cast<std::size_t>(DriveCause::kUnknownWatchdog) + 1);
-
-constexpr const char* kStateWords[] = {"starting", "ready", "running", "fault"};
-
-std::string number_words(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.4g", value);
-  return text;
-}
 
 double within(double value, double limit) noexcept {
   return std::isfinite(value) ? std::clamp(value, -limit, limit) : 0;
@@ -80,7 +35,7 @@ Drive::Drive(DriveParameters parameters, double period)
 void Drive::step(const DriveCommand& command, std::int64_t now_ns, FrameBatch& send) noexcept {
   if (command.reset && !reset_before_) {
     clears_ = 0;
-    if (status_.state == DriveState::kFault) begin(true, now_ns);
+    if (status().state == DriveState::kFault) begin(true, now_ns);
   }
   reset_before_ = command.reset;
   judge_silence(now_ns);
@@ -88,11 +43,11 @@ void Drive::step(const DriveCommand& command, std::int64_t now_ns, FrameBatch& s
   limited.torque = within(command.torque, drive_.torque_limit);
   limited.speed = within(command.speed, drive_.velocity_limit);
   advance(limited, now_ns, send);
-  note_order(status_.state == DriveState::kRunning ? limited.torque : 0);
+  note_order(status().state == DriveState::kRunning ? limited.torque : 0);
 }
 
 void Drive::begin(bool reset, std::int64_t now_ns) noexcept {
-  status_ = {};
+  forget();
   sample_ = {};
   zero_ = 0;
   position_.clear();
@@ -103,10 +58,10 @@ void Drive::begin(bool reset, std::int64_t now_ns) noexcept {
 
 void Drive::judge_silence(std::int64_t now_ns) noexcept {
   if (sample_.valid && now_ns - sample_.stamp_ns > max_silence_ns()) {
-    if (status_.state == DriveState::kReady) {
-      status_ = {};
+    if (status().state == DriveState::kReady) {
+      forget();
       restart(false, now_ns);
-    } else if (status_.state == DriveState::kRunning) {
+    } else if (status().state == DriveState::kRunning) {
       fail(DriveCause::kSilent, "position");
     }
     sample_.valid = false;
@@ -118,25 +73,6 @@ void Drive::judge_silence(std::int64_t now_ns) noexcept {
 
 std::int64_t Drive::sample_period_ns() const noexcept {
   return std::max<std::int64_t>(period_ns_, std::llround(1.0e9 * drive_.sample_period));
-}
-
-void Drive::set(DriveState state, DriveCause cause, const char* subject, std::uint64_t code) noexcept {
-  if (status_.state == DriveState::kFault) return;
-  status_ = {.state = state, .cause = cause, .subject = subject, .code = code};
-}
-
-void Drive::fail(DriveCause cause, const char* subject, std::uint64_t code, double found, double expected) noexcept {
-  const bool brakes =
-      cause == DriveCause::kHot || cause == DriveCause::kUnderVoltage || cause == DriveCause::kForeignCommander;
-  if (status_.state == DriveState::kFault && (brakes || !may_brake_)) return;
-  had_torque_ = status_.state >= DriveState::kRunning;
-  may_brake_ = brakes && status_.state == DriveState::kRunning;
-  status_ = {.state = DriveState::kFault,
-             .cause = cause,
-             .subject = subject,
-             .code = code,
-             .found = found,
-             .expected = expected};
 }
 
 namespace {
@@ -169,7 +105,7 @@ bool Drive::accept_motion(double position, double velocity, std::int64_t now_ns)
   const double maximum = 2 * drive_.velocity_limit * std::fmax(elapsed, 2 * drive_.sample_period) +
                          std::abs(to_joint_) * drive_.position_step;
   if (sample_.valid && std::abs(moved) > maximum) {
-    if (status_.state >= DriveState::kRunning) {
+    if (status().state >= DriveState::kRunning) {
       fail(DriveCause::kPositionJump, "position", 0, moved, maximum);
     } else {
       zero_ -= moved;
@@ -235,7 +171,7 @@ void Drive::settle_reaction() noexcept {
 }
 
 DriveStatus Drive::full_status() const noexcept {
-  DriveStatus status = status_;
+  DriveStatus status = this->status();
   status.on_silence = on_silence_;
   status.velocity = velocity_source();
   add_details(status);
@@ -243,17 +179,7 @@ DriveStatus Drive::full_status() const noexcept {
 }
 
 std::string Drive::words(const DriveStatus& status) const {
-  const CauseWords& cause = kCauseWords[static_cast<std::size_t>(status.cause)];
-  std::string text = drive_.joint + " (node " + std::to_string(drive_.node) +
-                     "): " + kStateWords[static_cast<std::size_t>(status.state)];
-  if (status.cause == DriveCause::kNone) return text;
-  text += std::string("; the drive ") + cause.words;
-  if (*status.subject != '\0') text += std::string(" ") + status.subject;
-  if (const std::string code = code_words(status); !code.empty()) text += " " + code;
-  if (status.found != status.expected) {
-    text += ", " + number_words(status.found) + " instead of " + number_words(status.expected);
-  }
-  return *cause.remedy == '\0' ? text : text + "; " + cause.remedy;
+  return status_words(drive_.joint + " (node " + std::to_string(drive_.node) + ")", status, code_words(status));
 }
 
 }  // namespace robot_control

@@ -1,8 +1,5 @@
 #pragma once
-/// A Drive is the state machine of one motor drive on CAN. Each dialect (odrive, cia402, vesc) derives from it.
-///
-///   starting ──set up and compared──▶ ready ──enabled──▶ running ──error, silence, jump …──▶ fault
-///
+/// A Drive is the state machine of one motor drive on CAN. Each dialect derives from it.
 /// Frames that were received, the time and the command go in; frames to send, a status and a sample come out. Nothing
 /// reads a clock. After construction nothing allocates or throws, except `words`.
 ///
@@ -22,86 +19,15 @@
 #include <string>
 #include <vector>
 
-#include "drivers/line/can_frame.h"
-#include "drivers/line/can_load.h"
+#include "drivers/drive/drive_status.h"
 #include "drivers/drive/late_position.h"
 #include "drivers/drive_parameters.h"
+#include "drivers/line/can_frame.h"
+#include "drivers/line/can_load.h"
 #include "drivers/position_difference.h"
 #include "signals/joint.h"
 
 namespace robot_control {
-
-enum class DriveState : std::uint8_t { kStarting, kReady, kRunning, kFault };
-
-/// Why a drive is not running.
-enum class DriveCause : std::uint8_t {
-  kNone,
-  // The drive waits:
-  kFirstFrame,   ///< for any sign of life of the drive
-  kIdentity,     ///< for version, serial number and configuration
-  kSetup,        ///< for an object to be written or read; code: index << 8 | sub-index
-  kFirstSample,  ///< for the first position
-  kMessage,      ///< for the message `subject`, which it has to send by itself
-  kEnable,       ///< for the command that enables the motor
-  kPower,        ///< for the state in which the motor has torque; code: the present state
-  // The drive is in fault:
-  kSilent,            ///< no frame of `subject` in time
-  kDriveError,        ///< The drive reports an error; code: its code.
-  kReleased,          ///< The drive left the state with torque without an error; code: its state.
-  kRestarted,         ///< The drive was switched on again.
-  kPositionJump,      ///< The position moved faster than the joint can, as after another zero.
-  kNotFinite,         ///< The drive sent NaN or infinity.
-  kHot,               ///< found: °C, expected: the limit
-  kUnderVoltage,      ///< found: V, expected: the limit
-  kForeignCommander,  ///< Another program commands this drive; code: identifier of the frame.
-  kDiffers,           ///< `subject` is `found` in the drive and `expected` in the drive file.
-  kLacks,             ///< The drive has no `subject`, which is needed; code: abort code or 0.
-  kRefused,           ///< The drive refused to set `subject`; code: abort code.
-  kNoAnswer,          ///< The drive did not answer a request for `subject`.
-  kStaysOff,          ///< The motor was requested, and has no torque; code: the present state.
-  kTwoDrives,         ///< Two drives have this node number.
-  kOtherAxis,         ///< The other axis of the drive is in fault.
-  kUnknownWatchdog,   ///< The reaction of the drive on silence is unknown, and that is not accepted.
-};
-
-/// How the reaction on silence is known.
-enum class ReactionEvidence : std::uint8_t {
-  kNone,
-  kRead,       ///< read from the drive, or written and read back
-  kConfirmed,  ///< stated by the user in the drive file
-};
-
-/// The origin of a joint's velocity, or why it follows from the positions.
-enum class VelocitySource : std::uint8_t {
-  kDrive,         ///< The drive sends it.
-  kNotRequested,  ///< The drive file does not want it.
-  kNoRoom,        ///< It would overload the bus.
-  kNoUnit,        ///< Its unit is not known.
-  kNotMapped,     ///< The drive does not map it.
-  kNotSent,       ///< The drive maps it, and has not sent it yet.
-};
-
-struct KnownReaction {
-  SilenceReaction reaction = SilenceReaction::kUnknown;
-  ReactionEvidence evidence = ReactionEvidence::kNone;
-
-  bool operator==(const KnownReaction&) const = default;
-};
-
-/// A copy of it may be put into words by another thread.
-struct DriveStatus {
-  DriveState state = DriveState::kStarting;
-  DriveCause cause = DriveCause::kFirstFrame;
-  const char* subject = "";  ///< a literal
-  std::uint64_t code = 0;
-  double found = 0;
-  double expected = 0;
-  std::array<std::uint64_t, 5> details{};  ///< of an error, as the dialect counts them
-  KnownReaction on_silence{};
-  VelocitySource velocity = VelocitySource::kDrive;  ///< known from `ready` on
-
-  bool operator==(const DriveStatus&) const = default;
-};
 
 struct DriveCommand {
   bool enabled = false;  ///< The motor shall have torque.
@@ -139,7 +65,7 @@ class FrameBatch {
 /// Some drives measure the torque more rarely than in each cycle (`effort_is_rare`). The effort of their samples is the
 /// torque that was ordered in the last cycle. This holds while the last measurement lay among the orders of kOrders
 /// cycles, with a tolerance of kFollows times the limit. Otherwise the effort is that measurement.
-class Drive {
+class Drive : public DriveStateMachine {
  public:
   static constexpr std::size_t kOrders = 8;
   static constexpr double kFollows = 0.1;
@@ -157,8 +83,6 @@ class Drive {
   /// Runs one cycle after all frames were received, and adds the frames to send.
   void step(const DriveCommand& command, std::int64_t now_ns, FrameBatch& send) noexcept;
 
-  const DriveStatus& status() const noexcept { return status_; }
-
   /// Returns the status with its details.
   DriveStatus full_status() const noexcept;
   const DriveSample& sample() const noexcept { return sample_; }
@@ -167,7 +91,7 @@ class Drive {
   /// Known from `ready` on.
   const KnownReaction& on_silence() const noexcept { return on_silence_; }
 
-  /// Returns joint, state, cause with its code in words, and the remedy. Any thread may put a full status into words.
+  /// Returns a full status in words; any thread may call it.
   std::string words(const DriveStatus& status) const;
   std::string words() const { return words(full_status()); }
 
@@ -184,21 +108,10 @@ class Drive {
   /// Uses nothing but the status and the parameters.
   virtual std::string code_words(const DriveStatus& status) const = 0;
 
-  /// Returns whether the motor is to have no torque because of a fault. A running drive that is hot, has a low voltage
-  /// or a second commander obeys further, because it can brake the joint.
-  bool disabled() const noexcept { return status_.state == DriveState::kFault && !may_brake_; }
-  /// Returns whether a drive that is disabled had torque when its fault came.
-  bool brakes_by_itself() const noexcept { return disabled() && had_torque_; }
-
-  void set(DriveState state, DriveCause cause, const char* subject = "", std::uint64_t code = 0) noexcept;
   /// Begins again, as after a reset of the operator if `reset` is true.
   void begin(bool reset, std::int64_t now_ns) noexcept;
   /// Counts a request to clear errors. Returns false if none is left since the operator's reset.
   bool may_clear() noexcept { return clears_ < kMaxClears && ++clears_ > 0; }
-  /// The first fault stays until the reset.
-  void fail(DriveCause cause, const char* subject = "", std::uint64_t code = 0, double found = 0,
-            double expected = 0) noexcept;
-
   /// Motor position in rad, velocity in rad/s.
   void accept_position(double position, double velocity, std::int64_t now_ns) noexcept;
   /// The same of a drive that sends no velocity. It follows from the positions, so late frames move the joint.
@@ -231,7 +144,6 @@ class Drive {
 
   DriveParameters drive_;
   double to_joint_;  // joint angle = to_joint_ · motor angle, motor torque = to_joint_ · joint torque
-  DriveStatus status_;
   DriveSample sample_;
   double zero_ = 0;                // of the joint, where the drive reports 0
   LatePosition position_;          // of the joint
@@ -242,8 +154,6 @@ class Drive {
   bool follows_ = false;                   // the last measurement was among them
   bool reset_before_ = false;
   unsigned clears_ = 0;  // requests since the operator's reset
-  bool may_brake_ = false;
-  bool had_torque_ = false;
 };
 
 }  // namespace robot_control

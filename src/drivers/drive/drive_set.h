@@ -2,19 +2,25 @@
 /// The drives of one bus, in the order of the robot's joints, and what their host sends to all of them.
 
 #include <memory>
-#include <optional>
+#include <utility>
 #include <vector>
 
-#include "drivers/drive/can_parameters.h"
-#include "drivers/cia402/canopen_host.h"
 #include "drivers/drive/drive.h"
 
 namespace robot_control {
 
+/// A BusHost sends frames in each cycle, beside the commands of the drives.
+class BusHost {
+ public:
+  virtual ~BusHost() = default;
+  virtual void step(std::int64_t now_ns, FrameBatch& send) noexcept = 0;
+  virtual std::vector<PlannedFrames> plan() const = 0;
+};
+
 class DriveSet {
  public:
-  /// `period` is that of the loop in s.
-  DriveSet(const CanParameters& parameters, double period);
+  explicit DriveSet(std::vector<std::unique_ptr<Drive>> drives, std::unique_ptr<BusHost> host = nullptr)
+      : drives_(std::move(drives)), host_(std::move(host)) {}
 
   std::size_t size() const noexcept { return drives_.size(); }
   Drive& operator[](std::size_t joint) noexcept { return *drives_[joint]; }
@@ -28,13 +34,16 @@ class DriveSet {
   std::vector<PlannedFrames> plan() const;
 
  private:
-  void add(const std::vector<odrive::OdriveParameters>& joints, double period);
-  void add(const std::vector<cia402::Cia402Parameters>& joints, double period);
-  void add(const std::vector<vesc::VescParameters>& joints, double period);
-
-  std::uint8_t host_node_;
   std::vector<std::unique_ptr<Drive>> drives_;
-  std::optional<canopen::CanopenHost> canopen_;
+  std::unique_ptr<BusHost> host_;  // null: it sends nothing
 };
+
+/// Returns one drive per joint. `period` is that of the loop in s.
+template <class DriveType, class Parameters>
+DriveSet drives_of(const std::vector<Parameters>& joints, double period) {
+  std::vector<std::unique_ptr<Drive>> drives;
+  for (const Parameters& joint : joints) drives.push_back(std::make_unique<DriveType>(joint, period));
+  return DriveSet(std::move(drives));
+}
 
 }  // namespace robot_control

@@ -1,6 +1,6 @@
 #pragma once
-/// SerialDriver is the common part of all drivers of a board on one serial line. It holds the beginning, the fault that
-/// stays, the frame of the joints, and the status that other threads read.
+/// SerialDriver is the common part of all drivers of a board on one serial line, which is one drive with several
+/// wheels. It holds the beginning, the frame of the joints, and the status that other threads read.
 ///
 /// `read` takes the bytes, and then reports state, joints and link. Samples have their own time, and their velocity
 /// brings them to the time of `read`. The first fault stays until the operator's reset. A board that restarts counts
@@ -17,9 +17,10 @@
 #include <vector>
 
 #include "bus/latest_value.h"
+#include "drivers/drive/drive_status.h"
 #include "drivers/driver.h"
-#include "drivers/position_difference.h"
 #include "drivers/line/serial_line.h"
+#include "drivers/position_difference.h"
 
 namespace robot_control {
 
@@ -40,27 +41,25 @@ struct CountedWheel {
   }
 };
 
-/// Cause: an enumeration with kNone, kNoAnswer (none yet) and kSilent. Wheel: derived from CountedWheel.
-template <class Cause, class Wheel>
-class SerialDriver : public Driver {
+/// Wheel: derived from CountedWheel.
+template <class Wheel>
+class SerialDriver : public Driver, protected DriveStateMachine {
  public:
   void start() override {
     stopped_ = false;
     restart();
   }
   void reset() noexcept override {
-    if (status_.state == DriverState::kFault) restart();
+    if (status().state == DriveState::kFault) restart();
   }
   void read(SensorFrame& sensors) noexcept override;
 
  protected:
-  struct Status {
-    DriverState state = DriverState::kStarting;
-    Cause cause = Cause::kNoAnswer;
-    std::uint64_t detail = 0;  ///< of the cause
+  /// The status for other threads.
+  struct Published {
+    DriveStatus drive{};
     std::uint64_t firmware = 0;
-    std::uint64_t connected = 0;
-    bool operator==(const Status&) const = default;
+    bool operator==(const Published&) const = default;
   };
 
   /// The wheels move the first joints of a robot that has `joint_count`. A velocity is that over `samples`. `clock`
@@ -87,26 +86,32 @@ class SerialDriver : public Driver {
   /// Adds the measurements of the board to a frame whose joints have position, velocity, age and fault.
   virtual void add_measurements(SensorFrame& sensors) noexcept = 0;
   /// Returns whether this cause is a fault also before the board runs.
-  virtual bool is_fault_at_start(Cause cause) const noexcept = 0;
+  virtual bool is_fault_at_start(DriveCause cause) const noexcept = 0;
 
-  bool running() const noexcept { return status_.state == DriverState::kRunning; }
   bool obeys(std::span<const JointCommand> commands) const noexcept {
     return running() && !stopped_ && commands.size() == joint_count_;
   }
-  void run() noexcept {
-    status_.state = DriverState::kRunning;
-    status_.cause = Cause::kNone;
+  void run() noexcept { set(DriveState::kRunning, DriveCause::kNone); }
+  /// A fault, or before the board runs what it waits for.
+  void evaluate(DriveCause cause, const char* subject = "", std::uint64_t code = 0, double found = 0,
+                double expected = 0) noexcept {
+    if (running() || is_fault_at_start(cause)) return fail(cause, subject, code, found, expected);
+    set(DriveState::kStarting, cause, subject, code, found, expected);
   }
-  void fail(Cause cause, std::uint64_t detail = 0) noexcept;
   /// Hands the bytes of one message to the line.
   void send(std::span<const std::uint8_t> bytes) noexcept {
     ++link_.sent;
     if (!line_->send(bytes)) ++link_.errors;
   }
   /// The status that was published last; any thread may call it.
-  Status published() const {
-    Status status;
-    return published_status_.load(status) ? status : Status{.cause = Cause::kNone};
+  Published published() const {
+    Published published;
+    return published_.load(published) ? published : Published{.drive = {.cause = DriveCause::kNone}};
+  }
+  /// Returns it in words; "" while the board runs.
+  std::string words(const std::string& name, const std::string& code) const {
+    const DriveStatus drive = published().drive;
+    return drive.cause == DriveCause::kNone ? "" : status_words(name + " on " + line_->name(), drive, code);
   }
 
   const std::size_t joint_count_;
@@ -118,37 +123,27 @@ class SerialDriver : public Driver {
   std::int64_t max_age_ns_ = 0;  ///< for which a position moves on with its velocity
   std::int64_t now_ns_ = 0;
   LinkStatus link_;
-  Status status_;
+  std::uint64_t firmware_ = 0;  ///< its version, as the board reports it
   bool stopped_ = true;
 
  private:
   void restart() noexcept {
-    status_.state = DriverState::kStarting;
-    status_.cause = Cause::kNoAnswer;
+    forget();
     begin();
   }
   void publish() noexcept;
 
-  LatestValue<Status> published_status_;
+  LatestValue<Published> published_;
 };
 
-template <class Cause, class Wheel>
-void SerialDriver<Cause, Wheel>::fail(Cause cause, std::uint64_t detail) noexcept {
-  if (status_.state == DriverState::kFault) return;  // the first one stays
-  status_.cause = cause;
-  status_.detail = detail;
-  if (running() || is_fault_at_start(cause)) status_.state = DriverState::kFault;
-}
-
-template <class Cause, class Wheel>
-void SerialDriver<Cause, Wheel>::read(SensorFrame& sensors) noexcept {
+template <class Wheel>
+void SerialDriver<Wheel>::read(SensorFrame& sensors) noexcept {
   now_ns_ = clock_();
   const bool silent = receive();
-  if (silent) fail(Cause::kSilent);
-  const bool faulty = status_.state == DriverState::kFault;
-  sensors.driver_state = status_.state;
-  sensors.faults = 0;
-  if (faulty) sensors.faults = status_.cause == Cause::kSilent ? kFaultLink : kFaultDrive;
+  if (silent) evaluate(DriveCause::kSilent, line_->connected() ? "message" : "device on the line");
+  const bool faulty = status().state == DriveState::kFault;
+  sensors.driver_state = faulty ? DriverState::kFault : running() ? DriverState::kRunning : DriverState::kStarting;
+  sensors.faults = faulty ? std::uint64_t{fault_of(status().cause)} : 0;
   sensors.valid = 0;
   sensors.digital_inputs = 0;
   sensors.joint_count = joint_count_;
@@ -161,7 +156,7 @@ void SerialDriver<Cause, Wheel>::read(SensorFrame& sensors) noexcept {
                          .effort = std::numeric_limits<double>::quiet_NaN(),
                          .age_ns = age_ns,
                          .valid = running() ? std::uint32_t{kValidKinematics} : 0U,
-                         .fault = faulty ? static_cast<std::uint32_t>(status_.cause) : 0U};
+                         .fault = faulty ? static_cast<std::uint32_t>(status().cause) : 0U};
   }
   add_measurements(sensors);
   link_.state = !line_->connected() || silent ? LinkState::kDown : running() ? LinkState::kUp : LinkState::kStarting;
@@ -170,11 +165,11 @@ void SerialDriver<Cause, Wheel>::read(SensorFrame& sensors) noexcept {
   publish();
 }
 
-template <class Cause, class Wheel>
-void SerialDriver<Cause, Wheel>::publish() noexcept {
-  Status last;
-  status_.connected = line_->connected() ? 1 : 0;
-  if (!published_status_.load(last) || !(last == status_)) published_status_.store(status_);
+template <class Wheel>
+void SerialDriver<Wheel>::publish() noexcept {
+  Published last;
+  const Published now{.drive = status(), .firmware = firmware_};
+  if (!published_.load(last) || !(last == now)) published_.store(now);
 }
 
 }  // namespace robot_control

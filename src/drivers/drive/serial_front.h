@@ -21,6 +21,9 @@ struct FrontLine {
   FrontLine(std::uint64_t line_seed) : seed(line_seed) {}  // NOLINT(*-explicit-*)
   template <class Line>
   FrontLine(std::unique_ptr<Line> device_end) : true_end(std::move(device_end)) {}  // NOLINT(*-explicit-*)
+  FrontLine(FrontSetup setup) : seed(setup.seed) {                                  // NOLINT(*-explicit-*)
+    if (setup.line) true_end = std::get<std::unique_ptr<SerialLine>>(std::move(*setup.line));
+  }
 
   std::uint64_t seed = 0;
   std::unique_ptr<SerialLine> true_end;
@@ -37,8 +40,7 @@ class SerialFront : public DeviceFront {
   double torque(std::size_t joint) const override { return motions_.at(joint).mean_torque; }
   std::string inject(std::string_view component, std::string_view kind) override;
 
-  /// Returns the driver's end of the line in virtual time.
-  std::unique_ptr<SerialLine> driver_end() { return virtual_line_->driver_end(); }
+  LineEnd driver_end() override { return virtual_line_->driver_end(); }
 
   /// The line in virtual time.
   VirtualSerial& line() { return *virtual_line_; }

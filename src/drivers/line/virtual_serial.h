@@ -10,8 +10,8 @@
 #include <string_view>
 #include <vector>
 
-#include "drivers/line/serial_line.h"
 #include "drivers/line/answer_faults.h"
+#include "drivers/line/serial_line.h"
 
 namespace robot_control {
 

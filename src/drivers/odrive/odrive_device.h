@@ -10,10 +10,10 @@
 #include <cstdint>
 #include <optional>
 
-#include "drivers/odrive/odrive_messages.h"
-#include "drivers/odrive/odrive_parameters.h"
 #include "drivers/drive/device.h"
 #include "drivers/drive/speed_loop.h"
+#include "drivers/odrive/odrive_messages.h"
+#include "drivers/odrive/odrive_parameters.h"
 
 namespace robot_control {
 

@@ -18,9 +18,8 @@ constexpr std::int64_t kAddressNs = 20'000'000;   // in which a second drive wou
 constexpr std::int64_t kEnterNs = 3'000'000'000;  // more than any axis needs to enter closed loop
 constexpr std::int64_t kModeNs = 10'000'000;      // between repetitions of the mode in which a drive brakes
 constexpr double kMaxHeartbeats = 6.5;            // Five lost ones in a row happen once in 10⁶ at a loss of 5 %.
-constexpr double kVelocityMargin = 1.5;           // Torque mode reduces the torque before the limit.
 constexpr double kBrakeTime = 0.1;                // s, in which no brake halves the speed from the limit
-constexpr double kLeastSpeed = 0.1;               // of the limit, below which a speed is no runaway
+constexpr double kMinSpeed = 0.1;                 // of the limit, below which a speed is no runaway
 
 /// Commands that move an axis or change how it moves: Estop, Set_Axis_State, Set_Controller_Mode, Set_Input_Pos, _Vel
 /// and _Torque, Set_Limits, Start_Anticogging, three of trajectories, Reboot, Clear_Errors, and those of position and
@@ -337,8 +336,8 @@ void OdriveDrive::send_mode(const DriveCommand& command, ControlMode control, do
       encode(node(), SetLimits{.velocity = fastest, .current = torque / drive.gear / parameters_.torque_constant}));
 }
 
-/// The brake closes the drive's own loop, whose encoder may be what failed. A drive that turns faster than its limit of
-/// the speed releases its motor, so that the limit is little above the speed at which the fault came.
+/// The brake closes the drive's own loop, and the encoder may be the cause of the fault. A drive that exceeds its limit
+/// of the speed releases its motor. The limit is therefore little above the speed at which the fault came.
 void OdriveDrive::send_brake(const DriveCommand& command, std::int64_t now_ns, FrameBatch& send) noexcept {
   if (!due(next_request_ns_, kModeNs, now_ns)) return;
   const DriveParameters& drive = drive_parameters();
@@ -349,7 +348,7 @@ void OdriveDrive::send_brake(const DriveCommand& command, std::int64_t now_ns, F
 void OdriveDrive::note_speed() noexcept {
   const double limit = drive_parameters().velocity_limit;
   const double kept = std::exp2(-1.0e-9 * static_cast<double>(period_ns_) / kBrakeTime) * fastest_;
-  fastest_ = std::clamp(std::abs(sample().joint.velocity), std::fmax(kept, kLeastSpeed * limit), limit);
+  fastest_ = std::clamp(std::abs(sample().joint.velocity), std::fmax(kept, kMinSpeed * limit), limit);
 }
 
 void OdriveDrive::send_idle(std::int64_t now_ns, FrameBatch& send) noexcept {

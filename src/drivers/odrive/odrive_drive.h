@@ -11,10 +11,10 @@
 /// becomes idle: the joint coasts. Firmware 0.5 may report a position of zero until the axis is in closed loop, so
 /// `running` begins with a position that came after this state.
 ///
-/// An axis with torque brakes in a fault by its own loop of the speed, within a limit that is little above the speed at
-/// which the fault came. Where its encoder failed, this loop may drive: the axis releases its motor above that limit
+/// An axis with torque brakes in a fault by its own loop of the speed. Its limit is then little above the speed at
+/// which the fault came. With a failed encoder this loop may drive. The axis then releases its motor above that limit
 /// (OVERSPEED, VELOCITY_LIMIT_VIOLATION). The driver sets the gain of an axis that takes torques, because torque mode
-/// uses it as well and the drive does not tell the one that was set before. It stays until the axis restarts.
+/// uses it as well. The earlier gain cannot be read, and the new one stays until the axis restarts.
 ///
 /// The position is a float of turns, whose step grows with the number of turns. If the step exceeds max_position_step,
 /// the position of the drive is set back by whole turns as soon as the axis has rested for kRestNs. The position of the
@@ -35,7 +35,8 @@ class OdriveDrive final : public Drive {
   static constexpr std::int64_t kRetryNs = 100'000'000;
   static constexpr unsigned kZeroCycles = 10;
   static constexpr std::int64_t kRestNs = 500'000'000;
-  static constexpr double kRestSpeed = 0.05;  ///< rad/s of the motor
+  static constexpr double kRestSpeed = 0.05;      ///< rad/s of the motor
+  static constexpr double kVelocityMargin = 1.5;  ///< Torque mode reduces the torque before the limit of the axis.
 
   OdriveDrive(const OdriveParameters& parameters, double period);
 

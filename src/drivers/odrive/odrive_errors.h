@@ -19,8 +19,8 @@ inline constexpr std::uint32_t kUnderVoltage06 = 0x200;
 /// Returns the names of the set bits with a blank between them, unknown bits as a hexadecimal number. "NONE" is 0.
 std::string error_names(ErrorKind kind, std::uint64_t error);
 
-/// Returns an error of the axis with its details: those of motor, encoder and controller in 0.5, or as the fourth the
-/// disarm reason in 0.6, whose last one is 1.
+/// Returns an error of the axis with its details. With 0.5 they are those of motor, encoder and controller. With 0.6
+/// the fourth is the disarm reason, and the last one is 1.
 std::string error_words(std::uint64_t error, std::span<const std::uint64_t, 5> details);
 
 }  // namespace robot_control::odrive

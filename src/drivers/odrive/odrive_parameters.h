@@ -35,6 +35,8 @@ struct OdriveParameters {
   std::uint64_t enable_watchdog_endpoint = 0;
   std::uint64_t watchdog_timeout_endpoint = 0;
   double max_watchdog_timeout = 0.2;  ///< s; a longer one that is read refuses
+
+  std::uint64_t place() const noexcept { return drive.node; }
 };
 
 inline Keys keys(OdriveParameters& p) {

@@ -100,7 +100,8 @@ void RoboclawDriver::accept() noexcept {
       accept_gains(2);
       break;
     case Command::kGetTimeout:
-      if (received_.number(0, 1) != kTimeoutSteps) fail(RoboclawCause::kNoTimeout, received_.number(0, 1));
+      if (received_.number(0, 1) != kTimeoutSteps)
+        fail(DriveCause::kDiffers, "its serial timeout in ms", 0, 100 * received_.number(0, 1), 100 * kTimeoutSteps);
       break;
     case Command::kEncoders:
       accept_counts();
@@ -115,7 +116,7 @@ void RoboclawDriver::accept() noexcept {
       break;
     case Command::kStatus: {
       const std::uint32_t errors = received_.number(0, received_.size() - 2) & 0xFFFFU;
-      if (errors != 0) fail(RoboclawCause::kBoardError, errors);
+      if (errors != 0) fail(DriveCause::kDriveError, "", errors);
       break;
     }
     default:
@@ -124,7 +125,7 @@ void RoboclawDriver::accept() noexcept {
   const bool is_order = command_ == Command::kSpeeds || command_ == Command::kDuties;
   ordered_ = is_order;
   if (is_order) return;
-  if (status_.state != DriverState::kStarting) {
+  if (status().state != DriveState::kStarting) {
     ++turn_;
     return;
   }
@@ -135,9 +136,11 @@ void RoboclawDriver::accept() noexcept {
 void RoboclawDriver::accept_gains(unsigned motor) noexcept {
   const auto found = std::ranges::find(parameters_.wheels, motor, &RoboclawWheelParameters::motor);
   if (found == parameters_.wheels.end()) return;
-  if (received_.number(0, 4) == 0 && received_.number(4, 4) == 0) fail(RoboclawCause::kNoGains, motor);
+  if (received_.number(0, 4) == 0 && received_.number(4, 4) == 0)
+    fail(DriveCause::kDiffers, "velocity gains of zero, tune them with the maker's tool, of", motor);
   const double fastest = found->velocity_limit * found->counts_per_turn / (2 * std::numbers::pi);
-  if (received_.number(12, 4) < fastest) fail(RoboclawCause::kLowQpps, motor);
+  if (received_.number(12, 4) < fastest)
+    fail(DriveCause::kDiffers, "QPPS, below velocity_limit, of", motor, received_.number(12, 4), fastest);
 }
 
 void RoboclawDriver::accept_counts() noexcept {
@@ -154,9 +157,10 @@ void RoboclawDriver::accept_counts() noexcept {
     } else {
       wheel.total += moved;
       const double reach = kSpeedMargin * parameters.velocity_limit * elapsed;
-      if (std::abs(wheel.rad_per_count * moved) > reach) fail(RoboclawCause::kPositionJump, i);
+      const double turned = wheel.rad_per_count * moved;
+      if (std::abs(turned) > reach) fail(DriveCause::kPositionJump, "counts of", i, turned, reach);
       if (moved != 0) wheel.blind = 0;
-      if (wheel.blind > kBlindWay) fail(RoboclawCause::kNoCounts, i);
+      if (wheel.blind > kBlindWay) fail(DriveCause::kNoCounts, "", i);
     }
     wheel.measure(stamp_ns);
   }
@@ -175,13 +179,14 @@ void RoboclawDriver::add_measurements(SensorFrame& sensors) noexcept {
 
 bool RoboclawDriver::counts_are_trusted() const noexcept {
   if (running()) return true;
-  return status_.state == DriverState::kFault &&
-         (status_.cause == RoboclawCause::kSilent || status_.cause == RoboclawCause::kBoardError);
+  const DriveStatus& drive = status();
+  return drive.state == DriveState::kFault &&
+         (drive.cause == DriveCause::kSilent || drive.cause == DriveCause::kDriveError);
 }
 
 RoboclawDriver::Command RoboclawDriver::next() const noexcept {
   if (!ordered_) return counts_are_trusted() ? Command::kSpeeds : Command::kDuties;
-  if (status_.state == DriverState::kStarting) return setup_ < kSetup.size() ? kSetup[setup_] : Command::kEncoders;
+  if (status().state == DriveState::kStarting) return setup_ < kSetup.size() ? kSetup[setup_] : Command::kEncoders;
   return turn_ % kSlowEvery == kSlowEvery - 1 ? kSlow[turn_ / kSlowEvery % kSlow.size()] : Command::kEncoders;
 }
 
@@ -216,39 +221,11 @@ std::string RoboclawDriver::description() const {
 }
 
 std::string RoboclawDriver::warning() const {
-  const Status status = published();
-  const auto joint = [&] { return parameters_.wheels.at(status.detail).joint; };
-  const std::string board = "the RoboClaw on " + line_->name();
-  const std::string motor = "M" + std::to_string(status.detail);
-  switch (status.cause) {
-    case RoboclawCause::kNoAnswer:
-    case RoboclawCause::kSilent:
-      return board +
-             (status.connected == 0
-                  ? " is not there: look at its cable and at roboclaw.address in the drive file"
-                  : " does not answer: look at its power, board_address, the bit rate and its mode packet serial") +
-             (status.state == DriverState::kFault ? ", then reset" : "");
-    case RoboclawCause::kNoGains:
-      return board + " has velocity gains of zero for " + motor + ": tune it with its maker's tool, then reset";
-    case RoboclawCause::kLowQpps:
-      return board + " has a QPPS below velocity_limit for " + motor +
-             ": tune it with its maker's tool, or lower velocity_limit, then reset";
-    case RoboclawCause::kNoTimeout:
-      return board + " did not take the serial timeout of 100 ms, it has " + std::to_string(100 * status.detail) +
-             " ms: update its firmware, then reset";
-    case RoboclawCause::kBoardError:
-      return board + " reports an error: " + words_of_errors(status.detail) + ". Remove the cause, then reset";
-    case RoboclawCause::kPositionJump:
-      return "the counts of " + joint() +
-             " moved faster than velocity_limit allows: look at its encoder and counts_per_turn, then reset";
-    case RoboclawCause::kNoCounts:
-      return "the counts of " + joint() +
-             " stand still though it is driven: look at its encoder's plug and for what "
-             "blocks the wheel, then reset";
-    case RoboclawCause::kNone:
-      break;
-  }
-  return "";
+  const DriveStatus drive = published().drive;
+  const bool names_wheel = drive.cause == DriveCause::kPositionJump || drive.cause == DriveCause::kNoCounts;
+  if (drive.cause == DriveCause::kDriveError) return words("RoboClaw", words_of_errors(drive.code));
+  if (names_wheel) return words("RoboClaw", parameters_.wheels.at(drive.code).joint);
+  return words("RoboClaw", drive.code == 0 ? "" : "M" + std::to_string(drive.code));
 }
 
 }  // namespace robot_control

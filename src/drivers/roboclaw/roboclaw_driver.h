@@ -31,31 +31,19 @@
 #include <memory>
 #include <string>
 
+#include "drivers/drive/serial_driver.h"
 #include "drivers/drive_speed.h"
 #include "drivers/roboclaw/roboclaw_parameters.h"
 #include "drivers/roboclaw/roboclaw_protocol.h"
-#include "drivers/drive/serial_driver.h"
 
 namespace robot_control {
-
-enum class RoboclawCause : std::uint8_t {
-  kNone,
-  kNoAnswer,  ///< none yet
-  kSilent,
-  kNoGains,     ///< detail: number of the motor
-  kLowQpps,     ///< the same
-  kNoTimeout,   ///< detail: 100 ms
-  kBoardError,  ///< detail: its bits
-  kPositionJump,
-  kNoCounts,
-};
 
 struct RoboclawWheel : CountedWheel {
   double blind = 0;    ///< rad, ordered since the last count
   double ordered = 0;  ///< rad/s
 };
 
-class RoboclawDriver final : public SerialDriver<RoboclawCause, RoboclawWheel> {
+class RoboclawDriver final : public SerialDriver<RoboclawWheel> {
  public:
   static constexpr std::int64_t kTimeoutNs = 100'000'000;  ///< of the board, its shortest one
   static constexpr std::int64_t kAnswerNs = 8'000'000;     ///< 3 ms of jitter each way, and the board's own time
@@ -89,7 +77,7 @@ class RoboclawDriver final : public SerialDriver<RoboclawCause, RoboclawWheel> {
   void begin() noexcept override;
   bool receive() noexcept override;
   void add_measurements(SensorFrame& sensors) noexcept override;
-  bool is_fault_at_start(RoboclawCause cause) const noexcept override { return cause != RoboclawCause::kSilent; }
+  bool is_fault_at_start(DriveCause cause) const noexcept override { return cause != DriveCause::kSilent; }
   void take_bytes() noexcept;
   bool answered() noexcept;
   void accept() noexcept;

@@ -167,4 +167,10 @@ std::string RoboclawFront::fault_words() const {
   return "board (with ok, off, reset, brown_out, fault, no_gains), encoder (with ok, stuck)";
 }
 
+std::unique_ptr<DeviceFront> make_roboclaw_front(const DriveFile& file, FrontSetup setup) {
+  const DriveMotors& motors = setup.motors;
+  return std::make_unique<RoboclawFront>(parameters_of(dynamic_cast<const RoboclawBlocks&>(file)), motors.brakes,
+                                         motors.effort_limits, file.request().period(), std::move(setup));
+}
+
 }  // namespace robot_control

@@ -15,11 +15,11 @@
 #include <string>
 #include <vector>
 
+#include "drivers/drive/serial_front.h"
+#include "drivers/drive/speed_loop.h"
 #include "drivers/roboclaw/roboclaw_parameters.h"
 #include "drivers/roboclaw/roboclaw_protocol.h"
 #include "gate/brake_law.h"
-#include "drivers/drive/serial_front.h"
-#include "drivers/drive/speed_loop.h"
 
 namespace robot_control {
 

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "drivers/drive/serial_drive_file.h"
 #include "drivers/drive_parameters.h"
 
 namespace robot_control {
@@ -30,11 +31,15 @@ inline Keys keys(RoboclawLineParameters& line) {
 }
 
 struct RoboclawWheelParameters {
+  static constexpr const char *kPlace = "motor", *kMotor = "motor";
+
   std::string joint;           ///< name in the robot's model; the name of the block
   std::uint64_t motor = 1;     ///< 1: M1, 2: M2
   std::int64_t direction = 1;  ///< 1 or −1: the joint turns with the counts, or against them
   double counts_per_turn = 0;  ///< of the joint
   double velocity_limit = 0;   ///< rad/s, of the joint
+
+  std::uint64_t place() const noexcept { return motor; }
 };
 
 inline Keys keys(RoboclawWheelParameters& wheel) {
@@ -42,7 +47,7 @@ inline Keys keys(RoboclawWheelParameters& wheel) {
       {"motor", &wheel.motor, {}, 1, 2},
       {"direction", &wheel.direction, {}, -1, 1, kOptional},
       {"counts_per_turn", &wheel.counts_per_turn, "counts per turn of the joint", 1, 1.0e8},
-      {"velocity_limit", &wheel.velocity_limit, "rad/s", 1.0e-3, 1.0e4},
+      {"velocity_limit", &wheel.velocity_limit, "rad/s", 0.01, 1000},
   };
 }
 
@@ -50,5 +55,11 @@ struct RoboclawParameters {
   RoboclawLineParameters line;
   std::vector<RoboclawWheelParameters> wheels;  ///< two, in the order of the robot's joints
 };
+
+using RoboclawBlocks = FileOfJoints<SerialDriveFile<RoboclawLineParameters>, RoboclawWheelParameters>;
+
+inline RoboclawParameters parameters_of(const RoboclawBlocks& file) {
+  return {file.line, file.joints()};
+}
 
 }  // namespace robot_control

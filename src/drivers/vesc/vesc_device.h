@@ -7,9 +7,9 @@
 
 #include <cstdint>
 
-#include "drivers/vesc/vesc_messages.h"
 #include "drivers/drive/device.h"
 #include "drivers/drive/speed_loop.h"
+#include "drivers/vesc/vesc_messages.h"
 
 namespace robot_control {
 

@@ -13,6 +13,8 @@ struct VescParameters {
   double torque_constant = 0;       ///< N·m/A, of the motor; 0: unknown, so that no torque is ordered or measured
   double status_period = 0.002;     ///< s between the CAN status messages 1 and 5, as set in the drive (rate 1)
   double temperature_period = 0.1;  ///< s between the CAN status messages 4, as set in the drive (rate 2)
+
+  std::uint64_t place() const noexcept { return drive.node; }
 };
 
 inline Keys keys(VescParameters& p) {

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <numbers>
 
-#include "drivers/table/line_silence.h"
 #include "control/wheel_loops/wheel_loop_gains.h"
+#include "drivers/table/drive_table.h"
 #include "safety/derived_limits.h"
 
 namespace robot_control {

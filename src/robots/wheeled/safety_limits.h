@@ -22,7 +22,7 @@ double commanded_wheel_speed(const DriveControllerParameters& controller, const 
 /// times kp.
 double count_ripple(const DriveTrain& robot, const WheelModel& wheel, double period);
 
-/// encoders_lost has no shorter persistence than drivers/table/line_silence.h tolerates (docs/safety.md).
+/// encoders_lost has no shorter persistence than the driver tolerates (drivers/table/drive_table.h) (docs/safety.md).
 SafetyParameters safety_limits(const Parameters& parameters, const DriveTrain& robot);
 
 }  // namespace robot_control

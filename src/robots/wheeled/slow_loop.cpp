@@ -57,7 +57,7 @@ std::vector<std::string> wheeled_rate_notes(const Parameters& parameters, const 
              "or raise robot.rate",
              loop.rate, *limits.stall.limit, *limits.not_stopping.limit, *limits.runaway.limit)};
   }
-  const bool direct = parameters.driver == DriverChoice::kMujoco && parameters.drives.empty();
+  const bool direct = parameters.driver == DriverName::kMujoco && parameters.drives.empty();
   if (role != Role::kDriver || direct) return {};
   const double time = brake_time(robot, loop.period());
   return {

@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "bus/latest_value.h"
-#include "drivers/mujoco/mujoco_plant.h"
 #include "drivers/drive/device_front.h"
+#include "drivers/mujoco/mujoco_plant.h"
 
 namespace robot_control {
 

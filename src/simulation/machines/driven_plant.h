@@ -12,8 +12,8 @@
 #include <memory>
 #include <vector>
 
-#include "drivers/mujoco/mujoco_plant.h"
 #include "drivers/drive/device_front.h"
+#include "drivers/mujoco/mujoco_plant.h"
 
 namespace robot_control {
 

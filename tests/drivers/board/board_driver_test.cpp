@@ -8,8 +8,8 @@
 #include <string>
 
 #include "drivers/board/board_machine.h"
-#include "drivers/driver_contract.h"
 #include "drivers/board/mutated_stream.h"
+#include "drivers/driver_contract.h"
 
 namespace robot_control {
 namespace {
@@ -92,7 +92,7 @@ TEST_F(BoardDriverTest, ALineThatIsCutBrakesTheBoardByItsWatchdogAndIsAFaultUnti
   EXPECT_EQ(frame_.faults, kFaultLink);
   EXPECT_EQ(frame_.joints[0].valid, 0u);
   EXPECT_EQ(frame_.links[0].state, LinkState::kDown);
-  EXPECT_NE(machine_.warning().find("is not there"), std::string::npos) << machine_.warning();
+  EXPECT_NE(machine_.warning().find("is silent: no device on the line"), std::string::npos) << machine_.warning();
   inject("line", "ok");
   cycles(100);
   EXPECT_EQ(frame_.driver_state, DriverState::kFault);
@@ -169,7 +169,8 @@ TEST(BoardAt30Hz, ThatRestartedIsNotNamedByTheBrakeOfItsStart) {
   ASSERT_EQ(machine.board().inject("board", "brown_out"), "");
   cycles(20);
   EXPECT_EQ(frame.driver_state, DriverState::kFault);
-  EXPECT_NE(machine.warning().find("restarted: its supply was too low"), std::string::npos) << machine.warning();
+  EXPECT_NE(machine.warning().find("was switched on again after its supply was too low"), std::string::npos)
+      << machine.warning();
 }
 
 TEST_F(BoardDriverTest, EveryLossIsAFaultWithItsCauseAndStandsUntilTheReset) {
@@ -179,9 +180,11 @@ TEST_F(BoardDriverTest, EveryLossIsAFaultWithItsCauseAndStandsUntilTheReset) {
     const char* words;
   };
   for (const Loss& loss :
-       {Loss{"board", "off", "sends no report"}, Loss{"board", "reset", "sends no report"},
-        Loss{"board", "brown_out", "sends no report"}, Loss{"board", "fault", "reports a fault of right"},
-        Loss{"board", "other_protocol", "speaks version 2"}, Loss{"line", "stalled", "sends no report"}}) {
+       {Loss{"board", "off", "is silent: no message"}, Loss{"board", "reset", "is silent: no message"},
+        Loss{"board", "brown_out", "is silent: no message"},
+        Loss{"board", "fault", "reports an error: fault word of right"},
+        Loss{"board", "other_protocol", "version of the protocol, 2 instead of 1"},
+        Loss{"line", "stalled", "is silent: no message"}}) {
     SCOPED_TRACE(loss.kind);
     inject(loss.component, loss.kind);
     cycles(300);

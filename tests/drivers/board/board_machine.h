@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "drivers/board/board_driver.h"
-#include "drivers/wheels_in_air.h"
 #include "drivers/board/board_front.h"
+#include "drivers/wheels_in_air.h"
 
 namespace robot_control {
 
@@ -20,7 +20,7 @@ class BoardMachine final : public WheelsInAir<BoardFront, BoardDriver> {
       : WheelsInAir(1 / rate), parameters_(parameters_of(counter_bits, bit_rate)) {
     board_ = std::make_unique<BoardFront>(parameters_, kBrakes, period_, 1);
     board_->set_zero(zero);
-    connect(board_->driver_end());
+    connect(board_->line().driver_end());
   }
 
   /// Over a true line; its driver's end is made after its device's end.
@@ -34,7 +34,7 @@ class BoardMachine final : public WheelsInAir<BoardFront, BoardDriver> {
   BoardDriver& driver() { return *driver_; }
 
   /// The driver's process ended, and another one is there. The board ran on.
-  void replace_driver() { connect(board_->driver_end()); }
+  void replace_driver() { connect(board_->line().driver_end()); }
 
  private:
   static constexpr std::array kBrakes{kBrake, kBrake};

@@ -7,20 +7,23 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
-#include "drivers/driver_contract.h"
 #include "drivers/drive/device_rig.h"
+#include "drivers/driver_contract.h"
 
 namespace robot_control {
 namespace {
 
 using ::testing::HasSubstr;
 
+enum class TestedDialect { kOdrive, kCia402, kVesc };
+constexpr const char* kNames[] = {"odrive", "cia402", "vesc"};
+
 /// Two drives on devices in virtual time. A datagram socket stands between the driver and the bus.
 class CanMachine final : public Driver {
  public:
   static constexpr double kPeriod = 0.001;
 
-  explicit CanMachine(CanDialect dialect, std::size_t joints = 2) : rig_(1 / kPeriod) {
+  explicit CanMachine(TestedDialect dialect, std::size_t joints = 2) : rig_(1 / kPeriod) {
     int ends[2];
     if (socketpair(AF_UNIX, SOCK_DGRAM | SOCK_NONBLOCK, 0, ends) != 0) throw DriverError("no socket");
     wire_ = ends[1];
@@ -28,22 +31,13 @@ class CanMachine final : public Driver {
       if (write_frame(frame) != sizeof frame) ADD_FAILURE() << "the wire is full";
     });
     rig_.host_lives = false;
-    CanParameters parameters;
-    switch (dialect) {
-      case CanDialect::kOdrive:
-        parameters.joints = std::vector{add_odrive(0), add_odrive(1)};
-        break;
-      case CanDialect::kCia402:
-        parameters.joints = std::vector{add_cia402(1), add_cia402(2)};
-        break;
-      case CanDialect::kVesc:
-        parameters.joints = std::vector{add_vesc(0), add_vesc(1)};
-        break;
-    }
+    const std::uint8_t first = dialect == TestedDialect::kCia402 ? 1 : 0;  // 0 is all nodes
+    add(dialect, first);
+    add(dialect, first + 1);
     // At the joint 0.0625 kg·m²: d h/J = 0.16.
     const Brake brake{.effort = 3, .hold_effort = 3, .damping = 10, .stiffness = 400, .hold_speed = 0.3};
-    driver_.emplace(parameters, std::vector{brake, brake}, joints, kPeriod, CanSocket(ends[0]),
-                    [this] { return CanTime{.time_ns = rig_.now_ns(), .utc_ns = rig_.now_ns()}; });
+    driver_.emplace(CanBusParameters{}, rig_.made_drives(), std::vector{brake, brake}, joints, kPeriod,
+                    CanSocket(ends[0]), [this] { return CanTime{.time_ns = rig_.now_ns(), .utc_ns = rig_.now_ns()}; });
   }
   ~CanMachine() override { close(wire_); }
   CanMachine(const CanMachine&) = delete;
@@ -77,22 +71,13 @@ class CanMachine final : public Driver {
 
  private:
   ssize_t write_frame(const can_frame& frame) const { return ::send(wire_, &frame, sizeof frame, 0); }
-  odrive::OdriveParameters add_odrive(std::uint8_t node) {
-    const OdrivePair pair = odrive_pair(node);
-    rig_.add_device(std::make_unique<OdriveDevice>(pair.device, rig_.bus(), rig_.add_motor()));
-    return pair.drive;
-  }
-  vesc::VescParameters add_vesc(std::uint8_t node) {
+  void add(TestedDialect dialect, std::uint8_t node) {
+    if (dialect == TestedDialect::kOdrive) robot_control::add(rig_, odrive_pair(node));
+    if (dialect == TestedDialect::kCia402) robot_control::add(rig_, cia402_pair(node));
+    if (dialect != TestedDialect::kVesc) return;
     VescPair pair = vesc_pair(node);
     pair.drive.drive.max_silence = 10;  // of 2 ms
-    rig_.add_device(std::make_unique<VescDevice>(pair.device, rig_.bus(), rig_.add_motor()));
-    return pair.drive;
-  }
-  cia402::Cia402Parameters add_cia402(std::uint8_t node) {
-    const Cia402Pair pair = cia402_pair(node);
-    rig_.add_device(
-        std::make_unique<Cia402Device>(pair.device, rig_.bus(), std::vector<DeviceMotor*>{&rig_.add_motor()}));
-    return pair.drive;
+    robot_control::add(rig_, pair);
   }
 
   DeviceRig rig_;
@@ -101,7 +86,7 @@ class CanMachine final : public Driver {
   std::optional<CanDriver> driver_;
 };
 
-MachineUnderTest machine(const std::string& name, CanDialect dialect) {
+MachineUnderTest machine(const std::string& name, TestedDialect dialect) {
   return {.name = name,
           .make = [dialect] { return std::make_unique<CanMachine>(dialect); },
           .effort_limit = 4,
@@ -111,11 +96,12 @@ MachineUnderTest machine(const std::string& name, CanDialect dialect) {
 }
 
 INSTANTIATE_TEST_SUITE_P(CanMachines, DriverContract,
-                         testing::Values(machine("Odrive", CanDialect::kOdrive), machine("Cia402", CanDialect::kCia402),
-                                         machine("Vesc", CanDialect::kVesc)),
+                         testing::Values(machine("Odrive", TestedDialect::kOdrive),
+                                         machine("Cia402", TestedDialect::kCia402),
+                                         machine("Vesc", TestedDialect::kVesc)),
                          machine_name);
 
-class CanDriverOn : public ::testing::TestWithParam<CanDialect> {
+class CanDriverOn : public ::testing::TestWithParam<TestedDialect> {
  protected:
   SensorFrame cycle(const JointCommand& command = {}) {
     SensorFrame frame;
@@ -189,8 +175,8 @@ TEST_P(CanDriverOn, SaysWhatEachJointDoesOnSilence) {
   cycles(3000);
   const std::string text = machine_.driver().description();
   EXPECT_THAT(text, HasSubstr("load at most"));
-  EXPECT_THAT(text, HasSubstr(GetParam() == CanDialect::kCia402 ? "holds (read from the drive)"
-                                                                : "coasts (stated in the drive file)"));
+  EXPECT_THAT(text, HasSubstr(GetParam() == TestedDialect::kCia402 ? "holds (read from the drive)"
+                                                                   : "coasts (stated in the drive file)"));
 }
 
 TEST_P(CanDriverOn, SaysThatTheBusIsSilent) {
@@ -235,8 +221,8 @@ TEST_P(CanDriverOn, BrakesAndHoldsOnASlope) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Dialects, CanDriverOn,
-                         ::testing::Values(CanDialect::kOdrive, CanDialect::kCia402, CanDialect::kVesc),
-                         [](const auto& each) { return word_of(each.param); });
+                         ::testing::Values(TestedDialect::kOdrive, TestedDialect::kCia402, TestedDialect::kVesc),
+                         [](const auto& each) { return std::string(kNames[static_cast<std::size_t>(each.param)]); });
 
 }  // namespace
 }  // namespace robot_control

@@ -14,11 +14,11 @@
 #include <string>
 #include <vector>
 
-#include "drivers/table/drive_file.h"
-#include "drivers/drive/drive_set.h"
-#include "parameters/problem_list.h"
 #include "drivers/cia402/cia402_device.h"
+#include "drivers/drive/can_drive_file.h"
 #include "drivers/odrive/odrive_device.h"
+#include "drivers/table/read_drive_file.h"
+#include "parameters/problem_list.h"
 
 namespace robot_control {
 namespace {
@@ -47,7 +47,8 @@ void print(const can_frame& frame) {
 }
 
 void run_drives(const std::string& file, double rate, const std::vector<std::string>& joints) {
-  DriveSet drives(read_drive_file(file, joints, rate), 1 / rate);
+  const auto read = read_drive_file(file, "can", {.joints = joints, .rate = rate});
+  DriveSet drives = dynamic_cast<CanDriveFile&>(*read).drives();
   FrameBatch send;
   for (std::string text; std::getline(std::cin, text);) {
     std::istringstream line(text);

@@ -9,19 +9,21 @@
 #include <string>
 #include <vector>
 
-#include "drivers/cia402/cia402_drive.h"
-#include "drivers/drive/drive_set.h"
-#include "drivers/odrive/odrive_drive.h"
-#include "drivers/vesc/vesc_drive.h"
 #include "drivers/cia402/cia402_device.h"
+#include "drivers/cia402/cia402_drive.h"
+#include "drivers/cia402/cia402_drives.h"
+#include "drivers/drive/drive_set.h"
 #include "drivers/odrive/odrive_device.h"
+#include "drivers/odrive/odrive_drive.h"
 #include "drivers/vesc/vesc_device.h"
+#include "drivers/vesc/vesc_drive.h"
 
 namespace robot_control {
 
 class DeviceRig {
  public:
   static constexpr std::int64_t kStepNs = 125'000;
+  static constexpr std::uint8_t kHostNode = 127;
 
   explicit DeviceRig(double rate = 500, double bit_rate = 1.0e6, std::uint64_t seed = 1)
       : period_(1 / rate), bus_(bit_rate, seed), host_(bus_.join([this](const can_frame& frame, std::int64_t now_ns) {
@@ -43,14 +45,18 @@ class DeviceRig {
     devices_.push_back(std::move(device));
     return added;
   }
-  template <class Parameters>
-  void add_drive(const Parameters& parameters) {
-    if (!std::holds_alternative<std::vector<Parameters>>(can_.joints)) can_.joints = std::vector<Parameters>{};
-    std::get<std::vector<Parameters>>(can_.joints).push_back(parameters);
+  void add_drive(const odrive::OdriveParameters& parameters) { odrives_.push_back(parameters); }
+  void add_drive(const cia402::Cia402Parameters& parameters) { cia402s_.push_back(parameters); }
+  void add_drive(const vesc::VescParameters& parameters) { vescs_.push_back(parameters); }
+  /// Returns the drives of the one dialect that was added.
+  DriveSet made_drives() const {
+    if (!odrives_.empty()) return drives_of<odrive::OdriveDrive>(odrives_, period_);
+    if (!vescs_.empty()) return drives_of<vesc::VescDrive>(vescs_, period_);
+    return cia402::cia402_drives(cia402s_, kHostNode, period_);
   }
   /// No drive may be added after the first call.
   DriveSet& drives() {
-    if (!drives_) drives_.emplace(can_, period_);
+    if (!drives_) drives_.emplace(made_drives());
     return *drives_;
   }
 
@@ -118,7 +124,9 @@ class DeviceRig {
   std::int64_t now_ns_ = 0;
   std::vector<std::unique_ptr<DeviceMotor>> motors_;
   std::vector<std::unique_ptr<Device>> devices_;
-  CanParameters can_{};
+  std::vector<odrive::OdriveParameters> odrives_;
+  std::vector<cia402::Cia402Parameters> cia402s_;
+  std::vector<vesc::VescParameters> vescs_;
   std::optional<DriveSet> drives_;
   FrameBatch send_;
 };

@@ -8,8 +8,8 @@
 #include <random>
 #include <utility>
 
-#include "drivers/odrive/odrive_messages_06.h"
 #include "drivers/drive/device_rig.h"
+#include "drivers/odrive/odrive_messages_06.h"
 #include "support/allocation_guard.h"
 
 namespace robot_control {

@@ -10,8 +10,8 @@
 #include <thread>
 #include <utility>
 
-#include "drivers/line/serial_port.h"
 #include "drivers/line/pseudo_terminal.h"
+#include "drivers/line/serial_port.h"
 
 namespace robot_control {
 

@@ -11,8 +11,8 @@
 #include <memory>
 #include <vector>
 
-#include "drivers/line/can_bus.h"
 #include "drivers/driver.h"
+#include "drivers/line/can_bus.h"
 #include "support/allocation_guard.h"
 #include "support/quiet_refusal.h"
 #include "support/temporary_folder.h"

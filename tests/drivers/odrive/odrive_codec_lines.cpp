@@ -13,8 +13,8 @@
 #include <sstream>
 #include <string>
 
-#include "drivers/odrive/odrive_errors.h"
 #include "drivers/odrive/odrive_catalogue.h"
+#include "drivers/odrive/odrive_errors.h"
 
 namespace robot_control::odrive {
 namespace {

@@ -3,9 +3,9 @@
 
 #include <cmath>
 
+#include "drivers/drive/device_rig.h"
 #include "drivers/odrive/odrive_messages_05.h"
 #include "drivers/odrive/odrive_messages_06.h"
-#include "drivers/drive/device_rig.h"
 
 namespace robot_control::odrive {
 namespace {

@@ -5,8 +5,8 @@
 #include <limits>
 #include <random>
 
-#include "drivers/odrive/odrive_errors.h"
 #include "drivers/odrive/odrive_catalogue.h"
+#include "drivers/odrive/odrive_errors.h"
 
 namespace robot_control::odrive {
 namespace {

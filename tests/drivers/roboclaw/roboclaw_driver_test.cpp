@@ -5,8 +5,8 @@
 #include <limits>
 #include <string>
 
-#include "drivers/roboclaw/roboclaw_machine.h"
 #include "drivers/board/mutated_stream.h"
+#include "drivers/roboclaw/roboclaw_machine.h"
 #include "support/allocation_guard.h"
 
 namespace robot_control {
@@ -111,9 +111,10 @@ TEST_F(RoboclawDriverTest, EveryLossIsAFaultWithItsCauseAndStandsUntilTheReset) 
     const char* words;
   };
   for (const Loss& loss :
-       {Loss{"line", "cut", "is not there"}, Loss{"line", "stalled", "does not answer"},
-        Loss{"board", "off", "does not answer"}, Loss{"board", "reset", "does not answer"},
-        Loss{"board", "fault", "reports an error: temperature 1"}, Loss{"encoder", "stuck", "stand still"}}) {
+       {Loss{"line", "cut", "is silent: no device on the line"}, Loss{"line", "stalled", "is silent: no message"},
+        Loss{"board", "off", "is silent: no message"}, Loss{"board", "reset", "is silent: no message"},
+        Loss{"board", "fault", "reports an error: temperature 1"},
+        Loss{"encoder", "stuck", "stands still though it is driven"}}) {
     SCOPED_TRACE(loss.kind);
     inject(loss.component, loss.kind);
     cycles(1500);
@@ -189,7 +190,7 @@ class LineWithoutAcknowledgement final : public SerialLine {
 
 /// Each question would restart the timeout of a board that receives no order.
 TEST_F(RoboclawDriverTest, AsksNothingMoreUntilAnOrderIsAcknowledged) {
-  auto owned = std::make_unique<LineWithoutAcknowledgement>(machine_.board().driver_end());
+  auto owned = std::make_unique<LineWithoutAcknowledgement>(machine_.board().line().driver_end());
   LineWithoutAcknowledgement& line = *owned;
   machine_.replace_driver(std::move(owned));
   machine_.start();
@@ -210,7 +211,7 @@ TEST_F(RoboclawDriverTest, ABoardWithoutGainsIsRefusedBeforeAnythingMoves) {
   inject("line", "ok");
   machine_.reset();
   cycles(1000);
-  expect_fault("has velocity gains of zero for M1");
+  expect_fault("velocity gains of zero, tune them with the maker's tool, of M1");
   EXPECT_TRUE(stands());
 }
 
@@ -248,7 +249,7 @@ TEST(RoboclawLosses, AStrayByteIsDiscardedInAPauseWhateverIsOrdered) {
   const std::array<std::uint8_t, 1> stray{0x80};
   for (int order = 0; order < 4000; ++order) {
     const std::vector<JointCommand> commands(2, {.mode = JointMode::kDriveVelocity, .velocity = 5 + 0.001 * order});
-    machine.board().driver_end()->send(stray);
+    machine.board().line().driver_end()->send(stray);
     for (int i = 0; i < 35; ++i) {
       machine.read(frame);
       ASSERT_EQ(frame.driver_state, DriverState::kRunning) << order << machine.warning();

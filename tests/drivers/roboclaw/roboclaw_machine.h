@@ -7,8 +7,8 @@
 #include <utility>
 
 #include "drivers/roboclaw/roboclaw_driver.h"
-#include "drivers/wheels_in_air.h"
 #include "drivers/roboclaw/roboclaw_front.h"
+#include "drivers/wheels_in_air.h"
 
 namespace robot_control {
 
@@ -16,7 +16,7 @@ class RoboclawMachine final : public WheelsInAir<RoboclawFront, RoboclawDriver> 
  public:
   explicit RoboclawMachine(double rate) : WheelsInAir(1 / rate) {
     board_ = std::make_unique<RoboclawFront>(parameters(), kBrakes, kLimits, period_, 1);
-    connect(board_->driver_end());
+    connect(board_->line().driver_end());
   }
 
   /// Over a true line; its driver's end is made after its device's end.
@@ -30,7 +30,7 @@ class RoboclawMachine final : public WheelsInAir<RoboclawFront, RoboclawDriver> 
   RoboclawDriver& driver() { return *driver_; }
 
   /// The driver's process ended, and another one is there. The board ran on.
-  void replace_driver() { replace_driver(board_->driver_end()); }
+  void replace_driver() { replace_driver(board_->line().driver_end()); }
   void replace_driver(std::unique_ptr<SerialLine> driver_end) { connect(std::move(driver_end)); }
 
   static RoboclawParameters parameters() {

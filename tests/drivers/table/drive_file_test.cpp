@@ -1,5 +1,3 @@
-#include "drivers/table/drive_file.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -7,6 +5,12 @@
 #include <fstream>
 #include <regex>
 
+#include "drivers/cia402/cia402_parameters.h"
+#include "drivers/drive/can_drive_file.h"
+#include "drivers/odrive/odrive_parameters.h"
+#include "drivers/table/drive_table.h"
+#include "drivers/table/read_drive_file.h"
+#include "drivers/vesc/vesc_parameters.h"
 #include "parameters/problem_list.h"
 #include "support/message_of.h"
 
@@ -39,22 +43,25 @@ left_wheel_joint: {node: 0}
 right_wheel_joint: {node: 1}
 )";
 
-class DriveFile : public ::testing::Test {
+class DriveFileTest : public ::testing::Test {
  protected:
-  CanParameters read(const std::string& text, double rate = 500) const {
+  template <class File = DriveFile>
+  const File& read(const std::string& text, double rate = 500, bool takes_speeds = false,
+                   std::string_view driver = "can") {
     std::ofstream(path_) << text;
-    return read_drive_file(path_, kWheels, rate);
+    file_ = read_drive_file(path_, driver, {.joints = kWheels, .rate = rate, .takes_speeds = takes_speeds});
+    return dynamic_cast<const File&>(*file_);
   }
   std::string refusal(std::string text, const std::string& part, const std::string& replacement, double rate = 500) {
     text.replace(text.find(part), part.size(), replacement);
     return refusal_of(text, rate);
   }
-  std::string refusal_of(const std::string& text, double rate = 500) {
-    return message_of<ParameterError>([&] { read(text, rate); });
+  std::string refusal_of(const std::string& text, double rate = 500, std::string_view driver = "can") {
+    return message_of<ParameterError>([&] { static_cast<void>(read(text, rate, false, driver)); });
   }
   /// Returns an example in which the defaults are no comments.
-  static std::string uncommented(const std::string& name) {
-    std::ifstream file(PROJECT_DIRECTORY "/config/drives/" + name + ".yaml");
+  static std::string uncommented(std::string_view name) {
+    std::ifstream file(example(name));
     std::string text;
     const std::regex line_of_key("  (# )?(\\w+): ([^ ]+).*");
     for (std::string line; std::getline(file, line);) {
@@ -67,20 +74,22 @@ class DriveFile : public ::testing::Test {
     }
     return text;
   }
+  static std::string example(std::string_view name) {
+    return PROJECT_DIRECTORY "/config/drives/" + std::string(name) + ".yaml";
+  }
   void TearDown() override { std::filesystem::remove(path_); }
 
   std::string path_ = ::testing::TempDir() + "drives.yaml";
+  std::unique_ptr<DriveFile> file_;
 };
 
-TEST_F(DriveFile, TheExamplesAreAccepted) {
-  for (const char* name : {"odrive", "cia402", "vesc"}) {
-    const std::string path = PROJECT_DIRECTORY "/config/drives/" + std::string(name) + ".yaml";
-    EXPECT_NO_THROW(read_drive_file(path, kWheels, 1000)) << name;
-  }
+TEST_F(DriveFileTest, TheExamplesAreAccepted) {
+  for (const DriveRow& row : kDriveRows)
+    EXPECT_NO_THROW(read_drive_file(example(row.name), row.driver, {.joints = kWheels, .rate = 1000})) << row.name;
 }
 
-TEST_F(DriveFile, EveryJointHoldsForAllAndTheBlockOfAJointOutweighsIt) {
-  const auto joints = std::get<std::vector<odrive::OdriveParameters>>(read(kOdrive).joints);
+TEST_F(DriveFileTest, EveryJointHoldsForAllAndTheBlockOfAJointOutweighsIt) {
+  const auto& joints = read<CanFileOf<odrive::OdriveParameters>>(kOdrive).joints();
   ASSERT_EQ(joints.size(), 2u);
   EXPECT_EQ(joints[0].drive.joint, "left_wheel_joint");
   EXPECT_EQ(joints[0].torque_constant, 0.1);
@@ -89,7 +98,7 @@ TEST_F(DriveFile, EveryJointHoldsForAllAndTheBlockOfAJointOutweighsIt) {
   EXPECT_EQ(joints[1].drive.direction, -1);
 }
 
-TEST_F(DriveFile, AllProblemsAreInOneMessage) {
+TEST_F(DriveFileTest, AllProblemsAreInOneMessage) {
   const std::string message = refusal(R"(
 bus: {dialect: odrive, bit_rat: 1000000}
 every_joint: {torque_constant: 0.1, torque_limit: -3, velocity_limit: 30}
@@ -105,11 +114,11 @@ third_wheel_joint: {node: 1}
 }
 
 /// Each line of the examples, its commented defaults included, is spoilt in turn.
-TEST_F(DriveFile, EverySpoiltLineOfTheExamplesIsNamed) {
+TEST_F(DriveFileTest, EverySpoiltLineOfTheExamplesIsNamed) {
   int spoilt = 0;
-  for (const char* name : {"odrive", "cia402", "vesc"}) {
-    const std::string text = uncommented(name);
-    ASSERT_NO_THROW(read(text)) << text;
+  for (const DriveRow& row : kDriveRows) {
+    const std::string text = uncommented(row.name);
+    ASSERT_NO_THROW(read(text, 500, false, row.driver)) << text;
     for (std::size_t at = text.find("  "); at != std::string::npos; at = text.find("\n  ", at + 1)) {
       const std::size_t key = text.find_first_not_of(" \n", at);
       const std::size_t colon = text.find(':', key);
@@ -118,41 +127,44 @@ TEST_F(DriveFile, EverySpoiltLineOfTheExamplesIsNamed) {
       if (word == "address") continue;  // Any text is an address.
       std::string renamed = text;
       renamed.insert(colon, "_");
-      EXPECT_THAT(refusal_of(renamed), HasSubstr(word + "_")) << word;
+      EXPECT_THAT(refusal_of(renamed, 500, row.driver), HasSubstr(word + "_")) << word;
       std::string mistyped = text;
       mistyped.replace(colon, end - colon, ": [wrong]");
-      EXPECT_THAT(refusal_of(mistyped), HasSubstr(word + " = [wrong]")) << word;
+      EXPECT_THAT(refusal_of(mistyped, 500, row.driver), HasSubstr(word + " = [wrong]")) << word;
       spoilt += 2;
     }
   }
   EXPECT_GE(spoilt, 100);
 }
 
-TEST_F(DriveFile, AMissingJointAndAForeignJointAreNamed) {
+TEST_F(DriveFileTest, AMissingJointAndAForeignJointAreNamed) {
   EXPECT_THAT(refusal(kOdrive, "right_wheel_joint", "rigth_wheel_joint"),
               AllOf(HasSubstr("rigth_wheel_joint: unknown block"), HasSubstr("right_wheel_joint.node: missing")));
 }
 
-TEST_F(DriveFile, AMissingOrUnknownDialectIsNamed) {
+TEST_F(DriveFileTest, AMissingOrUnknownDialectIsNamed) {
   EXPECT_THAT(refusal(kOdrive, "dialect: odrive", ""), HasSubstr("bus.dialect: missing"));
   EXPECT_THAT(refusal(kOdrive, "odrive", "kelly"), HasSubstr("bus.dialect = kelly: "));
 }
 
-TEST_F(DriveFile, TwoJointsOfOneDriveAreRefused) {
+TEST_F(DriveFileTest, TwoJointsOfOneDriveAreRefused) {
   EXPECT_THAT(refusal(kOdrive, "node: 1", "node: 0"), HasSubstr("is the drive of left_wheel_joint, too"));
   EXPECT_THAT(refusal(kCia402, "node: 2", "node: 1"), HasSubstr("is the drive of left_wheel_joint, too"));
   EXPECT_EQ(refusal(kCia402, "node: 2", "node: 1, axis: 1"), "");
 }
 
-TEST_F(DriveFile, WhatADialectCannotDoIsRefused) {
+TEST_F(DriveFileTest, WhatADialectCannotDoIsRefused) {
   EXPECT_THAT(refusal(kOdrive, "coasts", "holds"), HasSubstr("an ODrive releases the motor"));
   EXPECT_THAT(refusal(kOdrive, "node: 0", "node: 0, enable_watchdog_endpoint: 7"),
               HasSubstr("left_wheel_joint.watchdog_timeout_endpoint: is missing"));
+  EXPECT_EQ(refusal(kOdrive, "node: 0", "node: 0, motor_velocity_limit: 45"), "");
+  EXPECT_THAT(refusal(kOdrive, "node: 0", "node: 0, motor_velocity_limit: 44"),
+              HasSubstr("left_wheel_joint.motor_velocity_limit = 44: must be at least 1.5 · velocity_limit · gear"));
   EXPECT_THAT(refusal(kCia402, "node: 2", "node: 127"), HasSubstr("must be 1 … 127 and not bus.host_node"));
   EXPECT_THAT(refusal(kCia402, "node: 2", "node: 128"), HasSubstr("must be 1 … 127 and not bus.host_node"));
 }
 
-TEST_F(DriveFile, WhatAVescCannotDoIsRefused) {
+TEST_F(DriveFileTest, WhatAVescCannotDoIsRefused) {
   EXPECT_EQ(refusal(kVesc, "node: 1", "node: 254"), "");
   EXPECT_THAT(refusal(kVesc, "node: 1", "node: 255"), HasSubstr("right_wheel_joint.node = 255: must be"));
   EXPECT_THAT(refusal(kVesc, "node: 1", "node: 0"), HasSubstr("is the drive of left_wheel_joint, too"));
@@ -165,48 +177,45 @@ TEST_F(DriveFile, WhatAVescCannotDoIsRefused) {
   EXPECT_THAT(refusal(kVesc, "node: 1", "node: 1, status_period: 0.001", 1000), HasSubstr("load the bus with"));
 }
 
-TEST_F(DriveFile, AVescThatTakesSpeedsNeedsNoTorqueConstant) {
+TEST_F(DriveFileTest, AVescThatTakesSpeedsNeedsNoTorqueConstant) {
   std::string text = kVesc;
   text.erase(text.find("torque_constant: 0.5, "), 22);
-  std::ofstream(path_) << text;
-  const CanParameters can = read_drive_file(path_, kWheels, 1000, true);
-  EXPECT_TRUE(std::get<std::vector<vesc::VescParameters>>(can.joints)[0].drive.takes_speeds);
+  EXPECT_TRUE(read<CanFileOf<vesc::VescParameters>>(text, 1000, true).joints()[0].drive.takes_speeds);
 }
 
-TEST_F(DriveFile, ATimeoutOfLessThanTenPeriodsIsRefused) {
+TEST_F(DriveFileTest, ATimeoutOfLessThanTenPeriodsIsRefused) {
   EXPECT_THAT(refusal(kCia402, "node: 2", "node: 2, host_timeout: 0.019"),
               HasSubstr("right_wheel_joint.host_timeout = 0.019: must be at least ten periods of the loop"));
   EXPECT_EQ(refusal(kCia402, "node: 2", "node: 2, host_timeout: 0.02"), "");
 }
 
-TEST_F(DriveFile, ATimeoutThatIsLeftOutHasTenPeriods) {
+TEST_F(DriveFileTest, ATimeoutThatIsLeftOutHasTenPeriods) {
   for (const auto& [rate, timeout] : {std::pair{500.0, 0.1}, {50.0, 0.2}, {20.0, 0.5}}) {
-    const CanParameters can = read(kCia402, rate);
-    EXPECT_DOUBLE_EQ(std::get<std::vector<cia402::Cia402Parameters>>(can.joints)[0].host_timeout, timeout) << rate;
+    EXPECT_DOUBLE_EQ(read<CanFileOf<cia402::Cia402Parameters>>(kCia402, rate).joints()[0].host_timeout, timeout)
+        << rate;
   }
 }
 
-TEST_F(DriveFile, AVelocityIsDerivedWhereTheBusHasRoom) {
+TEST_F(DriveFileTest, AVelocityIsDerivedWhereTheBusHasRoom) {
   for (const auto& [rate, room] : {std::pair{1000.0, true}, {1200.0, false}}) {
-    const CanParameters can = read(kCia402, rate);
-    EXPECT_EQ(std::get<std::vector<cia402::Cia402Parameters>>(can.joints)[0].velocity_has_room, room) << rate;
+    EXPECT_EQ(read<CanFileOf<cia402::Cia402Parameters>>(kCia402, rate).joints()[0].velocity_has_room, room) << rate;
   }
 }
 
-TEST_F(DriveFile, AReactionOnSilenceWithoutAnActionIsRefused) {
+TEST_F(DriveFileTest, AReactionOnSilenceWithoutAnActionIsRefused) {
   EXPECT_THAT(refusal(kCia402, "node: 2", "node: 2, abort_option: 0, on_silence: holds"),
               HasSubstr("right_wheel_joint.on_silence = holds: contradicts abort_option: 0"));
   EXPECT_EQ(refusal(kCia402, "node: 2", "node: 2, abort_option: 0, accept_unknown_watchdog: true"), "");
 }
 
-TEST_F(DriveFile, TorquesThatTheDriveSendsByItselfCountForTheLoad) {
+TEST_F(DriveFileTest, TorquesThatTheDriveSendsByItselfCountForTheLoad) {
   EXPECT_THAT(refusal(kOdrive, "node: 0", "node: 0, effort_rate: 0"), HasSubstr("left_wheel_joint.effort_rate = 0: "));
   EXPECT_EQ(refusal(kOdrive, "node: 0", "node: 0, effort_period: 0.01"), "");
   EXPECT_EQ(refusal(kOdrive, "coasts", "coasts", 1000), "");
   EXPECT_THAT(refusal(kOdrive, "coasts", "coasts, effort_period: 0.001", 1000), HasSubstr("load the bus with"));
 }
 
-TEST_F(DriveFile, AnOverloadedBusIsRefusedWithTheRateThatFits) {
+TEST_F(DriveFileTest, AnOverloadedBusIsRefusedWithTheRateThatFits) {
   EXPECT_THAT(refusal(kOdrive, "dialect: odrive", "dialect: odrive, bit_rate: 500000", 1000),
               HasSubstr("set robot.rate to at most 5"));
 }

@@ -7,6 +7,8 @@ import tempfile
 from collections.abc import Sequence
 from pathlib import Path
 
+from robot_control.loop.drives import DRIVES
+
 LEGGED_ROBOT = "quadbot"
 
 
@@ -23,23 +25,23 @@ def parse(arguments: Sequence[str] | None = None) -> argparse.Namespace:
     )
     parser.add_argument(
         "--drives",
-        choices=("odrive", "cia402", "vesc", "board", "roboclaw"),
+        choices=tuple(DRIVES),
         help="the motors stand behind such simulated drives",
     )
     parser.add_argument(
         "--wheel-command",
         choices=("torque", "velocity"),
-        help="what the drives take (default torque, and velocity with --drives roboclaw)",
+        help="what the drives take (default torque, or what --drives takes alone)",
     )
     given = parser.parse_args(arguments)
     if given.drives and given.robot == LEGGED_ROBOT:
         parser.error(f"--drives move wheels alone, and {LEGGED_ROBOT} stands on legs: leave one of both out")
     if given.wheel_command and given.robot == LEGGED_ROBOT:
         parser.error(f"--wheel-command is of wheels, and {LEGGED_ROBOT} stands on legs: leave one of both out")
-    only = "velocity" if given.drives == "roboclaw" else None
-    given.wheel_command = given.wheel_command or only or "torque"
-    if only not in (None, given.wheel_command):
-        parser.error(f"the board of --drives {given.drives} takes {only} alone: leave --wheel-command out")
+    commands = DRIVES[given.drives].wheel_commands if given.drives else ("torque", "velocity")
+    given.wheel_command = given.wheel_command or commands[0]
+    if given.wheel_command not in commands:
+        parser.error(f"the board of --drives {given.drives} takes {commands[0]} alone: leave --wheel-command out")
     return given
 
 

@@ -24,6 +24,7 @@ from robot_control.data.loop_timing import processor_time, stolen_share
 from robot_control.data.run_log import LogError, read_log
 from robot_control.files.files import in_words, printable, utf8
 from robot_control.installed_files import share_file
+from robot_control.loop.drives import DRIVES
 from robot_control.loop.roles import DRIVER, LEGGED, LOOP, TELEMETRY, WHEELED, Kind
 from robot_control.loop.signal_names import number_of
 from robot_control.msg import Trace
@@ -164,7 +165,7 @@ def _drive(seconds: float, out: Path, robot: str, drives: Path | None, parameter
                     if drives is None
                     else [
                         f"drives:={drives}",
-                        f"driver:={drives.stem if drives.stem in ('board', 'roboclaw') else 'can'}",
+                        f"driver:={DRIVES[drives.stem].driver}",
                     ]
                 ),
             ],

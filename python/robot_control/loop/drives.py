@@ -1,0 +1,28 @@
+"""The drives of src/drivers/drive_table.def."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from pathlib import Path
+
+from robot_control.installed_files import share_file
+
+
+@dataclass(frozen=True)
+class DriveRow:
+    """One drive: its name, the word of robot.driver, and what it takes: `any`, or the one robot.wheel_command."""
+
+    name: str
+    driver: str
+    command: str
+
+    @property
+    def wheel_commands(self) -> tuple[str, ...]:
+        """The values of robot.wheel_command that it takes."""
+        return ("torque", "velocity") if self.command == "any" else (self.command,)
+
+
+_TABLE = Path(share_file("src/drivers/drive_table.def")).read_text(encoding="utf-8")
+DRIVES = {row[0]: DriveRow(*row) for row in re.findall(r"^DRIVE\((\w+), (\w+), (\w+)\)", _TABLE, re.MULTILINE)}
+"""by name"""

@@ -1,0 +1,102 @@
+#include "drivers/drive/drive_status.h"
+
+#include <cstdio>
+
+namespace robot_control {
+namespace {
+
+struct CauseWords {
+  const char* words;
+  const char* remedy;
+};
+
+// In the order of DriveCause.
+constexpr CauseWords kCauseWords[] = {
+    {"", ""},
+    {"waits for a first frame of the drive", "look at its power, the cable, the node number and the bit rate"},
+    {"waits for version and identity", ""},
+    {"waits for object", ""},
+    {"waits for the first position", "let the drive send its positions, or request them by the drive file"},
+    {"waits for", "turn it on with the maker's tool"},
+    {"waits to be enabled", ""},
+    {"waits for torque", ""},
+    {"is silent: no", "look at its power and the cable"},
+    {"reports an error:", "remove the cause, then reset"},
+    {"released the motor without an error:", "look at its supply and its own limits, then reset"},
+    {"was switched on again", "look at its supply, then reset"},
+    {"reports a jump of its", "the drive has another zero or was switched on again; reset where it stands still"},
+    {"sent a number that is not finite", "look at the encoder, then reset"},
+    {"is too hot:", "let it cool, then reset"},
+    {"has a low supply:", "charge the battery, then reset"},
+    {"is commanded by another program, with frame", "stop that program, then reset"},
+    {"differs from the drive file:", "correct the drive or the file, then reset"},
+    {"lacks", "use a drive that has it, or state it in the drive file"},
+    {"refused to set", "set it with the maker's tool, or leave it out of the drive file"},
+    {"did not answer a request for", "look at the cable, then reset"},
+    {"stays without torque:", "look at its supply, its calibration and its enable input, then reset"},
+    {"shares its node number with a second drive", "give one of them another number"},
+    {"has another axis in fault", ""},
+    {"has an unknown reaction on silence",
+     "set its watchdog and state on_silence, or accept_unknown_watchdog: true in the drive file"},
+    {"braked by itself, because it received no order in time", "look at the line, then reset"},
+    {"stands still though it is driven: no counts of", "look at its encoder's plug and for what blocks it, then reset"},
+};
+static_assert(std::size(kCauseWords) == static_cast<std::size_t>(DriveCause::kNoCounts) + 1);
+
+constexpr const char* kStateWords[] = {"starting", "ready", "running", "fault"};
+
+std::string number_words(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.4g", value);
+  return text;
+}
+
+}  // namespace
+
+std::string status_words(const std::string& name, const DriveStatus& status, const std::string& code) {
+  const CauseWords& cause = kCauseWords[static_cast<std::size_t>(status.cause)];
+  std::string text = name + ": " + kStateWords[static_cast<std::size_t>(status.state)];
+  if (status.cause == DriveCause::kNone) return text;
+  text += std::string("; the drive ") + cause.words;
+  if (*status.subject != '\0') text += std::string(" ") + status.subject;
+  if (!code.empty()) text += " " + code;
+  if (status.found != status.expected) {
+    text += ", " + number_words(status.found) + " instead of " + number_words(status.expected);
+  }
+  return *cause.remedy == '\0' ? text : text + "; " + cause.remedy;
+}
+
+DriverFault fault_of(DriveCause cause) noexcept {
+  switch (cause) {
+    case DriveCause::kSilent:
+    case DriveCause::kNoAnswer:
+      return kFaultLink;
+    case DriveCause::kNotFinite:
+      return kFaultNotFinite;
+    default:
+      return kFaultDrive;
+  }
+}
+
+void DriveStateMachine::set(DriveState state, DriveCause cause, const char* subject, std::uint64_t code, double found,
+                            double expected) noexcept {
+  if (status_.state == DriveState::kFault) return;
+  status_ = {.state = state, .cause = cause, .subject = subject, .code = code, .found = found, .expected = expected};
+}
+
+void DriveStateMachine::fail(DriveCause cause, const char* subject, std::uint64_t code, double found,
+                             double expected) noexcept {
+  const bool brakes =
+      cause == DriveCause::kHot || cause == DriveCause::kUnderVoltage || cause == DriveCause::kForeignCommander;
+  if (status_.state == DriveState::kFault && (brakes || !may_brake_)) return;
+  had_torque_ = status_.state >= DriveState::kRunning;
+  may_brake_ = brakes && status_.state == DriveState::kRunning;
+  status_ = {.state = DriveState::kFault,
+             .cause = cause,
+             .subject = subject,
+             .code = code,
+             .found = found,
+             .expected = expected};
+}
+
+}  // namespace robot_control

@@ -1,0 +1,20 @@
+#include "drivers/table/simulated_front.h"
+
+#include "drivers/drive/can_drive_file.h"
+#include "drivers/line/pseudo_terminal.h"
+
+namespace robot_control {
+
+std::unique_ptr<DeviceFront> make_front(const DriveFile& file, FrontSetup setup) {
+#define DRIVE(name, ...) \
+  if (file.request().drive == #name) return make_##name##_front(file, std::move(setup));
+#include "drivers/drive_table.def"
+  return nullptr;
+}
+
+LineEnd open_devices_end(const DriveFile& file) {
+  if (dynamic_cast<const CanDriveFile*>(&file) != nullptr) return CanSocket::open(file.address());
+  return std::make_unique<PseudoTerminal>(file.address());
+}
+
+}  // namespace robot_control

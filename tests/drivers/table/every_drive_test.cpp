@@ -1,0 +1,109 @@
+/// Claims about every drive of drive_table.def: the contract of a driver, and rest when its answers fail.
+
+#include <cmath>
+
+#include "drivers/driver_contract.h"
+#include "drivers/line/answer_faults.h"
+#include "drivers/table/drive_machine.h"
+
+namespace robot_control {
+namespace {
+
+struct DriveUnderTest {
+  const DriveRow* row = nullptr;
+  bool takes_speeds = false;
+};
+
+void PrintTo(const DriveUnderTest& drive, std::ostream* out) {
+  *out << drive.row->name << (drive.takes_speeds ? " with speeds" : " with torques");
+}
+
+std::vector<DriveUnderTest> all_drives() {
+  std::vector<DriveUnderTest> drives;
+  for (const DriveRow& row : kDriveRows) {
+    if (row.command == "any") drives.push_back({&row, false});
+    drives.push_back({&row, true});
+  }
+  return drives;
+}
+
+std::vector<MachineUnderTest> drives_with_torques() {
+  std::vector<MachineUnderTest> machines;
+  for (const DriveUnderTest& drive : all_drives()) {
+    if (drive.takes_speeds) continue;
+    machines.push_back({.name = std::string(drive.row->name),
+                        .make = [row = drive.row] { return std::make_unique<DriveMachine>(*row, false); },
+                        .period = 1 / DriveMachine::kRate,
+                        .effort_limit = 3,
+                        .effort = 0.1,
+                        .damping = 0.5,
+                        .stiffness = 5,
+                        .devices_allocate = true});
+  }
+  return machines;
+}
+
+INSTANTIATE_TEST_SUITE_P(EveryDrive, DriverContract, testing::ValuesIn(drives_with_torques()), machine_name);
+
+class EveryDrive : public testing::TestWithParam<DriveUnderTest> {
+ protected:
+  void SetUp() override {
+    machine_.start();
+    ASSERT_EQ(run(2), DriverState::kRunning) << machine_.warning();
+    ASSERT_NEAR(machine_.joints[0].velocity, kSpeed, 0.5);
+  }
+
+  DriverState run(double seconds) {
+    const JointCommand command = GetParam().takes_speeds
+                                     ? JointCommand{.mode = JointMode::kDriveVelocity, .velocity = kSpeed}
+                                     : JointCommand{.mode = JointMode::kVelocity, .velocity = kSpeed, .damping = 0.2};
+    for (int i = 0; i < seconds * DriveMachine::kRate; ++i) {
+      machine_.read(frame_);
+      machine_.write(std::vector<JointCommand>(2, command));
+    }
+    return frame_.driver_state;
+  }
+  bool turns() const { return std::abs(machine_.joints[0].velocity) + std::abs(machine_.joints[1].velocity) > 0.5; }
+
+  static constexpr double kSpeed = 5;  // rad/s
+  DriveMachine machine_{*GetParam().row, GetParam().takes_speeds};
+  SensorFrame frame_;
+};
+
+TEST_P(EveryDrive, IsAtRestWhileItsAnswersFailAndUntilTheReset) {
+  const std::string component = machine_.file().line_block() == "bus" ? "bus" : "line";
+  for (const std::string_view fault : kAnswerFaults) {
+    if (fault == "ok") continue;
+    SCOPED_TRACE(std::string(fault));
+    ASSERT_EQ(machine_.board().inject(component, fault), "");
+    run(1);
+    for (int i = 0; i < 20; ++i) {
+      ASSERT_FALSE(turns()) << 0.1 * i;
+      run(0.1);
+    }
+    ASSERT_EQ(machine_.board().inject(component, "ok"), "");
+    EXPECT_EQ(run(2), DriverState::kFault);
+    EXPECT_FALSE(turns());
+    for (int i = 0; i < 20 && frame_.driver_state == DriverState::kFault; ++i) {
+      machine_.reset();
+      run(1);
+    }
+    run(3);
+    ASSERT_EQ(frame_.driver_state, DriverState::kRunning) << machine_.warning();
+    ASSERT_TRUE(turns()) << machine_.warning();
+  }
+}
+
+TEST_P(EveryDrive, StatesWhatItCanDo) {
+  for (std::size_t joint = 0; joint < 2; ++joint) {
+    EXPECT_EQ(machine_.file().capability(joint).velocity, 30);
+    EXPECT_GE(machine_.file().capability(joint).torque, 3);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Table, EveryDrive, testing::ValuesIn(all_drives()), [](const auto& each) {
+  return std::string(each.param.row->name) + (each.param.takes_speeds ? "_with_speeds" : "_with_torques");
+});
+
+}  // namespace
+}  // namespace robot_control
