@@ -5,6 +5,7 @@
 #include "machine/wheeled/drive_train.h"
 #include "robots/differential_drive.h"
 #include "robots/quadruped.h"
+#include "robots/wheeled/within_drives.h"
 #include "signals/robot_kinds.h"
 
 namespace robot_control {
@@ -17,6 +18,11 @@ std::unique_ptr<MachineModel> read_robot(const RobotDescription& description, co
   if (kind_of(description) == MachineKind::kOnLegs)
     return std::make_unique<LegModel>(read_legs(description, parameters.robot, parameters.legs));
   return std::make_unique<DriveTrain>(read_drive_train(description, parameters.robot));
+}
+
+Parameters limited_by_drives(const Parameters& parameters, const RobotDescription& description) {
+  const bool unlimited = parameters.drives.empty() || kind_of(description) == MachineKind::kOnLegs;
+  return unlimited ? parameters : within_drives(parameters, description);
 }
 
 MachineKind kind_of(const MachineModel& machine) noexcept {

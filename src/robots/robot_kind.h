@@ -18,6 +18,10 @@ enum class MachineKind { kOnWheels, kOnLegs };
 /// Throws RobotError as read_moving_bodies.
 MachineKind kind_of(const RobotDescription& description);
 
+/// Returns the parameters within what the drives of Parameters::drives can do (robots/wheeled/within_drives.h); those
+/// of a robot on legs are as given. Throws as read_robot, and ParameterError with all problems of the drive file.
+Parameters limited_by_drives(const Parameters& parameters, const RobotDescription& description);
+
 /// Returns the machine of its kind: a DriveTrain or a LegModel. Throws RobotError as read_drive_train or read_legs.
 std::unique_ptr<MachineModel> read_robot(const RobotDescription& description, const Parameters& parameters);
 

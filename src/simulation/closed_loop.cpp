@@ -102,7 +102,10 @@ struct ClosedLoop::Parts {
   std::string log_problem;
 };
 
-ClosedLoop::ClosedLoop(const Parameters& parameters) : ClosedLoop(parameters, make_robot(parameters)) {}
+ClosedLoop::ClosedLoop(const Parameters& given) {
+  const Parameters parameters = given.drives.empty() ? given : limited_by_drives(given, load_description(given.urdf));
+  parts_ = std::make_unique<Parts>(parameters, make_robot(parameters));
+}
 ClosedLoop::ClosedLoop(const Parameters& parameters, std::shared_ptr<const Robot> robot)
     : parts_(std::make_unique<Parts>(parameters, std::move(robot))) {}
 ClosedLoop::~ClosedLoop() = default;

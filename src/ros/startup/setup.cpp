@@ -146,7 +146,9 @@ void fill_setup(const std::string& node, Setup& setup) {
   }
   add(problems, clock_problem(setup.parameters.loop.clock, use_sim_time));
   try {
-    setup.machine = read_robot(description(setup.parameters, overlays, setup.unread_description), setup.parameters);
+    const RobotDescription chosen = description(setup.parameters, overlays, setup.unread_description);
+    setup.parameters = limited_by_drives(setup.parameters, chosen);
+    setup.machine = read_robot(chosen, setup.parameters);
     std::string& base_frame = setup.parameters.report.base_frame;
     if (base_frame.empty()) base_frame = setup.machine->base_link;
     add(problems, other_controller(node, *setup.machine));
