@@ -89,6 +89,12 @@ void add_command(TraceFields& to) {
   number("silence_needed", "cycles", MEMBER(command.silence_needed));
 }
 
+void add_frame_only_command(TraceFields& to) {
+  per_joint<C, f64>(to, "position_command", "rad or m", ELEMENT(command.joints[i].position));
+  per_joint<C, f64>(to, "stiffness_command", "N*m/rad or N/m", ELEMENT(command.joints[i].stiffness));
+  per_joint<C, f64>(to, "damping_command", "N*m*s/rad or N*s/m", ELEMENT(command.joints[i].damping));
+}
+
 void add_tuning(TraceFields& to) {
   const auto number = [&](const char* name, const char* unit, auto get) { field<C, f64>(to, name, unit, get).shown(); };
   field<C, u64>(to, "tuning", "sets of live parameters accepted; what follows was in force", TUNING(count)).shown();

@@ -154,6 +154,10 @@ void add_driver(TraceFields& to) {
   field<D, u64>(to, "held_ns", "ns for which a simulated plant stood", MEMBER(sensors.held_ns));
 }
 
+void add_frame_only_gate(TraceFields& to) {
+  field<D, f64>(to, "gate_stance", "by leg", MEMBER(gate.stance));
+}
+
 void add_truth(TraceFields& to) {
   field<D, f32>(to, "truth_position", "m, of base_link from where it was in cycle 0; simulation only",
                 MEMBER(truth.pose_world.position))

@@ -24,7 +24,7 @@ void add_estimate(TraceFields& to) {
           column<E>("estimate_roll", "rad", [](const E& e, std::size_t) { return roll_of(e.state.base.attitude); }))
       .shown_as(
           column<E>("estimate_pitch", "rad", [](const E& e, std::size_t) { return pitch_of(e.state.base.attitude); }));
-  const auto entry = [&](const char* name, const char* unit, auto get) { field<E, f32>(to, name, unit, get).shown(); };
+  const auto entry = [&](const char* name, const char* unit, auto get) { field<E, f32>(to, name, unit, get).shown().as_part(); };
   entry("estimate_x_variance", "m^2", MEMBER(state.base.pose_covariance[0]));
   entry("estimate_y_variance", "m^2", MEMBER(state.base.pose_covariance[7]));
   entry("estimate_yaw_variance", "rad^2", MEMBER(state.base.pose_covariance[35]));
@@ -93,6 +93,12 @@ void add_trust(TraceFields& to) {
   field<E, u64>(to, "estimate_degraded", "DegradedReason bits", MEMBER(state.base.degraded));
   field<E, u64>(to, "estimate_skipped", "sensor cycles of this run never seen", MEMBER(state.skipped)).shown();
   field<E, u64>(to, "estimate_first_cycle", "of this process in this run", MEMBER(state.first_cycle));
+}
+
+void add_frame_only_estimate(TraceFields& to) {
+  field<E, f64>(to, "pose_covariance", "m^2, m*rad, rad^2", MEMBER(state.base.pose_covariance));
+  field<E, f64>(to, "twist_covariance", "m^2/s^2, m*rad/s^2, rad^2/s^2", MEMBER(state.base.twist_covariance));
+  field<E, f64>(to, "attitude_covariance", "rad^2", MEMBER(state.base.attitude_covariance));
 }
 
 }  // namespace robot_control

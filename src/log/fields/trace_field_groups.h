@@ -16,5 +16,8 @@ void add_permit(TraceFields& to);
 void add_driver(TraceFields& to);
 void add_calls(TraceFields& to);
 void add_tuning(TraceFields& to);
+void add_frame_only_gate(TraceFields& to);
+void add_frame_only_estimate(TraceFields& to);
+void add_frame_only_command(TraceFields& to);
 
 }  // namespace robot_control

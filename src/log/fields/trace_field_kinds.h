@@ -139,66 +139,75 @@ struct ArraySize<std::array<Element, N>> : std::integral_constant<std::size_t, N
 TraceField& add_field(TraceFields& to, std::string_view name, std::string_view type, std::string_view comment,
                       std::string_view elements = "");
 
-/// The field is a number, or an array of fixed length.
-template <class Part, class Wire, class Get>
-TraceField& field(TraceFields& to, std::string_view name, std::string_view comment, Get) {
-  using Value = std::decay_t<std::invoke_result_t<Get, Part&>>;
-  constexpr std::size_t kSize = ArraySize<Value>::value;
-  if constexpr (kSize == 0) {
-    TraceField& result = add_field(to, name, wire_name<Wire>(), comment);
-    set_value<Part>(result.plain, [](const Part& part, std::size_t) { return as_number(Get{}(part)); });
-    result.write = [](const TraceSource& source, std::string& message) {
-      const Part* part = part_of<Part>(source.row);
-      write_number(message, part != nullptr ? static_cast<Wire>(Get{}(*part)) : none<Wire>());
-    };
-    result.read = [](ByteSource& from, TraceRow& row) {
-      Get{}(part_of<Part>(row)) = static_cast<Value>(from.number<Wire>());
-      return true;
-    };
-    return result;
-  } else {
-    TraceField& result = add_field(to, name, wire_name<Wire>(), comment, "[" + std::to_string(kSize) + "]");
-    if constexpr (std::is_arithmetic_v<typename Value::value_type>) {
-      set_value<Part>(result.plain, [](const Part& part, std::size_t i) { return as_number(Get{}(part)[i]); });
-    }
-    result.write = [](const TraceSource& source, std::string& message) {
-      const Part* part = part_of<Part>(source.row);
-      for (std::size_t i = 0; i < kSize; ++i) {
-        write_number(message, part != nullptr ? static_cast<Wire>(Get{}(*part)[i]) : none<Wire>());
-      }
-    };
-    result.read = [](ByteSource& from, TraceRow& row) {
-      auto& values = Get{}(part_of<Part>(row));
-      for (auto& value : values) value = static_cast<std::decay_t<decltype(value)>>(from.number<Wire>());
-      return true;
-    };
-    return result;
-  }
-}
-
-/// A list has at most `Max` elements. `Size` is a stateless lambda of a part (null: missing) and the number of joints.
+/// Appends a field of at most `Max` numbers. `Get` returns number i. `Size` is a stateless lambda of a part (null:
+/// missing) and the number of joints; void: there are always `Max` numbers.
 template <class Part, class Wire, std::size_t Max, class Size, class Get>
-TraceField& list(TraceFields& to, std::string_view name, std::string_view comment, Size, Get) {
+TraceField& add_numbers(TraceFields& to, std::string_view name, std::string_view comment, std::string_view elements) {
   using Value = std::decay_t<std::invoke_result_t<Get, Part&, std::size_t>>;
-  TraceField& result = add_field(to, name, wire_name<Wire>(), comment, "[]");
+  constexpr bool kList = !std::is_void_v<Size>;
+  TraceField& result = add_field(to, name, wire_name<Wire>(), comment, elements);
   set_value<Part>(result.plain, [](const Part& part, std::size_t i) { return as_number(Get{}(part, i)); });
   result.write = [](const TraceSource& source, std::string& message) {
     const Part* part = part_of<Part>(source.row);
-    const std::size_t size = Size{}(part, source.joints);
-    write_number(message, static_cast<std::uint32_t>(size));
+    std::size_t size = Max;
+    if constexpr (kList) {
+      size = Size{}(part, source.joints);
+      write_number(message, static_cast<std::uint32_t>(size));
+    }
     for (std::size_t i = 0; i < size; ++i) {
       write_number(message, part != nullptr ? static_cast<Wire>(Get{}(*part, i)) : none<Wire>());
     }
   };
   result.read = [](ByteSource& from, TraceRow& row) {
-    const auto size = from.number<std::uint32_t>();
+    std::size_t size = Max;
+    if constexpr (kList) size = from.number<std::uint32_t>();
     if (size > Max) return false;
     for (std::size_t i = 0; i < size; ++i) {
       Get{}(part_of<Part>(row), i) = static_cast<Value>(from.number<Wire>());
     }
     return true;
   };
+  using Member = std::conditional_t<std::is_floating_point_v<Value>, double, std::uint64_t>;
+  result.member_type = wire_name<Member>() + (elements.empty() ? "" : "[" + std::to_string(Max) + "]");
+  result.write_member = [](const JoinedRow& row, std::string& bytes) {
+    const Part* part = part_of<Part>(row);
+    for (std::size_t i = 0; part != nullptr && i < Max; ++i) {
+      write_number(bytes, static_cast<Member>(Get{}(*part, i)));
+    }
+  };
   return result;
+}
+
+template <class Get>
+struct Itself {
+  template <class Part>
+  auto& operator()(Part& part, std::size_t) const {
+    return Get{}(part);
+  }
+};
+template <class Get>
+struct ElementOf {
+  template <class Part>
+  auto& operator()(Part& part, std::size_t i) const {
+    return Get{}(part)[i];
+  }
+};
+
+/// The field is a number, or an array of fixed length.
+template <class Part, class Wire, class Get>
+TraceField& field(TraceFields& to, std::string_view name, std::string_view comment, Get) {
+  constexpr std::size_t kSize = ArraySize<std::decay_t<std::invoke_result_t<Get, Part&>>>::value;
+  if constexpr (kSize == 0) {
+    return add_numbers<Part, Wire, 1, void, Itself<Get>>(to, name, comment, "");
+  } else {
+    return add_numbers<Part, Wire, kSize, void, ElementOf<Get>>(to, name, comment, "[" + std::to_string(kSize) + "]");
+  }
+}
+
+/// A list has at most `Max` elements.
+template <class Part, class Wire, std::size_t Max, class Size, class Get>
+TraceField& list(TraceFields& to, std::string_view name, std::string_view comment, Size, Get) {
+  return add_numbers<Part, Wire, Max, Size, Get>(to, name, comment, "[]");
 }
 
 /// The list holds a value for each joint.

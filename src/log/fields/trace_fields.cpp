@@ -173,6 +173,22 @@ TraceField& TraceField::as_timing() {
   return *this;
 }
 
+TraceField& TraceField::as_part() {
+  write_member = nullptr;
+  return *this;
+}
+
+const TraceFields& frame_only_fields() {
+  static const TraceFields fields = [] {
+    TraceFields all;
+    add_frame_only_gate(all);
+    add_frame_only_estimate(all);
+    add_frame_only_command(all);
+    return all;
+  }();
+  return fields;
+}
+
 const std::vector<TraceField>& trace_fields() {
   static const TraceFields fields = all_fields();
   return fields;

@@ -84,6 +84,10 @@ struct TraceField {
   /// False: the list is longer than the member.
   bool (*read)(ByteSource& from, TraceRow& row) = nullptr;
 
+  std::string member_type = {};  ///< "float64[3]", "uint64": of what the next function writes
+  /// Writes all numbers of the member with its full precision; null: another field does.
+  void (*write_member)(const JoinedRow& row, std::string& bytes) = nullptr;
+
   /// These functions add columns. Without names, the column has the name of the field; with names, each of the first
   /// elements has a column.
   TraceField& shown();
@@ -93,10 +97,15 @@ struct TraceField {
   TraceField& shown_as(TraceColumn column);
   /// All columns of this field are of kind `timing`.
   TraceField& as_timing();
+  /// This field shows a part of a member that another field holds whole.
+  TraceField& as_part();
 };
 
 using TraceFields = std::vector<TraceField>;
 const TraceFields& trace_fields();
+
+/// The members of frames that the message holds only where it holds a whole frame.
+const TraceFields& frame_only_fields();
 
 /// The columns of a table, with their meaning, in the order of the fields. `joints` and `contacts`: names in the order
 /// of MachineModel::joints and MachineModel::contacts. `timing`: with the columns of that kind.

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "log/replay/frame_fields.h"
+#include "log/replay/field_differences.h"
 #include "log/replay/owned_row.h"
 #include "log/replay/replicas.h"
 #include "log/replay/row_check.h"
@@ -39,6 +39,30 @@ Gate& law_of(Gate& law) {
   return law;
 }
 
+/// The rows of one node, as the other nodes had none.
+JoinedRow alone(const DriverTrace& trace) {
+  return {.driver = &trace};
+}
+JoinedRow alone(const EstimatorTrace& trace) {
+  return {.laws = {.estimator = &trace}};
+}
+JoinedRow alone(const ControllerTrace& trace) {
+  return {.laws = {.controller = &trace}};
+}
+JoinedRow alone(const MonitorTrace& trace) {
+  return {.laws = {.monitor = &trace}};
+}
+
+StateFrame& frame_of(EstimatorTrace& trace) {
+  return trace.state;
+}
+CommandFrame& frame_of(ControllerTrace& trace) {
+  return trace.command;
+}
+Permit& frame_of(MonitorTrace& trace) {
+  return trace.permit;
+}
+
 /// The head of the frame that a law computes in the cycle of `head`.
 FrameHead own_head(const FrameHead& head) {
   return {.run = head.run, .cycle = head.cycle, .stamp_ns = head.stamp_ns};
@@ -67,9 +91,8 @@ struct Replay::Parts {
         row, snapshots, [&](const LawSnapshot& snapshot) { return restore_state(snapshot, law_of(replica.law)); });
   }
 
-  template <class Frame, class Replica>
-  void compare(const OwnedRow& row, Replica& replica, LawRow& law, Frame& logged, FaultKind fault,
-               FrameHistory<Frame>& published);
+  template <class Trace, class Replica, class Frame>
+  void compare(const OwnedRow& row, Replica& replica, Trace& trace, FaultKind fault, FrameHistory<Frame>& published);
   template <class Frame>
   void publish(const LawRow& law, const Frame& logged, const Frame* computed, FrameHistory<Frame>& published);
   template <class Replica>
@@ -142,16 +165,23 @@ void Replay::Parts::publish(const LawRow& law, const Frame& logged, const Frame*
   }
 }
 
-template <class Frame, class Replica>
-void Replay::Parts::compare(const OwnedRow& row, Replica& replica, LawRow& law, Frame& logged, FaultKind fault,
+template <class Trace, class Replica, class Frame>
+void Replay::Parts::compare(const OwnedRow& row, Replica& replica, Trace& trace, FaultKind fault,
                             FrameHistory<Frame>& published) {
   replica.continuity.compare();
+  LawRow& law = trace.calls.law;
+  Frame& logged = frame_of(trace);
   Frame& computed = replica.output;
   computed.head = own_head(logged.head);
   seal(computed);
   if (computed.head.checksum != law.output) {
     std::vector<FieldDifference> fields;
-    if (logged.head.checksum == law.output && intact(logged)) fields = differences(logged, computed);
+    if (logged.head.checksum == law.output && intact(logged)) {
+      Trace expected = trace;
+      frame_of(expected) = computed;
+      frame_of(expected).head = logged.head;
+      fields = differences(alone(trace), alone(expected));
+    }
     if (fields.empty()) {
       fields = {{"digest", std::to_string(law.output), std::to_string(computed.head.checksum)}};
     }
@@ -200,11 +230,14 @@ void Replay::Parts::run(const OwnedRow& row, DriverTrace& driver) {
   const std::span<const JointCommand> commands = gate.law.step(input);
   gate.continuity.compare();
   const std::uint64_t output = digest_of(commands, gate.law.report());
-  if (std::exchange(law.output, output) != output) {
-    std::vector<FieldDifference> fields = differences(driver.gate, gate.law.report());
+  if (law.output != output) {
+    DriverTrace expected = driver;
+    expected.gate = gate.law.report();
+    std::vector<FieldDifference> fields = differences(alone(driver), alone(expected));
     if (fields.empty()) fields = {{"commands", "others", "what the state and the inputs give"}};
     differ(row, LawName::kGate, fields);
   }
+  law.output = output;
   driver.gate = gate.law.report();
   driver.calls.permit = used(input.permit_found, *input.permit);
   driver.calls.command = used(input.command_found, *input.command);
@@ -226,7 +259,7 @@ void Replay::Parts::run(const OwnedRow& row, EstimatorTrace& trace) {
   const StateFrame* varied = variant == nullptr ? nullptr : variant->step(calls, sensors);
   estimator.law->step(sensors, estimator.output);
   estimator.output.first_cycle = calls.first_cycle;
-  compare(row, estimator, calls.law, trace.state, fault_of(sensors.injected, FaultComponent::kEstimator), frames.state);
+  compare(row, estimator, trace, fault_of(sensors.injected, FaultComponent::kEstimator), frames.state);
   if (varied == nullptr) return;
   watch({.run = row.run(), .cycle = row.cycle(), .state = &estimator.output, .varied_state = varied});
 }
@@ -255,8 +288,7 @@ void Replay::Parts::run(const OwnedRow& row, ControllerTrace& trace) {
   if (calls.tuned != 0) controller.law->tune(trace.tuning);
   const CommandFrame* varied = variant == nullptr ? nullptr : variant->step(calls, input, *controller.law);
   controller.law->step(input, controller.output);
-  compare(row, controller, calls.law, trace.command, fault_of(sensors.injected, FaultComponent::kController),
-          frames.command);
+  compare(row, controller, trace, fault_of(sensors.injected, FaultComponent::kController), frames.command);
   trace.tuning = controller.law->tuning();
   calls.permit = permitted ? used(Lookup::kFrame, *input.permit) : UsedFrame{};
   if (varied == nullptr) return;
@@ -286,7 +318,7 @@ void Replay::Parts::run(const OwnedRow& row, MonitorTrace& trace) {
   }
   const Permit* varied = variant == nullptr ? nullptr : variant->step(calls, input);
   monitor.law->step(input, monitor.output);
-  compare(row, monitor, calls.law, trace.permit, fault_of(sensors.injected, FaultComponent::kMonitor), frames.permit);
+  compare(row, monitor, trace, fault_of(sensors.injected, FaultComponent::kMonitor), frames.permit);
   if (framed) calls.silence = SensorSilence::kNone;
   calls.command = commanded ? used(Lookup::kFrame, *input.command) : UsedFrame{.found = calls.command.found};
   calls.state = estimated ? used(Lookup::kFrame, *input.state) : UsedFrame{.found = calls.state.found};

@@ -20,7 +20,7 @@ struct ReplayDifference {
   std::optional<LawName> law;  ///< that computed it; empty: it is a field of the row
   std::int64_t run = 0;        ///< JoinedRow::run
   std::uint64_t cycle = 0;
-  std::string field;  ///< "joints[1].effort"; "digest" if the log holds only the frame's checksum
+  std::string field;  ///< "effort_command[1]"; "digest" if the log holds only the frame's checksum
   std::string logged;
   std::string replayed;
 };
@@ -60,7 +60,7 @@ struct ReplayReport {
   bool exact() const noexcept;
 };
 
-/// "controller, run 0, cycle 1234: joints[1].effort is 0.5, logged as 0.25"; of a field of the row: "row, …"
+/// "controller, run 0, cycle 1234: effort_command[1] is 0.5, logged as 0.25"; of a field of the row: "row, …"
 std::string sentence(const ReplayDifference& difference);
 
 /// "monitor, run 0, cycles 10 … 29 (20 rows): rows are missing"

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "log/replay/message_differences.h"
+#include "log/replay/field_differences.h"
 
 namespace robot_control {
 

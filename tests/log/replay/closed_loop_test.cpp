@@ -122,7 +122,7 @@ TEST_F(ReplayedDrive, NamesTheFieldThatDiffers) {
   ASSERT_FALSE(report.exact());
   EXPECT_EQ(report.differences[0].law, LawName::kController);
   EXPECT_EQ(report.differences[0].cycle, 5u);
-  EXPECT_EQ(report.differences[0].field, "twist_limited.angular.z");
+  EXPECT_EQ(report.differences[0].field, "limited_angular[2]");
 }
 
 TEST_F(ReplayedDrive, FindsAnInputThatIsNotTheOneThatWasUsed) {
