@@ -149,7 +149,7 @@ py::dict replay_log(const std::string& path, const Layers& logged, const std::op
     const py::gil_scoped_release release;
     // All snapshots are read first: telemetry may have found a node's rows before its first snapshot and written the
     // latter late.
-    TraceReader reader(path, {.snapshot = [&](const LawSnapshot& snapshot) { replay.add(snapshot); }});
+    TraceReader reader(path, {.snapshot = [&](const LawSnapshot& snapshot, std::int64_t) { replay.add(snapshot); }});
     if (!reader.of_this_version()) {
       const LogHeader other = reader.header();
       throw ReplayError("its messages Trace have other fields than those of this version (" + package_version() +

@@ -15,7 +15,6 @@
 #include "log/black_box/saved_black_box.h"
 #include "log/log_error.h"
 #include "log/trace_reader.h"
-#include "loop/build_id.h"
 #include "loop/log_header.h"
 #include "simulation/closed_loop.h"
 
@@ -216,7 +215,7 @@ void bind_run_bag(py::module_& module) {
   module.def(
       "save_black_box",
       [](const std::string& path, const std::string& bag) {
-        const SavedBlackBox saved = save_black_box(path, build_id(), bag);
+        const SavedBlackBox saved = save_black_box(path, bag);
         return py::make_tuple(saved.rows, saved.newest_ns, saved.missing);
       },
       py::arg("path"), py::arg("bag"));

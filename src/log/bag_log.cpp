@@ -8,31 +8,8 @@
 #include <utility>
 
 #include "log/log_error.h"
-#include "log/messages/trace_message.h"
 
 namespace robot_control {
-namespace {
-
-constexpr std::uint32_t kHeader = 0;  // these are the numbers of the connections
-constexpr std::uint32_t kTrace = 1;
-constexpr std::uint32_t kSnapshot = 2;
-constexpr std::uint32_t kSummary = 3;
-
-std::vector<WrittenConnection> connections() {
-  return {{.topic = "trace_header", .type = trace_header_type(), .latching = true},
-          {.topic = "trace", .type = trace_type()},
-          {.topic = "trace_snapshot", .type = snapshot_type()},
-          {.topic = "trace_summary", .type = trace_summary_type()}};
-}
-
-std::int64_t stamp_of(const JoinedRow& row) {
-  if (row.driver != nullptr) return due_ns(row.driver->sensors);
-  if (row.estimator != nullptr) return row.estimator->state.head.stamp_ns;
-  if (row.controller != nullptr) return row.controller->command.head.stamp_ns;
-  return row.monitor != nullptr ? row.monitor->permit.head.stamp_ns : 0;
-}
-
-}  // namespace
 
 BagLog::BagLog(LogFolder& folder, LogHeader header, const TelemetryParameters& parameters)
     : folder_(folder), header_(std::move(header)), parameters_(parameters) {
@@ -48,35 +25,22 @@ void BagLog::begin_bag() {
   const std::string path = folder_.begin();
   bag_begin_ns_ = 0;
   split_due_ns_ = 0;
-  writer_ =
-      std::make_unique<BagWriter>(path, connections(), [this](std::int64_t bytes) { return folder_.make_room(bytes); });
+  writer_ = std::make_unique<BagWriter>(path, log_connections(),
+                                        [this](std::int64_t bytes) { return folder_.make_room(bytes); });
 }
 
 /// The header has the time of the first chunk, so that a player does not wait for it.
 void BagLog::write_header(std::int64_t time_ns) {
-  ChunkBuilder first;
-  first.add_record(writer_->connection_records());
-  first.add(kHeader, time_ns, encode(header_));
-  writer_->write(first.pack());
+  writer_->write(first_chunk(header_, time_ns));
   bag_begin_ns_ = time_ns;
   ++header_.part;
 }
 
-/// Times in a bag rise strictly and are above 0.
-std::int64_t BagLog::ros_time(std::int64_t stamp_ns) noexcept {
-  last_ns_ = std::max(last_ns_ + 1, stamp_ns + offset_ns_);
-  return last_ns_;
-}
-
 void BagLog::write(const JoinedRow& row) {
-  const std::int64_t stamp_ns = stamp_of(row);
-  const std::int64_t time_ns = ros_time(stamp_ns);
-  const bool moves = motion_.step(row, stamp_ns);
+  const bool moves = motion_.step(row, stamp_of(row));
   recording_ =
       requested_ || parameters_.record == RecordMode::kAlways || (parameters_.record == RecordMode::kMotion && moves);
-  encode_trace({.row = row, .lost = lost_before_ + unwritten_, .joints = header_.joints.size(), .time_ns = time_ns},
-               message_);
-  chunk_.add(kTrace, time_ns, message_);
+  const std::int64_t time_ns = chunk_.add(row, lost_before_ + unwritten_, header_.joints.size());
   ++chunk_rows_;
   chunk_wanted_ = chunk_wanted_ || recording_;
   const auto next_ns = time_ns + std::llround(header_.period * 1e9);
@@ -84,16 +48,12 @@ void BagLog::write(const JoinedRow& row) {
 }
 
 void BagLog::write(const LawSnapshot& snapshot) {
-  LawSnapshot sealed = snapshot;
-  seal(sealed);
-  chunk_.add(kSnapshot, ros_time(sealed.head.stamp_ns), encode(sealed));
+  chunk_.add(snapshot);
   chunk_snapshot_ = true;
 }
 
 void BagLog::write(const TraceSummary& summary) {
-  if (last_ns_ == 0) return;  // there is no row yet
-  // A later time would push the times of the rows that are still to come.
-  chunk_.add(kSummary, last_ns_, encode(summary));
+  chunk_.add(summary);
 }
 
 void BagLog::write_last(const TraceSummary& summary) {
@@ -107,7 +67,7 @@ void BagLog::write_last(const TraceSummary& summary) {
 void BagLog::end_chunk() {
   if (chunk_.empty()) return;
   const std::int64_t begin_ns = chunk_.begin_ns();
-  held_.push_back({.chunk = chunk_.pack(),
+  held_.push_back({.chunk = chunk_.pack(Effort::kThorough),
                    .begin_ns = begin_ns,
                    .rows = std::exchange(chunk_rows_, 0),
                    .snapshot = std::exchange(chunk_snapshot_, false)});

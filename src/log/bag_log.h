@@ -20,6 +20,7 @@
 #include <string>
 
 #include "log/bag_writer.h"
+#include "log/log_chunk.h"
 #include "log/log_folder.h"
 #include "log/log_parameters.h"
 #include "log/messages/log_messages.h"
@@ -45,8 +46,8 @@ class BagLog final : public RowLog {
   /// Begins run.bag in `folder`, which must outlive this object. The quota is that of the folder. Throws LogError.
   BagLog(LogFolder& folder, LogHeader header, const TelemetryParameters& parameters);
 
-  /// `offset_ns` is ROS time − stamps; it is 0 in lockstep, whose stamps are ROS time.
-  void set_time_offset(std::int64_t offset_ns) noexcept { offset_ns_ = offset_ns; }
+  /// As LogChunk::set_time_offset.
+  void set_time_offset(std::int64_t offset_ns) noexcept { chunk_.set_time_offset(offset_ns); }
 
   /// Sets the header of the bags that begin from now on. Joints and period must stay the same.
   void set_header(LogHeader header);
@@ -88,7 +89,6 @@ class BagLog final : public RowLog {
     bool snapshot = false;  ///< true: it holds a snapshot
   };
 
-  std::int64_t ros_time(std::int64_t stamp_ns) noexcept;
   void begin_bag();
   void write_header(std::int64_t time_ns);
   void end_chunk();
@@ -101,19 +101,16 @@ class BagLog final : public RowLog {
   TelemetryParameters parameters_;
   std::unique_ptr<BagWriter> writer_;
   std::int64_t bag_begin_ns_ = 0;  ///< ROS time of the bag's first chunk; 0: it has none yet
-  ChunkBuilder chunk_;
+  LogChunk chunk_;
   std::uint64_t chunk_rows_ = 0;
   bool chunk_wanted_ = false;      ///< true: the open chunk is to be recorded
   bool chunk_snapshot_ = false;    ///< true: the open chunk holds a snapshot
   std::int64_t split_due_ns_ = 0;  ///< ROS time since which a new bag is due; 0: none is
-  std::string message_;
   std::deque<Held> held_;
   std::size_t held_bytes_ = 0;
   MotionWatch motion_;
   bool requested_ = false;
   bool recording_ = false;
-  std::int64_t offset_ns_ = 0;
-  std::int64_t last_ns_ = 0;   ///< ROS time of the last message
   std::int64_t flush_ns_ = 0;  ///< value of `now_ns` at which the open chunk is due
   std::int64_t retry_ns_ = 0;
   std::uint64_t lost_before_ = 0;

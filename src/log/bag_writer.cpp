@@ -26,9 +26,24 @@ std::string connection_record(std::uint32_t number, const WrittenConnection& con
 
 }  // namespace
 
+std::string bag_opening(std::uint64_t index_position, std::size_t connections, std::uint32_t chunks) {
+  BagFields fields(BagOp::kBagHeader);
+  fields.number("index_pos", index_position);
+  fields.number("conn_count", static_cast<std::uint32_t>(connections)).number("chunk_count", chunks);
+  std::string bytes(kBagMagic);
+  append_record(bytes, fields, std::string(kHeaderBytes - fields.bytes().size(), ' '));
+  return bytes;
+}
+
+std::string connection_records(const std::vector<WrittenConnection>& connections) {
+  std::string bytes;
+  for (std::uint32_t i = 0; i < connections.size(); ++i) bytes += connection_record(i, connections[i]);
+  return bytes;
+}
+
 BagWriter::BagWriter(std::string path, std::vector<WrittenConnection> connections, LogFile::Room room)
     : file_(std::move(path), std::move(room)), connections_(std::move(connections)) {
-  file_.append(opening(0));
+  file_.append(bag_opening(0, connections_.size(), 0));
 }
 
 BagWriter::~BagWriter() {
@@ -37,21 +52,6 @@ BagWriter::~BagWriter() {
   } catch (const LogError&) {
     // A caller that needs to know the result has called close().
   }
-}
-
-std::string BagWriter::opening(std::uint64_t index_position) const {
-  BagFields fields(BagOp::kBagHeader);
-  fields.number("index_pos", index_position);
-  fields.number("conn_count", static_cast<std::uint32_t>(connections_.size())).number("chunk_count", chunks_);
-  std::string bytes(kBagMagic);
-  append_record(bytes, fields, std::string(kHeaderBytes - fields.bytes().size(), ' '));
-  return bytes;
-}
-
-std::string BagWriter::connection_records() const {
-  std::string bytes;
-  for (std::uint32_t i = 0; i < connections_.size(); ++i) bytes += connection_record(i, connections_[i]);
-  return bytes;
 }
 
 void BagWriter::write(const PackedChunk& chunk) {
@@ -75,8 +75,8 @@ void BagWriter::write(const PackedChunk& chunk) {
 void BagWriter::close() {
   if (!open()) return;
   const auto index_position = static_cast<std::uint64_t>(bytes());
-  file_.append(connection_records() + chunk_infos_);
-  file_.replace_begin(opening(index_position));
+  file_.append(connection_records(connections_) + chunk_infos_);
+  file_.replace_begin(bag_opening(index_position, connections_.size(), chunks_));
   file_.close();
 }
 

@@ -21,18 +21,21 @@ struct WrittenConnection {
   bool latching = false;
 };
 
+/// The first record of a bag; 0: it has no index.
+std::string bag_opening(std::uint64_t index_position, std::size_t connections, std::uint32_t chunks);
+
+/// The first chunk begins with these records of the connections, which are numbered 0, 1, …
+std::string connection_records(const std::vector<WrittenConnection>& connections);
+
 class BagWriter {
  public:
-  /// Makes the folders above `path` and replaces the file. The connections are numbered 0, 1, … Throws LogError.
+  /// Makes the folders above `path` and replaces the file. Throws LogError.
   BagWriter(std::string path, std::vector<WrittenConnection> connections, LogFile::Room room);
 
   /// Closes the bag and ignores errors; `close` reports them.
   ~BagWriter();
   BagWriter(const BagWriter&) = delete;
   BagWriter& operator=(const BagWriter&) = delete;
-
-  /// The first chunk begins with these records of the connections.
-  std::string connection_records() const;
 
   /// Throws LogError if the disk refuses the chunk, or the file is not at its path any more. The bag then ends with its
   /// last whole chunk, and further chunks are ignored.
@@ -46,8 +49,6 @@ class BagWriter {
   const std::string& path() const noexcept { return file_.path(); }
 
  private:
-  std::string opening(std::uint64_t index_position) const;
-
   LogFile file_;
   std::vector<WrittenConnection> connections_;
   std::uint32_t chunks_ = 0;

@@ -26,7 +26,7 @@ struct TelemetryParameters {
   double split_size = 1;         ///< GB (10⁹ bytes), of one run.bag; 0: no limit
   double split_time = 3600;      ///< s, of one run.bag; 0: no limit
   double quota = 5;              ///< GB of all runs in `directory` together; 0: no limit
-  double black_box = 0.2;        ///< GB of the ring file in `directory`/black_box, wall clock only; 0: there is none
+  double black_box = 0.2;        ///< GB of the ring in `directory`/black_box, wall clock only; 0: there is none
   std::uint64_t incidents = 10;  ///< of each kind, the newest that are kept (recording/black_box); 0: none is saved
 };
 

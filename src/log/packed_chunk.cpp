@@ -8,15 +8,13 @@
 namespace robot_control {
 namespace {
 
-constexpr int kEffort = 3;  // LZ4 has levels 0 … 12; the thorough ones begin here
-
 /// roslz4 needs independent blocks, a checksum over the content, and no size of the content in the frame.
-std::string compressed(const std::string& content) {
+std::string compressed(const std::string& content, Effort effort) {
   LZ4F_preferences_t preferences = LZ4F_INIT_PREFERENCES;
   preferences.frameInfo.blockSizeID = LZ4F_max1MB;
   preferences.frameInfo.blockMode = LZ4F_blockIndependent;
   preferences.frameInfo.contentChecksumFlag = LZ4F_contentChecksumEnabled;
-  preferences.compressionLevel = kEffort;
+  preferences.compressionLevel = static_cast<int>(effort);
   std::string result(LZ4F_compressFrameBound(content.size(), &preferences), '\0');
   const std::size_t size =
       LZ4F_compressFrame(result.data(), result.size(), content.data(), content.size(), &preferences);
@@ -45,11 +43,11 @@ void ChunkBuilder::add(std::uint32_t connection, std::int64_t time_ns, std::stri
   end_ns_ = std::max(end_ns_, time_ns);
 }
 
-PackedChunk ChunkBuilder::pack() {
+PackedChunk ChunkBuilder::pack(Effort effort) {
   PackedChunk chunk{.begin_ns = begin_ns_, .end_ns = end_ns_};
   BagFields fields(BagOp::kChunk);
   fields.text("compression", "lz4").number("size", static_cast<std::uint32_t>(content_.size()));
-  append_record(chunk.record, fields, compressed(content_));
+  append_record(chunk.record, fields, compressed(content_, effort));
   for (const auto& [connection, entries] : entries_) {
     const auto count = static_cast<std::uint32_t>(entries.size() / kEntryBytes);
     BagFields index(BagOp::kIndex);

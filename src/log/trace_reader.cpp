@@ -6,12 +6,16 @@
 
 namespace robot_control {
 TraceReader::TraceReader(const std::string& path, const Use& use)
-    : path_(path), bag_(path, [&](BagReader& bag, const BagChunk& chunk) {
-        if (bag.chunks().size() == 1) find_header(bag, chunk);
-        if (!header_) return;
-        if (bag.chunks().size() == 1 && use.header) use.header(*header_);
-        read_chunk(bag, chunk, use);
-      }) {
+    : path_(path),
+      bag_(
+          path,
+          [&](BagReader& bag, const BagChunk& chunk) {
+            if (bag.chunks().size() == 1) find_header(bag, chunk);
+            if (!header_) return;
+            if (bag.chunks().size() == 1 && use.header) use.header(*header_);
+            read_chunk(bag, chunk, use);
+          },
+          use.damaged) {
   if (!header_) {
     throw NoTraceError(path + " is no log of robot_control: it does not begin with a TraceHeader" +
                        (cut().empty() ? "" : "; " + cut()));
@@ -53,7 +57,7 @@ void TraceReader::read_chunk(BagReader& bag, const BagChunk& chunk, const Use& u
           if (use.row) use.row(row, static_cast<std::int64_t>(message.time_ns));
           if (use.message) use.message(row, message);
         } else if (use.snapshot && snapshots_.contains(message.connection)) {
-          use.snapshot(decode_snapshot(message.data));
+          use.snapshot(decode_snapshot(message.data), static_cast<std::int64_t>(message.time_ns));
         }
       });
     } catch (const TraceError& error) {

@@ -21,8 +21,9 @@ class TraceReader {
     std::function<void(const LogHeader&)> header = {};  ///< before the first row
     std::function<void(const TraceRow&, std::int64_t ros_time_ns)> row = {};
     std::function<void(const TraceRow&, const BagMessage&)> message = {};  ///< receives the same row, and its bytes
-    std::function<void(const LawSnapshot&)> snapshot = {};
+    std::function<void(const LawSnapshot&, std::int64_t ros_time_ns)> snapshot = {};
     std::function<void(double share)> chunk = {};  ///< receives the share of the file that is read, after each chunk
+    std::function<void()> damaged = {};            ///< BagReader::Damaged
   };
 
   /// Throws BagError for a damaged bag, NoTraceError for another bag, TraceError for a header that breaks its rules,

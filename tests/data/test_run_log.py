@@ -13,9 +13,8 @@ from std_msgs.msg import String
     [
         ("", "is no run.bag"),
         ("run,cycle\n0,0\n", "is no run.bag .a run.csv is a table that export.py makes"),
-        ("RCBLACK2", "is a black box: blackbox.py makes a run.bag of it"),
     ],
-    ids=["nothing", "table", "black box"],
+    ids=["nothing", "table"],
 )
 def test_what_is_no_log_is_refused(tmp_path, text, message):
     path = tmp_path / "run.csv"

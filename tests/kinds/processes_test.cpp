@@ -56,7 +56,7 @@ TEST(SecondKindProcesses, LockstepGivesTheNumbersOfTheClosedLoopAndALogThatIsRep
   EXPECT_EQ(log.header().roles, std::vector<std::string>{"driven"});
   EXPECT_EQ(log.header().joints, std::vector<std::string>{"pole_joint"});
   Replay replay(*robot, parameters.loop.period());
-  log.read({.snapshot = [&](const LawSnapshot& snapshot) { replay.add(snapshot); }});
+  log.read({.snapshot = [&](const LawSnapshot& snapshot, std::int64_t) { replay.add(snapshot); }});
   log.read({.message = [&](const TraceRow& row, const BagMessage& message) {
     replay.add(row, message.data, static_cast<std::int64_t>(message.time_ns));
   }});

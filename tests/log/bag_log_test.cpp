@@ -35,7 +35,7 @@ Found rows_of(const std::string& path) {
                   to.lost.push_back(row.lost);
                 },
             .snapshot =
-                [&](const LawSnapshot& snapshot) {
+                [&](const LawSnapshot& snapshot, std::int64_t) {
                   EXPECT_TRUE(intact(snapshot));
                   ++to.snapshots;
                 }};

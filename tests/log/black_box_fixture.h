@@ -11,7 +11,6 @@
 #include "log/black_box/black_box.h"
 #include "log/black_box/saved_black_box.h"
 #include "log/trace_reader.h"
-#include "loop/build_id.h"
 #include "loop/log_header.h"
 #include "recorded_drive.h"
 #include "support/temporary_folder.h"
@@ -32,7 +31,7 @@ struct ABlackBox : testing::Test {
   std::string path(const std::string& name) const { return folder.path() / name; }
 
   void drive_on(BlackBox& box, std::uint64_t cycles) {
-    box.add_state(0, 0);
+    box.set_state(0, 0);
     drive(loop, cycles, [&](const JoinedRow& row) {
       for (const LawSnapshot* snapshot : loop.snapshots()) {
         if (snapshot == nullptr) continue;
@@ -44,10 +43,11 @@ struct ABlackBox : testing::Test {
       box.add(*row.controller);
       box.add(*row.monitor);
       log->write(row);
+      box.flush();
     });
   }
 
-  SavedBlackBox save() const { return save_black_box(path("ring"), build_id(), path("saved/run.bag")); }
+  SavedBlackBox save() const { return save_black_box(path("ring"), path("saved/run.bag")); }
 
   TemporaryFolder folder;
   ClosedLoop loop{drive_parameters()};

@@ -13,7 +13,6 @@
 
 #include "log/log_error.h"
 #include "log/trace_reader.h"
-#include "loop/build_id.h"
 #include "loop/log_header.h"
 #include "recorded_drive.h"
 #include "support/temporary_folder.h"
@@ -30,8 +29,8 @@ struct ABlackBoxKeeper : testing::Test {
   static constexpr std::int64_t kSecond = 1'000'000'000;
   static constexpr std::size_t kKeep = 2;
 
-  std::unique_ptr<BlackBoxKeeper> start(std::uint64_t build = build_id(), std::size_t keep = kKeep) {
-    auto keeper = std::make_unique<BlackBoxKeeper>(folder.path() / "box", 12 << 20, keep, build,
+  std::unique_ptr<BlackBoxKeeper> start(std::size_t keep = kKeep) {
+    auto keeper = std::make_unique<BlackBoxKeeper>(folder.path() / "box", 12 << 20, keep,
                                                    log_header(drive_parameters(), loop.robot()));
     keeper->watch(0, now_ns);
     return keeper;
@@ -42,6 +41,7 @@ struct ABlackBoxKeeper : testing::Test {
     keeper.add(*row.estimator);
     keeper.add(*row.controller);
     keeper.add(*row.monitor);
+    keeper.flush();
     keeper.watch(row.monitor->permit.causes, now_ns += kSecond / 1000);
   }
 
@@ -106,7 +106,7 @@ TEST_F(ABlackBoxKeeper, BeginsAnotherRingWhereItWasRemovedAndSaysSoOnce) {
   std::filesystem::remove_all(folder.path() / "box");
   now_ns += kSecond;
   keeper->poll(now_ns);
-  EXPECT_THAT(keeper->take_notes(), ElementsAre(HasSubstr("ring was removed, and what it held with it; another one")));
+  EXPECT_THAT(keeper->take_notes(), ElementsAre(HasSubstr("ring was removed or cannot be written; another one")));
   EXPECT_THAT(names(), UnorderedElementsAre("ring"));
   drive_on(*keeper, 500);
   loop.e_stop();
@@ -160,7 +160,8 @@ TEST_F(ABlackBoxKeeper, KeepsItsRingToItsUserAndItsIncidentsAsTheUmaskSays) {
   const auto mode = [&](const char* name) {
     return std::filesystem::status(folder.path() / "box" / name).permissions();
   };
-  EXPECT_EQ(static_cast<int>(mode("ring")), 0600);
+  EXPECT_EQ(static_cast<int>(mode("ring")), 0700);
+  EXPECT_EQ(static_cast<int>(mode("ring/0.bag")), 0600);
   EXPECT_EQ(static_cast<int>(mode("stop.1.bag")), 0640);
 }
 
@@ -250,13 +251,6 @@ TEST_F(ABlackBoxKeeper, KeepsTheRingOfAnOrderlyEndUntilTheNextOne) {
   EXPECT_THAT(names(), UnorderedElementsAre("ring", "ring.before"));
 }
 
-TEST_F(ABlackBoxKeeper, LeavesTheRingOfAnotherBuildToThatBuild) {
-  drive_on(*start(build_id() + 1), 100);
-  const auto keeper = start();
-  EXPECT_THAT(notes(*keeper, 1), ElementsAre(HasSubstr("crash.1.ring was written by the build")));
-  EXPECT_THAT(names(), UnorderedElementsAre("ring", "crash.1.ring"));
-}
-
 TEST_F(ABlackBoxKeeper, DoesNotKeepAnEmptyRing) {
   start();
   const auto keeper = start();
@@ -270,8 +264,8 @@ TEST_F(ABlackBoxKeeper, DoesNotKeepAnEmptyRing) {
 }
 
 TEST_F(ABlackBoxKeeper, WithoutIncidentsSavesNone) {
-  drive_on(*start(build_id(), 0), 100);
-  const auto keeper = start(build_id(), 0);
+  drive_on(*start(0), 100);
+  const auto keeper = start(0);
   drive_on(*keeper, 100);
   loop.e_stop();
   drive_on(*keeper, 100);

@@ -25,7 +25,7 @@ std::vector<std::string> messages_of(const std::string& bag) {
 }
 
 TEST_F(ABlackBox, BecomesTheLogThatTelemetryWouldHaveWritten) {
-  BlackBox box(path("ring"), kBytes, build_id(), header());
+  BlackBox box(path("ring"), kBytes, header());
   drive_on(box, 2000);
   log->close();
   EXPECT_EQ(save().rows, 2000u);
@@ -35,7 +35,7 @@ TEST_F(ABlackBox, BecomesTheLogThatTelemetryWouldHaveWritten) {
 }
 
 TEST_F(ABlackBox, HoldsTheNewestRowsOnceItIsFullAndTheyAreReplayedFromTheirFirstSnapshotOn) {
-  BlackBox box(path("ring"), 8 << 20, build_id(), header());
+  BlackBox box(path("ring"), 4 << 20, header());
   drive_on(box, 12000);
   save();
   const std::vector<std::uint64_t> cycles = cycles_of(path("saved/run.bag"));
@@ -50,7 +50,7 @@ TEST_F(ABlackBox, HoldsTheNewestRowsOnceItIsFullAndTheyAreReplayedFromTheirFirst
                    [&](const TraceRow& row, const BagMessage& message) {
                      replay.add(row, message.data, static_cast<std::int64_t>(message.time_ns));
                    },
-               .snapshot = [&](const LawSnapshot& snapshot) { replay.add(snapshot); }});
+               .snapshot = [&](const LawSnapshot& snapshot, std::int64_t) { replay.add(snapshot); }});
   EXPECT_EQ(replay.report().different_rows, 0u);
   for (const LawReport& law : replay.report().laws) {
     EXPECT_EQ(law.different, 0u);
@@ -60,7 +60,7 @@ TEST_F(ABlackBox, HoldsTheNewestRowsOnceItIsFullAndTheyAreReplayedFromTheirFirst
 }
 
 TEST_F(ABlackBox, IsSavedToOneNameByTwoProcessesAtOnce) {
-  BlackBox box(path("ring"), kBytes, build_id(), header());
+  BlackBox box(path("ring"), kBytes, header());
   drive_on(box, 3000);
   for (int trial = 0; trial < 5; ++trial) {
     ChildProcess other([this] { return save().rows == 3000u ? 0 : 1; });
@@ -72,31 +72,60 @@ TEST_F(ABlackBox, IsSavedToOneNameByTwoProcessesAtOnce) {
 }
 
 TEST_F(ABlackBox, LeavesNoBagWhereverTheCallerGivesUp) {
-  BlackBox box(path("ring"), kBytes, build_id(), header());
+  BlackBox box(path("ring"), kBytes, header());
   drive_on(box, 300);
   int asked = 0;
-  save_black_box(path("ring"), build_id(), path("saved/run.bag"), [&] { return ++asked < 0; });
+  save_black_box(path("ring"), path("saved/run.bag"), [&] { return ++asked < 0; });
   std::filesystem::remove_all(path("saved"));
   ASSERT_GT(asked, 300);
   for (int last = 1; last <= asked; last += 1 + asked / 20) {
     int calls = 0;
     const auto give_up = [&] { return ++calls == last; };
-    EXPECT_THROW(save_black_box(path("ring"), build_id(), path("saved/run.bag"), give_up), SavingGivenUp);
+    EXPECT_THROW(save_black_box(path("ring"), path("saved/run.bag"), give_up), SavingGivenUp);
     EXPECT_EQ(calls, last) << "at once";
     EXPECT_FALSE(std::filesystem::exists(path("saved")));
   }
 }
 
-TEST_F(ABlackBox, OfAnotherBuildIsRefusedByItsName) {
-  BlackBox box(path("ring"), kBytes, 0x0123456789abcdefU, header());
-  EXPECT_THAT([&] { save(); }, ThrowsMessage<LogError>(HasSubstr("by the build 0123456789abcdef")));
+/// A bag of rows that have one field.
+TEST_F(ABlackBox, OfAnotherVersionIsRefusedWithThatVersion) {
+  MessageType other = trace_type();
+  other.definition = "uint64 cycle\n";
+  const std::vector<WrittenConnection> connections{{.topic = "trace_header", .type = trace_header_type()},
+                                                   {.topic = "trace", .type = other}};
+  LogHeader written = header();
+  written.version = "0.3.0";
+  ChunkBuilder chunk;
+  chunk.add_record(connection_records(connections));
+  chunk.add(0, 1, encode(written));
+  chunk.add(1, 2, std::string(8, '\0'));
+  BagWriter(path("ring/0.bag"), connections, {}).write(chunk.pack(Effort::kFast));
+  EXPECT_THAT([&] { save(); }, ThrowsMessage<LogError>(HasSubstr("was written by the version 0.3.0")));
   EXPECT_FALSE(std::filesystem::exists(path("saved")));
 }
 
-TEST_F(ABlackBox, IsNoOtherFile) {
+/// The estimator is dead: the others are not delayed for longer than BlackBox::kWindow.
+TEST_F(ABlackBox, HoldsTheRowsOfTheOtherNodesWhereOneIsDead) {
+  BlackBox box(path("ring"), kBytes, header());
+  drive(loop, 1000, [&](const JoinedRow& row) {
+    box.add(*row.driver);
+    if (row.cycle < 500) box.add(*row.estimator);
+    box.add(*row.controller);
+    box.add(*row.monitor);
+    box.flush();
+  });
+  save();
+  EXPECT_EQ(cycles_of(path("saved/run.bag")).back(), 999u - 250u);
+  box.finish();
+  EXPECT_EQ(save().rows, 1000u);
+}
+
+TEST_F(ABlackBox, IsNothingElse) {
   folder.write("ring", std::string(5 << 20, 'x'));
   EXPECT_THAT([&] { save(); }, ThrowsMessage<LogError>(HasSubstr("is no black box of this version")));
-  folder.write("ring", "");
+  std::filesystem::remove(path("ring"));
+  std::filesystem::create_directories(path("ring"));
+  folder.write("ring/run.bag", "");
   EXPECT_THAT([&] { save(); }, ThrowsMessage<LogError>(HasSubstr("is no black box of this version")));
 }
 

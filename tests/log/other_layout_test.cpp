@@ -20,14 +20,14 @@ namespace {
 /// A bag of a header of version 0.3.0, and of one message of `type`.
 std::string bag_with(const TemporaryFolder& folder, MessageType type, const std::string& message) {
   const std::string path = folder.path() / "run.bag";
-  BagWriter writer(
-      path, {{.topic = "trace_header", .type = trace_header_type()}, {.topic = "other", .type = std::move(type)}},
-      [](std::int64_t) { return true; });
+  const std::vector<WrittenConnection> connections{{.topic = "trace_header", .type = trace_header_type()},
+                                                   {.topic = "other", .type = std::move(type)}};
+  BagWriter writer(path, connections, [](std::int64_t) { return true; });
   ChunkBuilder chunk;
-  chunk.add_record(writer.connection_records());
+  chunk.add_record(connection_records(connections));
   chunk.add(0, 1, encode(LogHeader{.period = 0.001, .clock = "wall", .version = "0.3.0", .build = "gcc 9"}));
   chunk.add(1, 1, message);
-  writer.write(chunk.pack());
+  writer.write(chunk.pack(Effort::kThorough));
   writer.close();
   return path;
 }
@@ -38,7 +38,8 @@ TEST(ALogOfAnotherLayout, OfSnapshotsIsRefusedWithItsVersionAndTheRemedy) {
   other.md5.front() = other.md5.front() == '0' ? '1' : '0';
   const std::string path = bag_with(folder, other, encode(LawSnapshot{}));
   TraceReader reader(path);
-  const std::string message = message_of<TraceError>([&] { reader.read({.snapshot = [](const LawSnapshot&) {}}); });
+  const std::string message =
+      message_of<TraceError>([&] { reader.read({.snapshot = [](const LawSnapshot&, std::int64_t) {}}); });
   for (const std::string& part : {path, package_version(), std::string("version 0.3.0, build gcc 9 wrote it"),
                                   std::string("replay with that build")}) {
     EXPECT_THAT(message, testing::HasSubstr(part));

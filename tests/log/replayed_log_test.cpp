@@ -37,7 +37,7 @@ struct AReplayedLog : testing::Test {
                      [&](const TraceRow& row, const BagMessage& message) {
                        replay.add(row, message.data, static_cast<std::int64_t>(message.time_ns));
                      },
-                 .snapshot = [&](const LawSnapshot& snapshot) { replay.add(snapshot); }});
+                 .snapshot = [&](const LawSnapshot& snapshot, std::int64_t) { replay.add(snapshot); }});
     EXPECT_EQ(replay.report().rows, log->rows());
     EXPECT_EQ(replay.report().different_rows, 0u);
     for (const LawReport& law : replay.report().laws) {

@@ -10,7 +10,6 @@
 
 #include "log/black_box/saved_black_box.h"
 #include "log/trace_reader.h"
-#include "loop/build_id.h"
 #include "losses_fixture.h"
 
 namespace robot_control {
@@ -47,7 +46,7 @@ TEST_F(ABlackBox, HoldsEveryCycleUpToTheSigkillOfAllNodes) {
     nodes().end(LoopNode::kTelemetry);
     for (const LoopNode node : kLoop) nodes().process(node).stop_with(SIGKILL);
     const std::filesystem::path to = folder_ / ("trial" + std::to_string(trial));
-    const SavedBlackBox saved = save_black_box(ring_, build_id(), to / "run.bag");
+    const SavedBlackBox saved = save_black_box(ring_, to / "run.bag");
     EXPECT_EQ(saved.missing, "");
     for (const std::int64_t newest_ns : saved.newest_ns) EXPECT_LT(killed_ns - newest_ns, kMaxMissing);
     EXPECT_GT(saved.rows, 100u);
@@ -109,7 +108,7 @@ TEST_F(ABlackBox, HoldsASnapshotOfEachLawBeforeAStopRightAfterTheStartOfTelemetr
                      if (first == 0) first = row.cycle;
                      if (stop == 0 && row.monitor.permit.causes != 0) stop = row.cycle;
                    },
-               .snapshot = [&](const LawSnapshot& snapshot) { snapshots.push_back(snapshot); }});
+               .snapshot = [&](const LawSnapshot& snapshot, std::int64_t) { snapshots.push_back(snapshot); }});
   for (std::size_t law = 0; law < kLaws; ++law) {
     EXPECT_TRUE(std::ranges::any_of(snapshots, [&](const LawSnapshot& snapshot) {
       const std::uint64_t cycle = snapshot.head.cycle;

@@ -10,6 +10,7 @@ RING = "ring"
 BEFORE = "ring.before"
 LOGS = Path(os.environ.get("ROS_HOME") or "~/.ros", "robot_control")
 """The folder into which sim.launch and backend.launch let telemetry write."""
+BAG_OF_RING = re.compile(r"\d+\.bag")
 INCIDENT = re.compile(r"(stop|crash)\.\d+\.bag")
 
 
@@ -19,10 +20,10 @@ def ring_of(path: Path) -> Path:
     Raises:
         FileNotFoundError: there is none.
     """
-    if not path.is_dir():
+    if not path.is_dir() or _is_ring(path):
         return path
     for name in (RING, BEFORE):
-        if (_box_of(path) / name).is_file():
+        if (_box_of(path) / name).is_dir():
             return _box_of(path) / name
     raise FileNotFoundError(f"there is no black box in {path}: no black_box/{RING}")
 
@@ -30,7 +31,7 @@ def ring_of(path: Path) -> Path:
 def incidents_of(path: Path) -> list[Path]:
     """The black boxes that telemetry has saved in a folder, the newest last; none if the folder cannot be read."""
     try:
-        box = _box_of(path) if path.is_dir() else path.parent
+        box = _box_of(path) if path.is_dir() and not _is_ring(path) else path.parent
         found = [each for each in box.iterdir() if INCIDENT.fullmatch(each.name)] if box.is_dir() else []
         return sorted(found, key=lambda each: (each.stat().st_mtime, each.name))
     except OSError:
@@ -39,3 +40,7 @@ def incidents_of(path: Path) -> list[Path]:
 
 def _box_of(folder: Path) -> Path:
     return folder / "black_box" if (folder / "black_box").is_dir() else folder
+
+
+def _is_ring(folder: Path) -> bool:
+    return any(BAG_OF_RING.fullmatch(each.name) for each in folder.iterdir())

@@ -15,7 +15,6 @@ from robot_control.files.files import MAX_TABLE, check_input, utf8
 from robot_control.loop.roles import Kind
 
 BAG_MAGIC = b"#ROSBAG"
-BLACK_BOX_MAGIC = b"RCBLACK"
 
 FloatArray = NDArray[np.float64]
 BoolArray = NDArray[np.bool_]
@@ -74,14 +73,10 @@ def is_bag(path: Path) -> bool:
 
     Raises:
         InputFileError, OSError: it is no file to read.
-        LogError: it is a black box.
     """
     check_input(path, MAX_TABLE)
     with path.open("rb") as file:
-        begin = file.read(len(BAG_MAGIC))
-    if begin == BLACK_BOX_MAGIC:
-        raise LogError(f"{path} is a black box: blackbox.py makes a run.bag of it")
-    return begin == BAG_MAGIC
+        return file.read(len(BAG_MAGIC)) == BAG_MAGIC
 
 
 def is_run_log(path: Path) -> bool:

@@ -39,7 +39,7 @@ std::string_view BagFile::read(std::uint64_t offset, std::size_t count, const st
                    std::to_string(count) + " bytes, but the file ends after " + std::to_string(available), true);
   }
   if (offset < begin_ || offset + count > begin_ + window_.size()) {
-    constexpr std::size_t kAhead = std::size_t{1} << 18U;
+    constexpr std::size_t kAhead = std::size_t{4} << 20U;  // a whole bag of a black box, which may be overwritten
     const std::size_t got =
         fill(offset, static_cast<std::size_t>(std::min<std::uint64_t>(std::max(count, kAhead), available)));
     if (got < count) throw BagError({.offset = offset + got}, field, "the file became shorter while it was read", true);

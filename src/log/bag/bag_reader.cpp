@@ -60,7 +60,8 @@ struct BagReader::End {
   bool cut = false;
 };
 
-BagReader::BagReader(const std::string& path, Early early) : file_(path), early_(std::move(early)) {
+BagReader::BagReader(const std::string& path, Early early, Damaged damaged)
+    : file_(path), early_(std::move(early)), damaged_(std::move(damaged)) {
   const End end = read_bag_header();
   try {
     read_records(end);
@@ -104,55 +105,81 @@ BagReader::End BagReader::read_bag_header() {
 }
 
 void BagReader::read_records(const End& end) {
-  std::size_t defined = 0, listed = 0;
   std::uint64_t at = end.first_record;
   while (at < file_.size()) {
-    if (!end.cut && at == end.index) begin_list();
-    const FileRecord record = read_file_record(file_, at);
-    const BagHeader header = record.header();
-    const BagOp op = header.op();
-    if (op != BagOp::kIndex) end_chunk();
-    if (!behind_ && (op == BagOp::kConnection || op == BagOp::kChunkInfo)) {
-      if (!end.cut) {
-        throw BagError({.offset = at}, "index_pos",
-                       "the chunks end here, but the bag header says at byte " + std::to_string(end.index));
-      }
-      behind_ = true;
+    try {
+      at = read_record(end, at);
+    } catch (const BagError&) {
+      if (!damaged_) throw;
+      if (pending_) commit();              // its content is sound
+      constexpr std::size_t kLengths = 8;  // of the header and of the data
+      const std::size_t left = std::min<std::uint64_t>(kLengths, file_.size() - at);
+      const bool zeros = file_.read(at, left, "header_len") == std::string_view("\0\0\0\0\0\0\0\0", left);
+      at = next_chunk(at + 1);
+      if (!zeros || at < file_.size()) damaged_();  // zeros fill a bag of a fixed size
     }
-    const BagPlace data{.offset = record.data};
-    const bool chunk = op == BagOp::kChunk && !behind_;
-    if (chunk && end.cut && (record.length == 0 || record.length > file_.size() - record.data)) {
-      read_unfinished(at, header, record.data);
-    }
-    expect_data(file_, record);
-    if (chunk) {
-      read_chunk(at, header, record.data, record.length);
-    } else if (op == BagOp::kIndex && pending_) {
-      expect_version_1(header);
-      index_.compare(header.u32("conn"), header.u32("count"), file_.read(record.data, record.length, "data"), data);
-    } else if (op == BagOp::kConnection) {
-      ++defined;
-      add_connection(header, file_.read(record.data, record.length, "data"), data);
-    } else if (op == BagOp::kChunkInfo) {
-      check_chunk_info(listed++, header, file_.read(record.data, record.length, "data"), data);
-    } else {
-      throw BagError(header.place(), "op",
-                     "record of kind " + std::to_string(static_cast<int>(op)) + " at a place where it has no meaning");
-    }
-    at = record.data + record.length;
   }
   if (end.cut) return end_chunk();
   if (at == end.index) begin_list();
   const auto expect = [&](std::size_t count, std::size_t announced, const char* field, const char* what) {
     if (count == announced) return;
     throw BagError({.offset = kBagMagic.size()}, field,
-                   std::to_string(announced) + ", but there are " + std::to_string(count) + what, listed < end.chunks);
+                   std::to_string(announced) + ", but there are " + std::to_string(count) + what, listed_ < end.chunks);
   };
   if (!behind_) throw BagError({.offset = kBagMagic.size()}, "index_pos", "no record begins there");
   expect(connections_.size(), end.connections, "conn_count", " connections");
-  expect(defined, end.connections, "conn_count", " connection records behind the chunks");
+  expect(defined_, end.connections, "conn_count", " connection records behind the chunks");
   expect(chunks_.size(), end.chunks, "chunk_count", " chunks");
-  expect(listed, end.chunks, "chunk_count", " chunk info records");
+  expect(listed_, end.chunks, "chunk_count", " chunk info records");
+}
+
+/// Returns the end of the record.
+std::uint64_t BagReader::read_record(const End& end, std::uint64_t at) {
+  if (!end.cut && at == end.index) begin_list();
+  const FileRecord record = read_file_record(file_, at);
+  const BagHeader header = record.header();
+  const BagOp op = header.op();
+  if (op != BagOp::kIndex) end_chunk();
+  if (!behind_ && (op == BagOp::kConnection || op == BagOp::kChunkInfo)) {
+    if (!end.cut) {
+      throw BagError({.offset = at}, "index_pos",
+                     "the chunks end here, but the bag header says at byte " + std::to_string(end.index));
+    }
+    behind_ = true;
+  }
+  const BagPlace data{.offset = record.data};
+  const bool chunk = op == BagOp::kChunk && !behind_;
+  if (chunk && end.cut && (record.length == 0 || record.length > file_.size() - record.data)) {
+    read_unfinished(at, header, record.data);
+  }
+  expect_data(file_, record);
+  if (chunk) {
+    read_chunk(at, header, record.data, record.length);
+  } else if (op == BagOp::kIndex && pending_) {
+    expect_version_1(header);
+    index_.compare(header.u32("conn"), header.u32("count"), file_.read(record.data, record.length, "data"), data);
+  } else if (op == BagOp::kConnection) {
+    ++defined_;
+    add_connection(header, file_.read(record.data, record.length, "data"), data);
+  } else if (op == BagOp::kChunkInfo) {
+    check_chunk_info(listed_++, header, file_.read(record.data, record.length, "data"), data);
+  } else {
+    throw BagError(header.place(), "op",
+                   "record of kind " + std::to_string(static_cast<int>(op)) + " at a place where it has no meaning");
+  }
+  return record.data + record.length;
+}
+
+/// Returns the begin of the first chunk of a log at `at` or behind it; the size of the file: there is none.
+std::uint64_t BagReader::next_chunk(std::uint64_t at) {
+  // log/packed_chunk.cpp writes these fields; the size follows.
+  static constexpr std::string_view kBegin("\x28\0\0\0\x04\0\0\0op=\x05\x0f\0\0\0compression=lz4", 31);
+  constexpr std::uint64_t kWindow = 1 << 16;
+  for (; at + kBegin.size() <= file_.size(); at += kWindow - kBegin.size() + 1) {
+    const std::size_t found = file_.read(at, std::min(kWindow, file_.size() - at), "data").find(kBegin);
+    if (found != std::string_view::npos) return at + found;
+  }
+  return file_.size();
 }
 
 void BagReader::begin_list() {

@@ -47,9 +47,12 @@ class BagReader {
   /// later part of the file may still refuse the bag. If the constructor throws, the caller discards the chunks.
   using Early = std::function<void(BagReader& bag, const BagChunk& chunk)>;
 
-  /// Reads and checks the whole file. Throws BagError if the bag is broken, std::runtime_error if the file cannot be
-  /// read.
-  explicit BagReader(const std::string& path, Early early = {});
+  /// Is called where a part of the bag is broken. Reading goes on with the next chunk.
+  using Damaged = std::function<void()>;
+
+  /// Reads and checks the whole file. Throws BagError if the bag is broken, unless `damaged` is given and its begin is
+  /// sound; std::runtime_error if the file cannot be read.
+  explicit BagReader(const std::string& path, Early early = {}, Damaged damaged = {});
 
   /// Returns the connections by their number (`BagMessage::connection`).
   const std::map<std::uint32_t, BagConnection>& connections() const { return connections_; }
@@ -71,6 +74,8 @@ class BagReader {
 
   End read_bag_header();
   void read_records(const End& end);
+  std::uint64_t read_record(const End& end, std::uint64_t at);
+  std::uint64_t next_chunk(std::uint64_t at);
   void read_chunk(std::uint64_t record, const BagHeader& header, std::uint64_t begin, std::uint32_t length);
   [[noreturn]] void read_unfinished(std::uint64_t record, const BagHeader& header, std::uint64_t begin);
   void add_connection(const BagHeader& header, std::string_view data, const BagPlace& place);
@@ -86,13 +91,15 @@ class BagReader {
 
   BagFile file_;
   Early early_;
+  Damaged damaged_;
   std::map<std::uint32_t, BagConnection> connections_;
   std::size_t connection_bytes_ = 0;
   std::vector<BagChunk> chunks_;
   std::uint64_t messages_ = 0;
   std::uint64_t inflated_ = 0;  // bytes of all compressed chunks
   std::string cut_;
-  bool behind_ = false;  // the reader has passed the last chunk
+  bool behind_ = false;                   // the reader has passed the last chunk
+  std::size_t defined_ = 0, listed_ = 0;  // records behind the chunks
 
   // These members describe the last parsed chunk until its index is compared.
   bool pending_ = false;

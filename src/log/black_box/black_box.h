@@ -1,70 +1,95 @@
 #pragma once
-/// The black box holds the rows of the four nodes and the snapshots of their laws in a ring file (black_box_file.h).
+/// The black box is the log as a ring of short bags, which outlives a kill of all nodes.
 ///
-/// They have the layout of memory and the order in which they arrive, before they are joined: a dead node would delay
-/// the join. Each is compressed by itself. Only the build that wrote such a file can read it.
+///   folder/N.bag  a bag of a fixed size: its begin (connections, header), a chunk for each `flush`, then zeros
+///
+/// What `flush` has written is in the kernel's page cache: it survives the end of the process by any signal, and
+/// reaches the disk with the next writeback. A kill leaves at most one incomplete chunk, the last one. The space of all
+/// bags is reserved at the start, so that no flush meets a full disk. The oldest bag is filled with zeros and written
+/// again; TraceHeader::part gives their order. The folder is locked while it is written; the lock of a killed process
+/// ends with it. The file `ended` marks an orderly end.
+///
+/// A dead node would delay the join. A cycle is written without a node once another one is `kWindow` ahead.
 
 #include <cstdint>
 #include <string>
 #include <vector>
 
-#include "log/black_box/black_box_file.h"
-#include "log/messages/log_messages.h"
-#include "signals/trace.h"
+#include "log/log_chunk.h"
+#include "log/rows/join.h"
+#include "signals/law_snapshot.h"
 
 namespace robot_control {
 
-/// Each record has a kind; the first four are those of TraceRing.
-enum class BlackBoxKind : std::uint32_t { kDriver, kEstimator, kController, kMonitor, kSnapshot, kState, kHeader };
-
-/// This state holds for the records that follow.
-struct BlackBoxState {
-  std::int64_t time_offset_ns = 0;  ///< ROS time − stamps
-  std::uint64_t lost = 0;           ///< rows that were lost before they reached the black box
-};
-
-/// The file's description begins with the build that wrote the file, by `hex`; the header follows.
-inline constexpr std::size_t kBlackBoxBuildLength = 16;
-
 class BlackBox {
  public:
-  /// Makes a file with room for `bytes`. `build` is build_id(). Throws LogError.
-  BlackBox(const std::string& path, std::size_t bytes, std::uint64_t build, const LogHeader& header);
+  static constexpr std::size_t kBagBytes = std::size_t{2} << 20U;  ///< more for a header of more than a quarter of it
+  static constexpr double kWindow = 0.25;                          ///< s; a ring of a node is found within 0.1 s
 
-  void add(const DriverTrace& row) noexcept;
-  void add(const EstimatorTrace& row) noexcept;
-  void add(const ControllerTrace& row) noexcept;
-  void add(const MonitorTrace& row) noexcept;
+  /// Makes the folder with room for the newest `bytes`. Throws LogError if it cannot be made, or if the disk has no
+  /// room; then nothing is left of it.
+  BlackBox(const std::string& folder, std::size_t bytes, const LogHeader& header);
+  ~BlackBox();
+  BlackBox(const BlackBox&) = delete;
+  BlackBox& operator=(const BlackBox&) = delete;
 
-  /// A snapshot comes before the row to which it belongs.
-  void add(const LawSnapshot& snapshot) noexcept;
-
-  /// Adds the BlackBoxState of the records that follow.
-  void add_state(std::int64_t time_offset_ns, std::uint64_t lost) noexcept;
-
-  /// `encoded` is a LogHeader that holds from here on. A header longer than a segment is left out.
-  void add_header(std::string_view encoded) noexcept {
-    file_.append(static_cast<std::uint32_t>(BlackBoxKind::kHeader), 0, encoded);
+  /// Adds the row of one node.
+  template <class Row>
+  void add(const Row& row) {
+    join_.add(row);
   }
 
-  /// Marks an orderly end (black_box_file.h); nothing may be added afterwards.
-  void mark_ended() noexcept { file_.mark_ended(); }
+  /// A snapshot comes before the row to which it belongs.
+  void add(const LawSnapshot& snapshot) { chunk_.add(snapshot); }
 
-  bool at_its_path() const noexcept { return file_.at_its_path(); }
+  /// Hands what was added to the kernel. All rows that the nodes have written by one moment were added before.
+  void flush();
 
-  /// The time between the oldest and the newest added row, s.
-  double seconds_added() const noexcept;
+  /// The following holds for the rows that are joined from now on: ROS time − stamps, ns, and the number of rows that
+  /// were lost before they were added.
+  void set_state(std::int64_t time_offset_ns, std::uint64_t lost) noexcept;
 
-  /// The seconds of rows that the file can hold at the rate so far; 0: not known yet.
+  /// Sets the header of the bags that begin from now on. Joints and period must stay the same.
+  void set_header(const LogHeader& header);
+
+  /// Joins and hands over what still waits; nothing may be added afterwards.
+  void finish();
+
+  /// Marks an orderly end.
+  void mark_ended() const noexcept;
+
+  /// False: the folder or the present bag was removed or replaced, or cannot be written.
+  bool sound() const noexcept;
+
+  /// The time between the oldest and the newest row, s.
+  double seconds_added() const noexcept { return static_cast<double>(newest_ns_ - first_ns_) * 1e-9; }
+
+  /// The seconds of rows that the bags can hold at the rate so far; 0: not known yet.
   double seconds_held() const noexcept;
 
  private:
-  void add_bytes(BlackBoxKind kind, std::int64_t stamp_ns, const void* data, std::size_t size) noexcept;
+  std::string path(std::size_t bag) const;
+  void make_bags(std::size_t bags);
+  void write(const JoinedRow& row);
+  void write_chunk();
+  bool begin_bag(std::int64_t time_ns);
+  bool append(std::string_view bytes);
 
-  std::vector<char> packed_;
+  std::string folder_;
+  int lock_;  ///< descriptor of the folder
+  LogHeader header_;
+  std::string begin_;  ///< of the bag that was begun last
+  std::size_t bag_bytes_ = 0;
+  std::vector<int> bags_;    ///< descriptors
+  std::uint64_t begun_ = 0;  ///< number of bags that were begun
+  std::size_t at_ = 0;       ///< position in the present bag
+  bool failed_ = false;
+  LogChunk chunk_;
+  std::uint64_t lost_ = 0;
   std::int64_t first_ns_ = 0;  ///< stamp of the first row; 0: there is none
   std::int64_t newest_ns_ = 0;
-  BlackBoxFile file_;
+  Join join_;
+  std::size_t window_;  ///< rows
 };
 
 }  // namespace robot_control

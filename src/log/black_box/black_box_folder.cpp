@@ -1,11 +1,14 @@
 #include "log/black_box/black_box_folder.h"
 
+#include <fcntl.h>
+#include <sys/file.h>
+#include <unistd.h>
+
 #include <algorithm>
 #include <filesystem>
 #include <system_error>
 
 #include "files/given_path.h"
-#include "log/black_box/black_box_reader.h"
 #include "log/log_error.h"
 #include "log/numbered_name.h"
 
@@ -21,21 +24,13 @@ std::string prefix_of(IncidentKind kind) {
   return kind == IncidentKind::kStop ? "stop." : "crash.";
 }
 
-/// The result is false also for a file that is no black box.
-bool ended_without_order(const std::string& path) {
-  try {
-    return !BlackBoxReader(path).ended();
-  } catch (const LogError&) {
-    return false;
-  }
-}
-
-bool in_use(const std::string& path) {
-  try {
-    return BlackBoxReader(path).in_use();
-  } catch (const LogError&) {
-    return false;
-  }
+/// The result is true if a process writes this ring now.
+bool in_use(const std::string& ring) {
+  const int folder = open(ring.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (folder < 0) return false;
+  const bool locked = flock(folder, LOCK_SH | LOCK_NB) != 0;
+  close(folder);
+  return locked;
 }
 
 }  // namespace
@@ -54,7 +49,8 @@ std::vector<BlackBoxFolder::File> BlackBoxFolder::files(IncidentKind kind, const
   for (fs::directory_iterator entry(folder_, error), end; !error && entry != end; entry.increment(error)) {
     std::error_code gone;
     const auto number = number_in(entry->path().filename().string(), prefix_of(kind), suffix);
-    if (!number || !fs::is_regular_file(entry->symlink_status(gone))) continue;
+    const fs::file_type type = suffix == kRing ? fs::file_type::directory : fs::file_type::regular;
+    if (!number || entry->symlink_status(gone).type() != type) continue;
     found.push_back({.number = *number, .path = entry->path().string()});
   }
   std::ranges::sort(found, {}, &File::number);
@@ -74,7 +70,7 @@ void BlackBoxFolder::remove_oldest(IncidentKind kind) const {
   std::ranges::copy(files(kind, kRing), std::back_inserter(all));
   std::ranges::sort(all, {}, &File::number);
   std::error_code ignored;
-  for (std::size_t i = 0; i + keep_ < all.size(); ++i) fs::remove(all[i].path, ignored);
+  for (std::size_t i = 0; i + keep_ < all.size(); ++i) fs::remove_all(all[i].path, ignored);
 }
 
 void BlackBoxFolder::put_ring_aside() {
@@ -93,8 +89,10 @@ void BlackBoxFolder::put_ring_aside() {
     if (entry->path().extension() == kSavingSuffix) fs::remove_all(entry->path(), error);
   }
   if (!fs::exists(fs::symlink_status(ring(), error))) return;
-  const bool crash = keep_ != 0 && ended_without_order(ring());
-  fs::rename(ring(), crash ? name(IncidentKind::kCrash, next(IncidentKind::kCrash), kRing) : ring() + ".before", error);
+  const bool crash = keep_ != 0 && fs::is_directory(ring(), error) && !fs::exists(fs::path(ring()) / kEndedMark, error);
+  const std::string before = ring() + ".before";
+  if (!crash) fs::remove_all(before, error);
+  fs::rename(ring(), crash ? name(IncidentKind::kCrash, next(IncidentKind::kCrash), kRing) : before, error);
   if (error) {
     throw LogError("black box " + ring() + " of an earlier run cannot be renamed: " + error.message() +
                    "; name a folder that can be written (telemetry.directory)");
@@ -108,13 +106,12 @@ std::vector<std::string> BlackBoxFolder::unsaved() const {
   return paths;
 }
 
-SavedIncident BlackBoxFolder::save(const std::string& ring, IncidentKind kind, std::uint64_t build,
-                                   const GiveUp& give_up) const {
+SavedIncident BlackBoxFolder::save(const std::string& ring, IncidentKind kind, const GiveUp& give_up) const {
   const auto number = number_in(fs::path(ring).filename().string(), prefix_of(kind), kRing);
   const std::string bag = name(kind, number.value_or(next(kind)), kBag);
-  const SavedBlackBox saved = save_black_box(ring, build, bag, give_up);
+  const SavedBlackBox saved = save_black_box(ring, bag, give_up);
   std::error_code ignored;
-  if (number) fs::remove(ring, ignored);
+  if (number) fs::remove_all(ring, ignored);
   remove_oldest(kind);
   return {.bag = bag, .missing = saved.missing};
 }

@@ -1,7 +1,7 @@
 #pragma once
 /// A black box that is written has these files beside it:
 ///
-///   ring          the black box
+///   ring          the black box, a folder (black_box.h)
 ///   ring.before   the black box before it, whose writer ended orderly
 ///   stop.N.bag    its contents some seconds after a latched stop
 ///   crash.N.bag   the contents of one whose writer was killed, or had no time to save a stop
@@ -17,6 +17,9 @@
 #include "log/black_box/saved_black_box.h"
 
 namespace robot_control {
+
+/// This file in a ring marks an orderly end.
+inline constexpr const char* kEndedMark = "ended";
 
 enum class IncidentKind { kStop, kCrash };
 
@@ -40,7 +43,7 @@ class BlackBoxFolder {
 
   /// Writes the contents of `ring` to the next bag of this kind; a crash keeps its number. Removes the oldest. If it
   /// throws LogError, there is no bag. Throws SavingGivenUp.
-  SavedIncident save(const std::string& ring, IncidentKind kind, std::uint64_t build, const GiveUp& give_up = {}) const;
+  SavedIncident save(const std::string& ring, IncidentKind kind, const GiveUp& give_up = {}) const;
 
  private:
   struct File {

@@ -18,9 +18,8 @@ constexpr const char* kCrashed = "telemetry had not ended orderly, or had no tim
 
 }  // namespace
 
-BlackBoxKeeper::BlackBoxKeeper(const std::string& folder, std::size_t bytes, std::size_t keep, std::uint64_t build,
-                               const LogHeader& header)
-    : folder_(folder, keep), keep_(keep), build_(build), bytes_(bytes), header_(header), encoded_(encode(header)) {
+BlackBoxKeeper::BlackBoxKeeper(const std::string& folder, std::size_t bytes, std::size_t keep, LogHeader header)
+    : folder_(folder, keep), keep_(keep), bytes_(bytes), header_(std::move(header)) {
   folder_.put_ring_aside();
   if (keep_ != 0) unsaved_ = folder_.unsaved();
   try {
@@ -34,31 +33,31 @@ BlackBoxKeeper::BlackBoxKeeper(const std::string& folder, std::size_t bytes, std
 }
 
 void BlackBoxKeeper::make_box() {
-  box_ = std::make_unique<BlackBox>(folder_.ring(), bytes_, build_, header_);
+  box_ = std::make_unique<BlackBox>(folder_.ring(), bytes_, header_);
 }
 
 void BlackBoxKeeper::set_header(const LogHeader& header) {
   header_ = header;
-  encoded_ = encode(header);
-  header_ns_ = 0;
+  if (box_ != nullptr) box_->set_header(header);
 }
 
 void BlackBoxKeeper::check_ring(std::int64_t now_ns) {
   constexpr std::int64_t kCheckNs = 1'000'000'000;
   if (now_ns < check_ns_) return;
   check_ns_ = now_ns + kCheckNs;
-  if (box_ != nullptr && box_->at_its_path()) return;
-  box_.reset();  // a removed file keeps its room on the disk while it is open
+  if (box_ != nullptr && box_->sound()) return;
+  box_.reset();  // removed files keep their room on the disk while they are open
   try {
     folder_.put_ring_aside();
     make_box();
     absent_ = false;
-    notes_.push_back(folder_.ring() + " was removed, and what it held with it; another one was begun");
+    notes_.push_back(folder_.ring() + " was removed or cannot be written; another one was begun");
   } catch (const LogError& error) {
     check_ns_ = now_ns + kRetryNs;
     if (std::exchange(absent_, true)) return;
-    notes_.push_back(folder_.ring() +
-                     " was removed, and no other can be made, which is tried every 10 s: " + error.what());
+    notes_.push_back(
+        folder_.ring() +
+        " was removed or cannot be written, and no other can be made, which is tried every 10 s: " + error.what());
   }
 }
 
@@ -81,12 +80,12 @@ BlackBoxKeeper::~BlackBoxKeeper() {
 BlackBoxKeeper::Outcome BlackBoxKeeper::save(const std::string& ring, IncidentKind kind, const std::string& why,
                                              const GiveUp& give_up) const {
   try {
-    const SavedIncident saved = folder_.save(ring, kind, build_, give_up);
+    const SavedIncident saved = folder_.save(ring, kind, give_up);
     const std::string missing = saved.missing.empty() ? "" : "; " + saved.missing;
     return {.saved = true, .note = "saved " + saved.bag + ": " + why + missing};
   } catch (const EmptyBlackBox&) {
     std::error_code ignored;
-    if (kind == IncidentKind::kCrash) std::filesystem::remove(ring, ignored);
+    if (kind == IncidentKind::kCrash) std::filesystem::remove_all(ring, ignored);
     return {};
   } catch (const SavingGivenUp&) {
     return {.given_up = true, .note = {}};
@@ -121,10 +120,6 @@ void BlackBoxKeeper::report(Outcome outcome) {
 void BlackBoxKeeper::poll(std::int64_t now_ns) {
   check_ring(now_ns);
   check_size();
-  if (box_ != nullptr && now_ns >= header_ns_) {
-    box_->add_header(encoded_);
-    header_ns_ = now_ns + kHeaderNs;
-  }
   if (outcome_.valid() && outcome_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return;
   finish_saving();
   if (watch_.due(now_ns)) {
@@ -139,6 +134,7 @@ void BlackBoxKeeper::poll(std::int64_t now_ns) {
 /// The caller saves, because the thread may get little processor time, and roslaunch kills a node after 15 s.
 void BlackBoxKeeper::finish(const GiveUp& late) {
   ends_.store(true);
+  if (box_ != nullptr) box_->finish();
   std::string why = finish_saving() ? "" : saving_;
   if (watch_.pending()) why += (why.empty() ? "" : ", ") + names_of(kStopCauseNames, watch_.clear(), ", ");
   if (!why.empty() && keep_ != 0) {

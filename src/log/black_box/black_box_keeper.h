@@ -22,29 +22,29 @@ namespace robot_control {
 class BlackBoxKeeper {
  public:
   static constexpr std::int64_t kRetryNs = 10'000'000'000;
-  static constexpr std::int64_t kHeaderNs = 10'000'000'000;
   static constexpr double kPromised = 60;   ///< s of rows; a smaller black box is reported
   static constexpr double kRateKnown = 10;  ///< s of rows after which the rate is known
 
   /// Makes a black box of `bytes` in `folder` and keeps the newest `keep` incidents of each kind. Throws LogError.
-  BlackBoxKeeper(const std::string& folder, std::size_t bytes, std::size_t keep, std::uint64_t build,
-                 const LogHeader& header);
+  BlackBoxKeeper(const std::string& folder, std::size_t bytes, std::size_t keep, LogHeader header);
   ~BlackBoxKeeper();
   BlackBoxKeeper(const BlackBoxKeeper&) = delete;
   BlackBoxKeeper& operator=(const BlackBoxKeeper&) = delete;
 
-  /// Calls BlackBox::add if there is a ring.
+  /// These call the functions of the BlackBox if there is a ring.
   template <class Record>
-  void add(const Record& record) noexcept {
+  void add(const Record& record) {
     if (box_ != nullptr) box_->add(record);
   }
-  void add_state(std::int64_t time_offset_ns, std::uint64_t lost) noexcept {
-    if (box_ != nullptr) box_->add_state(time_offset_ns, lost);
+  void flush() {
+    if (box_ != nullptr) box_->flush();
   }
-  std::string path() const { return folder_.ring(); }
-
-  /// `header` holds from now on. It is added to the ring every `kHeaderNs`, so that a saved bag has it.
+  void set_state(std::int64_t time_offset_ns, std::uint64_t lost) noexcept {
+    if (box_ != nullptr) box_->set_state(time_offset_ns, lost);
+  }
   void set_header(const LogHeader& header);
+
+  std::string path() const { return folder_.ring(); }
 
   /// `causes` are the present Permit::causes; `now_ns` is on any clock that runs.
   void watch(std::uint64_t causes, std::int64_t now_ns) noexcept { watch_.update(causes, now_ns); }
@@ -79,11 +79,8 @@ class BlackBoxKeeper {
 
   BlackBoxFolder folder_;
   std::size_t keep_;
-  std::uint64_t build_;
   std::size_t bytes_;
   LogHeader header_;
-  std::string encoded_;            ///< message of `header_`
-  std::int64_t header_ns_ = 0;     ///< time at which the ring gets it again
   std::unique_ptr<BlackBox> box_;  ///< null: the ring was removed, and no other could be made
   IncidentWatch watch_;
   std::vector<std::string> unsaved_;  ///< rings of crashes, oldest first

@@ -1,169 +1,227 @@
 #include "log/black_box/saved_black_box.h"
 
-#include <lz4.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <filesystem>
+#include <fstream>
 #include <functional>
 #include <memory>
-#include <string_view>
+#include <optional>
 #include <system_error>
-#include <type_traits>
+#include <vector>
 
+#include "log/bag/bag_error.h"
 #include "log/bag_log.h"
-#include "log/black_box/black_box.h"
-#include "log/black_box/black_box_reader.h"
-#include "log/black_box/lost_rows.h"
-#include "log/messages/message_types.h"
-#include "log/rows/join.h"
-#include "signals/checksum.h"
+#include "log/numbered_name.h"
+#include "log/trace_reader.h"
 
 namespace robot_control {
 namespace {
 
 namespace fs = std::filesystem;
 
-/// Gives the contents of a record to `use`: a row of a node, a LawSnapshot or a BlackBoxState. Other sizes are ignored.
-class Unpacker {
- public:
-  template <class Use>
-  void give(const BlackBoxRecord& record, Use use) {
-    switch (static_cast<BlackBoxKind>(record.kind)) {
-      case BlackBoxKind::kDriver:
-        return unpack(record, driver_, use);
-      case BlackBoxKind::kEstimator:
-        return unpack(record, estimator_, use);
-      case BlackBoxKind::kController:
-        return unpack(record, controller_, use);
-      case BlackBoxKind::kMonitor:
-        return unpack(record, monitor_, use);
-      case BlackBoxKind::kSnapshot:
-        return unpack(record, snapshot_, use);
-      case BlackBoxKind::kState:
-        return unpack(record, state_, use);
-      case BlackBoxKind::kHeader:
-        return;
-    }
-  }
-
- private:
-  template <class Value, class Use>
-  static void unpack(const BlackBoxRecord& record, Value& value, Use use) {
-    static_assert(std::is_trivially_copyable_v<Value>);
-    const int size = LZ4_decompress_safe(record.data.data(), reinterpret_cast<char*>(&value),
-                                         static_cast<int>(record.data.size()), static_cast<int>(sizeof value));
-    if (size == static_cast<int>(sizeof value)) use(value);
-  }
-
-  DriverTrace driver_;
-  EstimatorTrace estimator_;
-  ControllerTrace controller_;
-  MonitorTrace monitor_;
-  LawSnapshot snapshot_;
-  BlackBoxState state_;
+/// A bag of the ring.
+struct RingBag {
+  std::string path;
+  std::uint64_t bytes = 0;
+  std::uint32_t part = 0;  ///< TraceHeader::part; rises from bag to bag
 };
 
-/// Gives records to the join and the log.
+/// Returns the part in the header of a bag; nothing: it cannot be read.
+std::optional<std::uint32_t> part_of(const std::string& path) {
+  struct Found {
+    std::uint32_t part;
+  };
+  try {
+    TraceReader(path, {.header = [](const LogHeader& header) { throw Found{header.part}; }, .damaged = [] {}});
+  } catch (const Found& found) {
+    return found.part;
+  } catch (const std::runtime_error&) {
+  }
+  return {};
+}
+
+bool zeros_at(std::ifstream& file, std::uint64_t begin, std::uint64_t end) {
+  std::string bytes(end - begin, 'x');
+  file.seekg(static_cast<std::streamoff>(begin));
+  file.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+  return bytes.find_first_not_of('\0') == std::string::npos;
+}
+
+/// True: its writer had not begun it, or was killed while it wrote its begin, which is less than half of it.
+bool not_begun(const std::string& path, std::uint64_t bytes) {
+  std::ifstream file(path, std::ios::binary);
+  return bytes >= 4 && (zeros_at(file, 0, 4) || zeros_at(file, bytes / 2, bytes));
+}
+
+/// The bags of a ring, oldest first.
+struct Ring {
+  explicit Ring(const std::string& path) {
+    std::error_code error;
+    std::uint64_t numbers = 0;
+    for (fs::directory_iterator entry(path, error), end; !error && entry != end; entry.increment(error)) {
+      const auto number = number_in(entry->path().filename().string(), "", ".bag");
+      if (!number) continue;
+      numbers = std::max(numbers, *number + 1);
+      ++files;
+      const std::string bag = entry->path().string();
+      const std::uint64_t bytes = fs::file_size(bag, error);
+      whole_bytes = std::max(whole_bytes, bytes);
+      if (const auto part = part_of(bag)) {
+        bags.push_back({.path = bag, .bytes = bytes, .part = *part});
+      } else if (!not_begun(bag, bytes)) {
+        ++unreadable;
+      }
+    }
+    if (files == 0) {
+      throw LogError(path + ": is no black box of this version; name the folder black_box/ring in that of the logs");
+    }
+    absent = numbers - files;
+    std::ranges::sort(bags, {}, &RingBag::part);
+  }
+
+  std::vector<RingBag> bags;
+  std::uint64_t files = 0;
+  std::uint64_t whole_bytes = 0;  ///< of each bag
+  std::uint64_t unreadable = 0;   ///< bags that were written
+  std::uint64_t absent = 0;       ///< bags
+};
+
+/// Gives the contents of a ring to the log, and counts what is missing between two rows.
 class Saver {
  public:
-  Saver(LogFolder& folder, const LogHeader& header)
-      : log_(folder, header, parameters()), join_(header.period, [this](const JoinedRow& row) {
-          log_.write(row);
-          if (!row.repeats) ++saved_.rows;
-        }) {}
+  Saver(LogFolder& folder, std::string missing) : folder_(folder), missing_(std::move(missing)) {}
 
-  void add(const BlackBoxRecord& record) {
-    unpacker_.give(record, [&](const auto& value) { add(record, value); });
-  }
-  void gap() { lost_.gap(); }
-
-  SavedBlackBox finish() {
-    join_.finish();
-    log_.close();
-    return saved_;
-  }
-
- private:
-  static TelemetryParameters parameters() {
+  void begin(const LogHeader& header, const std::string& path) {
+    if (log_) return;
+    if (header.joints.size() > kMaxJoints) throw LogError(path + " is of no robot");
+    LogHeader first = header;
+    first.part = 0;
+    first.missing = missing_;
+    period_ = header.period;
     TelemetryParameters all;
     all.record = RecordMode::kAlways;
     all.split_size = all.split_time = all.quota = 0;
-    return all;
+    log_.emplace(folder_, first, all);
   }
 
-  template <class Row>
-  void add(const BlackBoxRecord& record, const Row& row) {
-    saved_.newest_ns.at(record.kind) = record.time_ns;
-    lost_.row(record.kind, head_of(row));
-    log_.set_lost(lost_before_ + lost_.count());
-    join_.add(row);
-  }
-  void add(const BlackBoxRecord& /*record*/, const LawSnapshot& snapshot) { log_.write(snapshot); }
-  void add(const BlackBoxRecord& /*record*/, const BlackBoxState& state) {
-    log_.set_time_offset(state.time_offset_ns);
-    lost_before_ = state.lost;
-    log_.set_lost(lost_before_ + lost_.count());
-  }
-
-  Unpacker unpacker_;
-  BagLog log_;
-  SavedBlackBox saved_;
-  LostRows lost_;
-  std::uint64_t lost_before_ = 0;
-  Join join_;
-};
-
-/// The contents of a black box are counted before it is saved.
-struct Survey {
-  BlackBoxDamage damage;
-  std::uint64_t records = 0;
-  std::uint64_t rows = 0;  ///< rows of all nodes
-  LostRows lost;
-  std::string header;  ///< message of the oldest header; empty: there is none
-};
-
-/// Records are unpacked only if some are missing, to name those.
-Survey survey_of(const BlackBoxReader& reader, const std::function<void()>& go_on) {
-  Survey survey;
-  const auto count = [&](const BlackBoxRecord& record) {
-    ++survey.records;
-    if (record.kind < kLaws) ++survey.rows;
-    if (record.kind == static_cast<std::uint32_t>(BlackBoxKind::kHeader) && survey.header.empty()) {
-      survey.header = record.data;
+  void add(const TraceRow& row, std::int64_t time_ns) {
+    const JoinedRow joined = row.joined(period_);
+    count_lost(row);
+    log_->set_lost(row.lost + lost_);
+    log_->set_time_offset(time_ns - stamp_of(joined));
+    log_->write(joined);
+    for (std::size_t node = 0; node < saved_.newest_ns.size(); ++node) {
+      if ((row.parts >> node & 1U) != 0) saved_.newest_ns[node] = row.stamp_ns;
     }
+    if (!row.repeats) ++saved_.rows;
+  }
+  void add(const LawSnapshot& snapshot, std::int64_t time_ns) {
+    log_->set_time_offset(time_ns - snapshot.head.stamp_ns);
+    log_->write(snapshot);
+  }
+
+  /// Rows may be missing behind the last one.
+  void gap() noexcept { gap_ = true; }
+
+  SavedBlackBox finish() {
+    if (log_) log_->close();
+    return saved_;
+  }
+
+  /// The result is empty if nothing is missing between the rows.
+  std::string lost() const {
+    if (places_.empty()) return {};
+    std::string text = "records are missing at " + std::to_string(places_.size()) +
+                       (places_.size() == 1 ? " place" : " places") + " of the others, " + std::to_string(lost_) +
+                       " rows";
+    constexpr std::size_t kShown = 5;
+    for (std::size_t i = 0; i < std::min(kShown, places_.size()); ++i) {
+      text += (i == 0 ? ", in the cycles " : ", ") + places_[i];
+    }
+    return text + (places_.size() <= kShown ? "" : ", …");
+  }
+
+ private:
+  /// A gap in which a run ended does not count.
+  void count_lost(const TraceRow& row) {
+    if (row.repeats) return;
+    const bool follows = saved_.rows != 0 && row.run_id == run_ && row.cycle > cycle_ + 1;
+    if (gap_ && follows) {
+      lost_ += row.cycle - cycle_ - 1;
+      places_.push_back(std::to_string(cycle_ + 1) + " to " + std::to_string(row.cycle - 1));
+    }
+    gap_ = false;
+    run_ = row.run_id;
+    cycle_ = row.cycle;
+  }
+
+  LogFolder& folder_;
+  std::string missing_;
+  std::optional<BagLog> log_;
+  double period_ = 0;
+  SavedBlackBox saved_;
+  bool gap_ = false;
+  std::uint64_t run_ = 0, cycle_ = 0;  ///< of the last row
+  std::uint64_t lost_ = 0;             ///< rows
+  std::vector<std::string> places_;
+};
+
+/// Another part is in the file now.
+class Overwritten : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+void read_bag(const RingBag& bag, Saver& saver, const std::function<void()>& go_on) {
+  const auto begin = [&](const LogHeader& header) {
+    if (header.part != bag.part) throw Overwritten(bag.path);
+    saver.begin(header, bag.path);
   };
-  survey.damage = reader.read({.record = count, .segment = go_on});
-  if (survey.damage.none()) return survey;
-  const auto unpacker = std::make_unique<Unpacker>();  // 100 KB
-  const auto find_lost = [&](const BlackBoxRecord& record) {
-    unpacker->give(record, [&](const auto& value) {
-      if constexpr (requires { head_of(value); }) survey.lost.row(record.kind, head_of(value));
-    });
+  const auto add = [&](const TraceRow& row, std::int64_t time_ns) {
+    go_on();
+    saver.add(row, time_ns);
   };
-  reader.read({.record = find_lost, .gap = [&] { survey.lost.gap(); }, .segment = go_on});
-  return survey;
+  const auto add_snapshot = [&](const LawSnapshot& snapshot, std::int64_t time_ns) { saver.add(snapshot, time_ns); };
+  const TraceReader reader(bag.path,
+                           {.header = begin, .row = add, .snapshot = add_snapshot, .damaged = [&] { saver.gap(); }});
+  if (reader.of_this_version()) return;
+  throw LogError(bag.path + " was written by the version " + reader.header().version + ", build " +
+                 reader.header().build + ": read it with the programs that wrote it");
 }
 
-std::string counted(std::uint64_t count, const std::string& one, const std::string& many) {
-  return std::to_string(count) + " " + (count == 1 ? one : many);
+/// A bag that is overwritten meanwhile leaves a gap.
+void read_ring(const Ring& ring, Saver& saver, const std::function<void()>& go_on) {
+  std::optional<std::uint32_t> before;
+  for (const RingBag& bag : ring.bags) {
+    go_on();
+    if (before && bag.part != *before + 1) saver.gap();
+    before = bag.part;
+    try {
+      read_bag(bag, saver, go_on);
+    } catch (const Overwritten&) {
+    } catch (const BagError&) {
+    } catch (const NoTraceError&) {
+    }
+    if (bag.bytes < ring.whole_bytes || part_of(bag.path) != bag.part) saver.gap();
+  }
 }
 
 /// The result is empty if nothing is missing.
-std::string missing_in(const BlackBoxReader& reader, const Survey& survey) {
+std::string missing_in(const Ring& ring, const std::string& lost) {
   std::string text;
   const auto add = [&](const std::string& part) { text += (text.empty() ? "" : "; ") + part; };
-  if (reader.bytes() < reader.whole_bytes()) {
-    add("it is cut off after " + std::to_string(reader.bytes()) + " of " + std::to_string(reader.whole_bytes()) +
-        " bytes");
-  }
-  if (survey.damage.segments != 0) {
-    add(counted(survey.damage.segments, "segment", "segments") + " of " + std::to_string(reader.segments()) +
-        ", 1 MiB each, cannot be read");
-  }
-  if (survey.damage.places != 0) {
-    add("records are missing at " + counted(survey.damage.places, "place", "places") + " of the others");
-  }
-  if (survey.lost.count() != 0) add("between what was read " + survey.lost.text() + " are missing");
+  const auto add_bags = [&](const char* what, std::uint64_t count) {
+    if (count == 0) return;
+    add(std::string("bags that ") + what + ": " + std::to_string(count) + " of " +
+        std::to_string(ring.files + ring.absent));
+  };
+  add_bags("are not there", ring.absent);
+  add_bags("cannot be read", ring.unreadable);
+  add_bags("are cut off", static_cast<std::uint64_t>(std::ranges::count_if(
+                              ring.bags, [&](const RingBag& bag) { return bag.bytes < ring.whole_bytes; })));
+  if (!lost.empty()) add(lost);
   return text.empty() ? text : "the black box is damaged: " + text;
 }
 
@@ -189,7 +247,7 @@ class Growing {
   std::string folder() const { return folder_.string(); }
 
   /// Empties the bag, which is not wanted: its closing would write to the disk for seconds.
-  void empty() {
+  void empty() const {
     std::error_code ignored;
     fs::resize_file(folder_ / "run.bag", 0, ignored);
   }
@@ -211,58 +269,38 @@ class Growing {
   bool above_ = false;  ///< true: the folder of the bag was made here
 };
 
-/// The ring began with this header.
-std::string_view first_header(const BlackBoxReader& reader, std::uint64_t build, const std::string& path) {
-  const std::string& description = reader.description();
-  const std::string writer = description.substr(0, kBlackBoxBuildLength);
-  if (writer != hex(build)) {
-    throw LogError(path + " was written by the build " + writer + ", this is " + hex(build) +
-                   ": read it with the programs that wrote it");
-  }
-  return std::string_view(description).substr(kBlackBoxBuildLength);
-}
-
-LogHeader header_of(std::string_view encoded, const std::string& path) {
-  LogHeader header = decode_header(encoded, trace_header_type().definition);
-  if (header.joints.size() > kMaxJoints) throw LogError(path + " is of no robot");
-  header.record = "always";
-  header.part = 0;
-  return header;
-}
-
 }  // namespace
 
-SavedBlackBox save_black_box(const std::string& path, std::uint64_t build, const std::string& bag,
-                             const GiveUp& give_up) {
-  const BlackBoxReader reader(path);
+SavedBlackBox save_black_box(const std::string& path, const std::string& bag, const GiveUp& give_up) {
   const auto go_on = [&] {
     if (give_up && give_up()) throw SavingGivenUp("saving " + path + " was given up");
   };
-  const std::string_view first = first_header(reader, build, path);
-  const Survey survey = survey_of(reader, go_on);
-  LogHeader header = header_of(survey.header.empty() ? first : survey.header, path);
-  header.missing = missing_in(reader, survey);
-  if (survey.records == 0 && !header.missing.empty()) {
-    throw LogError(path + " holds no record that is whole: " + header.missing);
-  }
-  if (survey.rows == 0) throw EmptyBlackBox(path + " holds no row: telemetry has received none");
+  const Ring ring(path);
   Growing growing(bag);
-  LogFolder logs(growing.folder(), 0);
-  const auto saver = std::make_unique<Saver>(logs, header);  // 100 KB
-  const auto add = [&](const BlackBoxRecord& record) {
-    go_on();
-    saver->add(record);
-  };
-  try {
-    reader.read({.record = add, .gap = [&] { saver->gap(); }, .segment = go_on});
-  } catch (const SavingGivenUp&) {
-    growing.empty();
-    throw;
+  // What is missing between the rows is known after they were read, and stands in the header.
+  std::string missing = missing_in(ring, "");
+  for (bool again = false;; again = true) {
+    LogFolder logs(growing.folder(), 0);
+    Saver saver(logs, missing);
+    try {
+      read_ring(ring, saver, go_on);
+    } catch (const SavingGivenUp&) {
+      growing.empty();
+      throw;
+    }
+    const std::string found = missing_in(ring, saver.lost());
+    if (found != missing && !again) {
+      missing = found;
+      growing.empty();
+      continue;
+    }
+    SavedBlackBox saved = saver.finish();
+    if (saved.rows == 0 && missing.empty()) throw EmptyBlackBox(path + " holds no row: telemetry has received none");
+    if (saved.rows == 0) throw LogError(path + " holds no record that is whole: " + missing);
+    growing.finish();
+    saved.missing = missing;
+    return saved;
   }
-  SavedBlackBox saved = saver->finish();
-  growing.finish();
-  saved.missing = header.missing;
-  return saved;
 }
 
 }  // namespace robot_control

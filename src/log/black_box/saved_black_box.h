@@ -25,7 +25,7 @@ class SavingGivenUp : public LogError {
   using LogError::LogError;
 };
 
-/// It is called before each segment and record; true: the caller gives up.
+/// It is called before each chunk and row; true: the caller gives up.
 using GiveUp = std::function<bool()>;
 
 struct SavedBlackBox {
@@ -34,11 +34,10 @@ struct SavedBlackBox {
   std::string missing = {};                 ///< unreadable parts, as in LogHeader::missing
 };
 
-/// Joins the rows of the file at `path` and writes them to `bag`, whole or not at all. The file may be in use; then the
+/// Writes the rows of the ring at `path` (black_box.h) to `bag`, whole or not at all. The ring may be in use; then the
 /// newest rows may be missing. Damaged parts are passed over. The header of the bag names them, and the field `lost` of
-/// the rows behind counts the missing rows. Throws EmptyBlackBox or SavingGivenUp. Throws LogError if the file is no
-/// black box of this build, has no sound record, or the bag cannot be written.
-SavedBlackBox save_black_box(const std::string& path, std::uint64_t build, const std::string& bag,
-                             const GiveUp& give_up = {});
+/// the rows behind counts the missing rows. Throws EmptyBlackBox or SavingGivenUp. Throws LogError if the folder is no
+/// black box of this version, has no sound row, or the bag cannot be written.
+SavedBlackBox save_black_box(const std::string& path, const std::string& bag, const GiveUp& give_up = {});
 
 }  // namespace robot_control

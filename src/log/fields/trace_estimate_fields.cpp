@@ -24,7 +24,9 @@ void add_estimate(TraceFields& to) {
           column<E>("estimate_roll", "rad", [](const E& e, std::size_t) { return roll_of(e.state.base.attitude); }))
       .shown_as(
           column<E>("estimate_pitch", "rad", [](const E& e, std::size_t) { return pitch_of(e.state.base.attitude); }));
-  const auto entry = [&](const char* name, const char* unit, auto get) { field<E, f32>(to, name, unit, get).shown().as_part(); };
+  const auto entry = [&](const char* name, const char* unit, auto get) {
+    field<E, f32>(to, name, unit, get).shown().as_part();
+  };
   entry("estimate_x_variance", "m^2", MEMBER(state.base.pose_covariance[0]));
   entry("estimate_y_variance", "m^2", MEMBER(state.base.pose_covariance[7]));
   entry("estimate_yaw_variance", "rad^2", MEMBER(state.base.pose_covariance[35]));

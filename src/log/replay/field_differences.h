@@ -1,6 +1,6 @@
 #pragma once
-/// Compares rows, and their messages, by the names of their fields. Per field there is at most one difference: its first
-/// element that differs, or its length.
+/// Compares rows, and their messages, by the names of their fields. Per field there is at most one difference: its
+/// first element that differs, or its length.
 
 #include <string>
 #include <string_view>

@@ -84,6 +84,12 @@ void Join::give_repeated() {
   give(std::get<3>(repeated_), [](JoinedRow::Laws& laws, const MonitorTrace& row) { laws.monitor = &row; });
 }
 
+void Join::emit_beyond(std::size_t window) {
+  const std::size_t before = std::exchange(window_, window);
+  drain(false);
+  window_ = before;
+}
+
 void Join::finish() {
   drain(true);
 }

@@ -37,6 +37,9 @@ class Join {
   void add(const ControllerTrace& row);
   void add(const MonitorTrace& row);
 
+  /// Emits the cycles for which another node is more than `window` rows ahead.
+  void emit_beyond(std::size_t window);
+
   /// Emits all rows that still wait, at the end of the log.
   void finish();
 

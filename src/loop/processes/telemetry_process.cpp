@@ -6,7 +6,6 @@
 #include <optional>
 #include <utility>
 
-#include "loop/build_id.h"
 #include "loop/cycles/trace_sink.h"
 #include "loop/log_header.h"
 #include "rt/clock.h"
@@ -42,6 +41,9 @@ class TelemetryProcess::Source {
     read.store(reader_->position(), std::memory_order_release);
   }
 
+  /// `drain` takes the rows that are written now.
+  void mark() { written_ = reader_ ? reader_->written() : 0; }
+
   /// `keep(snapshot)` comes before the row to which it belongs: a node appends it first.
   /// `store(row)` is called with each row before the join gets it.
   template <class Keep, class Store>
@@ -51,7 +53,7 @@ class TelemetryProcess::Source {
     // One ring's worth at most, so that a writer that is faster than this does not hold the others up.
     while (begun_ && rows < kRingRows) {
       batch_.clear();
-      while (batch_.size() < kBatch && reader_->read(row_)) batch_.push_back(row_);
+      while (batch_.size() < kBatch && reader_->position() < written_ && reader_->read(row_)) batch_.push_back(row_);
       if (batch_.empty()) break;
       while (snapshots_ && snapshots_->read(snapshot_)) keep(snapshot_);
       for (const Row& row : batch_) store(row);
@@ -99,6 +101,7 @@ class TelemetryProcess::Source {
   ForeignChannel<Ring<Row>> channel_;
   std::optional<RingReader<Row>> reader_;
   bool begun_ = false;  ///< rows are taken
+  std::uint64_t written_ = 0;
   std::uint64_t dropped_before_ = 0;
   std::uint64_t dropped_ = 0;
   std::uint64_t overwritten_ = 0;
@@ -149,7 +152,7 @@ TelemetryProcess::TelemetryProcess(const Parameters& parameters, const Robot& ro
     black_box_ =
         std::make_unique<BlackBoxKeeper>((std::filesystem::path(parameters.telemetry.directory) / "black_box").string(),
                                          static_cast<std::size_t>(bytes_of(parameters.telemetry.black_box)),
-                                         parameters.telemetry.incidents, build_id(), log_header(parameters, robot));
+                                         parameters.telemetry.incidents, log_header(parameters, robot));
     black_box_path_ = black_box_->path();
   }
   if (parameters.telemetry.record != RecordMode::kOff) {
@@ -175,7 +178,7 @@ void TelemetryProcess::poll() {
   const std::int64_t now_ns = monotonic_ns();
   if (black_box_ != nullptr) {
     permit_.poll();
-    black_box_->add_state(utc_ns() - now_ns, lost);
+    black_box_->set_state(utc_ns() - now_ns, lost);
     black_box_->poll(now_ns);
   }
   if (bag_ == nullptr) return;
@@ -222,10 +225,14 @@ std::size_t TelemetryProcess::drain() {
     if (black_box_ != nullptr) black_box_->add(snapshot);
     if (bag_ != nullptr) bag_->write(snapshot);
   };
+  sources_->each([](auto& source, std::size_t /*ring*/) { source.mark(); });
   sources_->each([&](auto& source, std::size_t ring) {
     rows += source.drain(join_, positions_.memory()->read[ring], keep, [&](const auto& row) { receive(row, ring); });
   });
-  if (black_box_ != nullptr) check_permit();
+  if (black_box_ != nullptr) {
+    black_box_->flush();
+    check_permit();
+  }
   return rows;
 }
 

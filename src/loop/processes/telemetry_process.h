@@ -1,7 +1,8 @@
 #pragma once
 /// The reader of the trace: takes the rows of the four rings, joins them by cycle and writes run.bag.
-/// The black box (recording/black_box) gets them first, as they are. The causes that latched a stop are read from the
-/// newest permit. On the wall clock it adds the figures of the timing to run.bag (timing_summary.h).
+/// The black box (log/black_box) joins them by itself, because it waits less for a dead node. The causes that latched a
+/// stop are read from the newest permit. On the wall clock it adds the figures of the timing to run.bag
+/// (timing_summary.h).
 ///
 /// It owns the read positions. It announces itself only once all four rings are mapped and the positions stored
 /// (head.attached_run = 1): from then on, in lockstep, a full ring makes its writer wait, so no row is lost.

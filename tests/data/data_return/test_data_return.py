@@ -211,7 +211,7 @@ def test_only_finished_files_return(tmp_path):
     write(logs / "run.7.bag", OPEN_BAG, 2e8)  # of a telemetry that was killed
     write(logs / "trial/run.bag", WHOLE_BAG, 3e8)
     write(logs / "black_box/stop.3.bag", WHOLE_BAG, 4e8)
-    write(logs / "black_box/ring", b"rows")
+    write(logs / "black_box/ring/0.bag", OPEN_BAG, 4e8)
     write(logs / ".run.1.partial.bag", WHOLE_BAG, 5e8)
     write(logs / "user.bag.active", OPEN_BAG)
     write(logs / "run.html", b"page", 6e8)

@@ -24,7 +24,7 @@ JoinedRow row_of(const DriverTrace& trace) {
 
 /// Changes each word of a member of a row behind the first `skipped`.
 template <class Trace, class Plain>
-std::set<std::string> names(Plain Trace::* member, std::size_t skipped) {
+std::set<std::string> names(Plain Trace::*member, std::size_t skipped) {
   constexpr std::size_t kWords = sizeof(Plain) / 8;
   std::set<std::string> all;
   const auto zero = std::bit_cast<std::array<std::uint64_t, kWords>>(Plain{});

@@ -24,7 +24,7 @@ class ReplayedProcesses : public testing::Test {
     robot_.nodes().end(LoopNode::kTelemetry);
     TraceReader log((folder_ / "run.bag").string());
     Replay replay(robot_.nodes().composed(), robot_.nodes().parameters().loop.period());
-    log.read({.snapshot = [&](const LawSnapshot& snapshot) { replay.add(snapshot); }});
+    log.read({.snapshot = [&](const LawSnapshot& snapshot, std::int64_t) { replay.add(snapshot); }});
     log.read({.message = [&](const TraceRow& row, const BagMessage& message) {
       replay.add(row, message.data, static_cast<std::int64_t>(message.time_ns));
     }});

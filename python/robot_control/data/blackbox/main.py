@@ -11,10 +11,10 @@ from robot_control.data.black_box import LOGS, incidents_of, ring_of
 from robot_control.files.files import escaped, escaped_lines, fit_for_message, given_path, in_words, utf8
 
 EPILOG = """
-The node telemetry writes every cycle into black_box/ring in its folder (telemetry.directory). It saves by itself what
-that holds 5 s after a latched stop, as black_box/stop.N.bag, and, when it is started after it was killed, as
-black_box/crash.N.bag: any tool takes these. After an orderly end the file is black_box/ring.before from the next start
-on. Only the build that wrote a ring reads it.
+The node telemetry writes every cycle into the folder black_box/ring in its own (telemetry.directory). It saves by
+itself what that holds 5 s after a latched stop, as black_box/stop.N.bag, and, when it is started after it was killed,
+as black_box/crash.N.bag: any tool takes these. After an orderly end the ring is black_box/ring.before from the next
+start on. Only the version that wrote a ring reads it.
 """
 
 
@@ -51,7 +51,7 @@ def _parser() -> argparse.ArgumentParser:
         nargs="?",
         type=given_path,
         default=str(LOGS),
-        help="folder of the logs (default: %(default)s), or a file black_box/ring",
+        help="folder of the logs (default: %(default)s), or a folder black_box/ring",
     )
     parser.add_argument(
         "--out",
