@@ -14,7 +14,6 @@
 #include <utility>
 #include <vector>
 
-#include "bindings/bag.h"
 #include "bindings/describe.h"
 #include "bindings/installed_file.h"
 #include "bindings/legs.h"
@@ -310,6 +309,5 @@ PYBIND11_MODULE(_robot_control, module) {
   bind_loop_replay(module);
   bind_log_replay(module);
   bind_closed_loop(module);
-  bind_bag(module);
   bind_run_bag(module);
 }

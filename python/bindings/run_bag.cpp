@@ -148,8 +148,9 @@ py::dict read_run_bag(const std::string& path, const std::vector<std::string>& n
                   "ros_time"_a = table->times(), "runs"_a = table->runs(), "lost"_a = lost, "cut"_a = reader.cut());
 }
 
-/// Gives all runs of a log to `use(arrays by column, names of the columns of integers)`, in parts.
-void each_part_of_run_bag(const std::string& path, const py::function& use) {
+/// Gives all runs of a log to `use(arrays by column, names of the columns of integers)`, in parts. Returns
+/// TraceReader::cut.
+std::string each_part_of_run_bag(const std::string& path, const py::function& use) {
   check_numpy_version();
   constexpr std::size_t kRows = 1 << 14;
   TraceReader reader(path);
@@ -167,6 +168,7 @@ void each_part_of_run_bag(const std::string& path, const py::function& use) {
     table.add(row, time_ns);
   }});
   end_part();
+  return reader.cut();
 }
 
 /// A FolderLog is a bag together with the folder that contains it.
@@ -205,6 +207,7 @@ void end_log(ClosedLoop& loop) {
 
 void bind_run_bag(py::module_& module) {
   py::register_exception<LogError>(module, "RunLogError", PyExc_OSError);
+  py::register_exception<BagError>(module, "BagError", PyExc_ValueError);
   const py::object& trace_error = py::register_exception<TraceError>(module, "TraceError", PyExc_ValueError);
   py::register_exception<NoTraceError>(module, "NoTraceError", trace_error);
   module.def("read_run_bag", read_run_bag, py::arg("path"), py::arg("names"));

@@ -61,10 +61,10 @@ void TraceReader::read_chunk(BagReader& bag, const BagChunk& chunk, const Use& u
         }
       });
     } catch (const TraceError& error) {
-      throw TraceError(path_ + ", chunk at byte " + std::to_string(chunk.data.record) + ": " + error.what());
+      throw TraceError(path_ + ", chunk at byte " + std::to_string(chunk.record) + ": " + error.what());
     }
   }
-  const std::uint64_t end = chunk.data.begin + chunk.data.packed;
+  const std::uint64_t end = chunk.begin + chunk.packed;
   if (use.chunk) use.chunk(static_cast<double>(end) / static_cast<double>(bag.size()));
 }
 

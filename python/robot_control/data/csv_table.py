@@ -12,8 +12,9 @@ from robot_control.data.run_log import FloatArray
 from robot_control.files.files import utf8
 
 
-def write_csv(source: Path, target: Path) -> None:
+def write_csv(source: Path, target: Path) -> str:
     """Writes the columns of `read_run`. A number reads back as the same bits; where there is none, the cell is empty.
+    Returns `RunLog.cut`.
 
     Raises:
         BagError, TraceError, RuntimeError, OSError: no log can be read, or no table written.
@@ -27,7 +28,7 @@ def write_csv(source: Path, target: Path) -> None:
             cells = (_cells(values, integer=name in integers) for name, values in columns.items())
             writer.writerows(zip(*cells, strict=True))
 
-        each_part_of_run_bag(utf8(source), write)
+        return each_part_of_run_bag(utf8(source), write)
 
 
 def _cells(values: FloatArray, *, integer: bool) -> list[float | int | str]:

@@ -1,22 +1,26 @@
-"""Messages of a ROS bag that another program wrote. The file is checked as a whole before any of it is used."""
+"""Messages of a ROS bag that another program wrote. A process of its own reads it with rosbag (read_bag.py)."""
 
 from __future__ import annotations
 
+import json
+import os
+import subprocess
+import sys
 from collections.abc import Iterable, Iterator
 from io import BytesIO
 from pathlib import Path
 from typing import Any
 
-from robot_control._robot_control import BagError, BagReader
 from robot_control.files.files import MAX_TABLE, check_input, printable, utf8
+from robot_control.files.read_bag import END, ERROR, FRAME
 
 
 class BagFileError(ValueError):
-    """The bag is not read; the message names it, with byte and field where its structure is not sound."""
+    """The bag is not read; the message names it."""
 
 
 class BagFile:
-    """The topics and messages of one bag. Needs neither a running ROS nor rosbag.
+    """The topics and messages of one bag. Needs no running ROS.
 
     Message classes are the installed ones: a definition out of the file would be made into a program.
     """
@@ -24,10 +28,12 @@ class BagFile:
     topics: dict[str, str]
     """type by topic"""
     cut: str
-    """which part of a file without a valid end is read; empty: it is whole"""
+    """which part of a file without a valid index is read; empty: it is whole"""
+    connections: dict[int, tuple[str, str, str, str]]
+    """topic, type, MD5 sum and definition, by number"""
 
     def __init__(self, path: Path) -> None:
-        """Reads and checks the whole file.
+        """Reads the index.
 
         Raises:
             InputFileError: no regular file, or too large.
@@ -38,27 +44,25 @@ class BagFile:
         with path.open("rb"):
             pass
         self._path = path
-        try:
-            self._reader = BagReader(utf8(path))
-        except (BagError, RuntimeError) as error:
-            raise BagFileError(f"{path} is no ROS 1 bag that can be read: {error}") from None
-        self.cut = self._reader.cut
-        if self.cut and self._reader.count == 0:
+        head: dict[str, Any] = json.loads(next(self._read([]))[2])
+        self.cut = head["cut"]
+        if self.cut and head["count"] == 0:
             raise BagFileError(f"{path} holds no message that can be read: {self.cut}")
+        self.connections = {int(number): tuple(fields) for number, fields in head["connections"].items()}
         self.topics = {}
-        self._connections: dict[str, dict[int, str]] = {}  # md5sum by number, by topic
-        for number, fields in self._reader.connections.items():
-            topic, kind = self._word(fields["topic"]), self._word(fields["type"])
+        for topic, kind, _, _ in self.connections.values():
             if self.topics.setdefault(topic, kind) != kind:
                 raise BagFileError(f"{path}: {printable(topic)} has messages of two types")
-            self._connections.setdefault(topic, {})[number] = self._word(fields["md5sum"])
 
-    def raw(self, topics: Iterable[str]) -> Iterator[tuple[str, int, bytes]]:
-        """Topic, time of reception [ns] and serialized message, in the order of the file."""
-        topic_of = {number: topic for topic in topics for number in self._connections[topic]}
-        for chunk in range(self._reader.chunks):
-            for number, time_ns, data in self._reader.messages(chunk, set(topic_of)):
-                yield topic_of[number], time_ns, data
+    def raw(self, topics: Iterable[str]) -> Iterator[tuple[int, int, bytes]]:
+        """Connection, time of reception [ns] and serialized message, in the order of the times.
+
+        Raises:
+            BagFileError: the bag is not sound, or its reader has reached a limit.
+        """
+        messages = self._read(list(topics))
+        next(messages)
+        yield from messages
 
     def messages(self, topic: str) -> Iterator[tuple[Any, int]]:
         """Message and time of reception [ns].
@@ -66,10 +70,8 @@ class BagFile:
         Raises:
             BagFileError: no such type is installed, or with another definition; a message is no such message.
         """
-        try:
-            from genpy import DeserializationError
-        except ImportError as error:
-            raise BagFileError(f"bags need Debian's python3-rosbag: {error}. Run it with /usr/bin/python3") from None
+        from genpy import DeserializationError
+
         kind = self._class_of(topic)
         for count, (_, time_ns, data) in enumerate(self.raw([topic])):
             message = kind()
@@ -83,6 +85,28 @@ class BagFile:
                 raise BagFileError(f"{self._path}: message {count} of {printable(topic)} is no {self.topics[topic]}")
             yield message, time_ns
 
+    def _read(self, topics: list[str]) -> Iterator[tuple[int, int, bytes]]:
+        """What read_bag.py writes, without the end."""
+        command = [sys.executable, "-P", "-m", "robot_control.files.read_bag", utf8(self._path), *topics]
+        environment = os.environ | {"PYTHONPATH": os.pathsep.join(sys.path)}
+        with subprocess.Popen(
+            command, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, env=environment
+        ) as process:
+            try:
+                output: Any = process.stdout
+                while len(frame := output.read(FRAME.size)) == FRAME.size:
+                    number, time_ns, size = FRAME.unpack(frame)
+                    data = output.read(size)
+                    if number == ERROR:
+                        reason = printable(data.decode(errors="replace"))
+                        raise BagFileError(f"{self._path} is no ROS 1 bag that can be read: {reason}")
+                    if number == END:
+                        return
+                    yield number, time_ns, data
+            finally:
+                process.kill()
+        raise BagFileError(f"{self._path} cannot be read: its reader ended, at a limit of memory or time")
+
     def _class_of(self, topic: str) -> Any:  # noqa: ANN401 (a generated class)
         from roslib.message import get_message_class
 
@@ -93,14 +117,9 @@ class BagFile:
             kind = None
         if kind is None:
             raise BagFileError(f"{self._path}: {printable(topic)} is of {printable(name)}, which is not installed")
-        if any(md5sum != kind._md5sum for md5sum in self._connections[topic].values()):  # noqa: SLF001 (genpy's name)
+        sums = [md5sum for of, _, md5sum, _ in self.connections.values() if of == topic]
+        if any(md5sum != kind._md5sum for md5sum in sums):  # noqa: SLF001 (genpy's name)
             raise BagFileError(
                 f"{self._path}: {printable(topic)} has another definition of {name} than the installed one"
             )
         return kind
-
-    def _word(self, text: bytes) -> str:
-        try:
-            return text.decode()
-        except UnicodeDecodeError:
-            raise BagFileError(f"{self._path}: a connection has the name {printable(repr(text))}") from None

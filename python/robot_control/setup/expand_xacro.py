@@ -12,10 +12,8 @@ changes no file and starts no program.
 """
 
 import ast
-import ctypes
 import io
 import resource
-import struct
 import sys
 import xml.parsers.expat  # noqa: F401  (xacro 2.1 uses it without importing it)
 from collections.abc import Sequence
@@ -24,6 +22,7 @@ from pathlib import Path
 from types import ModuleType
 from typing import IO
 
+from robot_control.files.confinement import confine, limit
 from robot_control.files.files import check_input
 
 MAX_INCLUDED = 64 << 20  # bytes
@@ -38,9 +37,6 @@ ADMITTED = (
 """Parts of an expression of values"""
 LEADS_FURTHER = {"type", "vars", "mro", "format", "format_map"}
 """Names that lead from a value to its class, and from there to everything"""
-NEW_USERS, NEW_NETWORK = 0x10000000, 0x40000000  # CLONE_NEWUSER, CLONE_NEWNET of unshare(2)
-CREATE_RULESET, RESTRICT_SELF, NO_NEW_PRIVILEGES = 444, 446, 38  # landlock(7), prctl(2)
-CHANGES = (0x7FF3, 0x3FF3, 0x1FF3)  # all accesses but READ_FILE and READ_DIR, of landlock's versions 3, 2 and 1
 LFS_POINTER = b"version https://git-lfs.github.com/spec/"
 
 
@@ -112,18 +108,6 @@ def admit_values_alone() -> None:
     xacro.safe_eval = checked
 
 
-def confine() -> None:
-    """Gives up network, changes of files and starts of programs, as far as the kernel permits that."""
-    kernel = ctypes.CDLL(None, use_errno=True)
-    if kernel.unshare(NEW_NETWORK) != 0:
-        kernel.unshare(NEW_USERS | NEW_NETWORK)
-    kernel.prctl(NO_NEW_PRIVILEGES, 1, 0, 0, 0)
-    for changes in CHANGES:  # a kernel refuses what it does not know
-        rules = kernel.syscall(CREATE_RULESET, struct.pack("Q", changes), 8, 0)
-        if rules >= 0 and kernel.syscall(RESTRICT_SELF, rules, 0) == 0:
-            break
-
-
 def open_text(name: str, mode: str = "r") -> IO[str]:
     """Replaces `open` in the module xacro: an included file may be no device and no file without end.
 
@@ -183,7 +167,7 @@ def better_reason(said: str, files: Sequence[str], macros: Sequence[str]) -> str
 
 def main() -> None:
     """Exits with xacro's own code, or with NOT_INSTALLED."""
-    resource.setrlimit(resource.RLIMIT_AS, (MAX_MEMORY, resource.getrlimit(resource.RLIMIT_AS)[1]))
+    limit(resource.RLIMIT_AS, MAX_MEMORY)
     try:
         import xacro
     except ImportError:

@@ -39,18 +39,6 @@ void expect_data(const BagFile& file, const FileRecord& record) {
                  std::to_string(record.length) + " bytes, but the file ends after " + std::to_string(available), true);
 }
 
-BagCompression compression_of(const BagHeader& header) {
-  const std::string_view name = header.text("compression");
-  if (name == "none") return BagCompression::kNone;
-  if (name == "bz2") return BagCompression::kBz2;
-  if (name == "lz4") return BagCompression::kLz4;
-  throw BagError(header.place(), "compression", "'" + printable(name, 40) + "' is none of none, bz2, lz4");
-}
-
-void expect_version_1(const BagHeader& header) {
-  if (header.u32("ver") != 1) throw BagError(header.place(), "ver", "only version 1 is known");
-}
-
 }  // namespace
 
 struct BagReader::End {
@@ -65,14 +53,12 @@ BagReader::BagReader(const std::string& path, Early early, Damaged damaged)
   const End end = read_bag_header();
   try {
     read_records(end);
+    if (end.cut) throw BagError({.offset = file_.size()}, "index_pos", "the file ends without an index", true);
   } catch (const BagError& error) {
     const bool only_list_is_cut = error.ends() && behind_ && chunks_.size() == end.chunks;
     if (!end.cut && !only_list_is_cut) throw;
-    if (pending_ && error.ends()) commit();  // the chunk is complete, its index is not
+    commit();
     describe_cut(error, end.index);
-  }
-  if (end.cut && cut_.empty()) {
-    describe_cut(BagError({.offset = file_.size()}, "index_pos", "the file ends without an index", true), end.index);
   }
   early_ = {};
   inflated_record_.reset();
@@ -90,9 +76,6 @@ BagReader::End BagReader::read_bag_header() {
   expect_data(file_, record);
   const BagHeader header = record.header();
   if (header.op() != BagOp::kBagHeader) throw BagError(header.place(), "op", "the first record is no bag header");
-  if (header.has("encryptor") && !header.text("encryptor").empty()) {
-    throw BagError(header.place(), "encryptor", "encrypted bags are not read");
-  }
   End end{.index = header.u64("index_pos"),
           .connections = header.u32("conn_count"),
           .chunks = header.u32("chunk_count"),
@@ -111,7 +94,7 @@ void BagReader::read_records(const End& end) {
       at = read_record(end, at);
     } catch (const BagError&) {
       if (!damaged_) throw;
-      if (pending_) commit();              // its content is sound
+      commit();                            // its content is sound
       constexpr std::size_t kLengths = 8;  // of the header and of the data
       const std::size_t left = std::min<std::uint64_t>(kLengths, file_.size() - at);
       const bool zeros = file_.read(at, left, "header_len") == std::string_view("\0\0\0\0\0\0\0\0", left);
@@ -119,8 +102,9 @@ void BagReader::read_records(const End& end) {
       if (!zeros || at < file_.size()) damaged_();  // zeros fill a bag of a fixed size
     }
   }
-  if (end.cut) return end_chunk();
-  if (at == end.index) begin_list();
+  commit();
+  if (end.cut) return;
+  behind_ = behind_ || at == end.index;
   const auto expect = [&](std::size_t count, std::size_t announced, const char* field, const char* what) {
     if (count == announced) return;
     throw BagError({.offset = kBagMagic.size()}, field,
@@ -135,34 +119,34 @@ void BagReader::read_records(const End& end) {
 
 /// Returns the end of the record.
 std::uint64_t BagReader::read_record(const End& end, std::uint64_t at) {
-  if (!end.cut && at == end.index) begin_list();
+  if (!end.cut && at == end.index) {
+    commit();
+    behind_ = true;
+  }
   const FileRecord record = read_file_record(file_, at);
   const BagHeader header = record.header();
   const BagOp op = header.op();
-  if (op != BagOp::kIndex) end_chunk();
-  if (!behind_ && (op == BagOp::kConnection || op == BagOp::kChunkInfo)) {
-    if (!end.cut) {
-      throw BagError({.offset = at}, "index_pos",
-                     "the chunks end here, but the bag header says at byte " + std::to_string(end.index));
-    }
-    behind_ = true;
+  if (op != BagOp::kIndex) {
+    if (pending_ && !indexed_) refuse_index({.offset = at}, "op", "no index stands behind the chunk before");
+    commit();
   }
-  const BagPlace data{.offset = record.data};
-  const bool chunk = op == BagOp::kChunk && !behind_;
-  if (chunk && end.cut && (record.length == 0 || record.length > file_.size() - record.data)) {
-    read_unfinished(at, header, record.data);
+  const bool list = op == BagOp::kConnection || op == BagOp::kChunkInfo;
+  if (list && !behind_ && !end.cut) {
+    throw BagError({.offset = at}, "index_pos",
+                   "the chunks end here, but the bag header says at byte " + std::to_string(end.index));
   }
+  behind_ = behind_ || list;
   expect_data(file_, record);
-  if (chunk) {
-    read_chunk(at, header, record.data, record.length);
-  } else if (op == BagOp::kIndex && pending_) {
-    expect_version_1(header);
-    index_.compare(header.u32("conn"), header.u32("count"), file_.read(record.data, record.length, "data"), data);
+  if (op == BagOp::kChunk && !behind_) {
+    read_chunk({.record = at, .begin = record.data, .packed = record.length, .size = header.u32("size")}, header);
   } else if (op == BagOp::kConnection) {
     ++defined_;
-    add_connection(header, file_.read(record.data, record.length, "data"), data);
+    add_connection(header, file_.read(record.data, record.length, "data"), {.offset = record.data});
   } else if (op == BagOp::kChunkInfo) {
-    check_chunk_info(listed_++, header, file_.read(record.data, record.length, "data"), data);
+    check_chunk_info(header);
+    ++listed_;
+  } else if (op == BagOp::kIndex) {
+    check_index(file_.read(record.data, 8, "time"), {.offset = record.data});
   } else {
     throw BagError(header.place(), "op",
                    "record of kind " + std::to_string(static_cast<int>(op)) + " at a place where it has no meaning");
@@ -182,97 +166,60 @@ std::uint64_t BagReader::next_chunk(std::uint64_t at) {
   return file_.size();
 }
 
-void BagReader::begin_list() {
-  end_chunk();
-  behind_ = true;
-}
-
-void BagReader::end_chunk() {
-  if (!pending_) return;
-  index_.finish();
-  commit();
-}
-
-void BagReader::read_chunk(std::uint64_t record, const BagHeader& header, std::uint64_t begin, std::uint32_t length) {
-  BagChunkData chunk{.record = record,
-                     .begin = begin,
-                     .packed = length,
-                     .size = header.u32("size"),
-                     .compression = compression_of(header)};
+void BagReader::read_chunk(BagChunk chunk, const BagHeader& header) {
+  if (header.text("compression") != "lz4") {
+    throw BagError(header.place(), "compression",
+                   "'" + printable(header.text("compression"), 40) +
+                       "' is none of a log; `rosbag compress --lz4` makes a bag that is read");
+  }
   if (chunks_.size() == kMaxChunks) throw BagError(header.place(), "op", "the bag has more than 1048576 chunks");
-  if (chunk.compression == BagCompression::kNone && chunk.size != chunk.packed) {
+  if (chunk.size > kMaxChunk) {
     throw BagError(header.place(), "size",
-                   std::to_string(chunk.size) + " bytes, but the data have " + std::to_string(chunk.packed));
+                   std::to_string(chunk.size) + " bytes; at most " + std::to_string(kMaxChunk) + " are read");
   }
-  if (chunk.compression != BagCompression::kNone) inflated_ += chunk.size;
-  const std::uint64_t max_inflated = kInflatesAnyhow + kInflatesTo * file_.size();
-  if (chunk.size > kMaxChunk || inflated_ > max_inflated) {
-    throw BagError(header.place(), "size",
-                   "the bag inflates to " + std::to_string(std::max<std::uint64_t>(inflated_, chunk.size)) +
-                       " bytes or more, with a chunk of " + std::to_string(chunk.size) + "; read are " +
-                       std::to_string(max_inflated) + " in all, " + std::to_string(kMaxChunk) +
-                       " in a chunk. If it is sound, `rosbag decompress` or `rosbag filter` makes one that is read");
-  }
-  index_.begin(chunk);
   inflate(chunk);
-  std::size_t at = 0;
-  parse(at, chunk);
-  pending_ = true;
-}
-
-void BagReader::read_unfinished(std::uint64_t record, const BagHeader& header, std::uint64_t begin) {
-  // The sizes in the header are missing: rosbag writes them when the chunk is full.
-  const auto size = static_cast<std::uint32_t>(std::min<std::uint64_t>(file_.size() - begin, kMaxChunk));
-  const BagChunkData chunk{.record = record, .begin = begin, .packed = size, .size = size};
-  if (compression_of(header) != BagCompression::kNone) {
-    throw BagError(header.place(), "size", "its recorder did not finish the last chunk, or the file ends in it", true);
-  }
-  index_.begin(chunk);
-  inflate(chunk);
-  std::size_t sound = 0;
-  const auto keep = [&] {
-    index_.cut(static_cast<std::uint32_t>(sound));
-    commit();
-  };
-  try {
-    parse(sound, chunk);
-  } catch (const BagError&) {
-    keep();
-    throw;
-  }
-  keep();
-  throw BagError({.offset = chunk.begin + sound}, "size",
-                 "its recorder did not finish the last chunk, or the file ends in it", true);
-}
-
-void BagReader::parse(std::size_t& at, const BagChunkData& chunk) {
-  std::uint32_t known = 0;
-  bool any = false;
   const auto add = [&](const BagMessage& message) {
-    if (!any || message.connection != known) {
-      if (!connections_.contains(message.connection)) {
-        throw BagError(chunk.place(message.offset), "conn",
-                       "no connection record " + std::to_string(message.connection) + " stands before");
-      }
-      known = message.connection;
-      any = true;
+    if (!connections_.contains(message.connection)) {
+      throw BagError({.offset = message.offset, .chunk = chunk.record}, "conn",
+                     "no connection record " + std::to_string(message.connection) + " stands before");
     }
-    index_.add(message);
+    chunk.first_ns = chunk.messages == 0 ? message.time_ns : std::min(chunk.first_ns, message.time_ns);
+    chunk.last_ns = std::max(chunk.last_ns, message.time_ns);
+    ++chunk.messages;
   };
   const auto connection = [&](const BagRecord& record) {
     add_connection(record.header, record.data, record.data_place);
   };
-  parse_bag_chunk(content_, chunk, {.connection = connection, .message = add}, at);
+  parse_bag_chunk(content_, chunk, {.connection = connection, .message = add});
+  if (!chunks_.empty() && chunk.first_ns < chunks_.back().last_ns) {
+    throw BagError(header.place(), "time", "the chunk begins before the end of the one before");
+  }
+  pending_ = chunk;
+  indexed_ = false;
+}
+
+void BagReader::check_index(std::string_view data, const BagPlace& place) {
+  const std::uint64_t time_ns = bag_time_ns(data, place, "time");
+  if (!pending_ || time_ns < pending_->first_ns || time_ns > pending_->last_ns) {
+    refuse_index(place, "time", "the index is not that of the chunk before");
+  }
+  indexed_ = true;
+}
+
+/// The chunk before may be at a wrong place.
+void BagReader::refuse_index(const BagPlace& place, const char* field, const char* problem) {
+  if (!damaged_) pending_.reset();
+  throw BagError(place, field, problem);
 }
 
 void BagReader::commit() {
-  pending_ = false;
-  chunks_.push_back(index_.chunk());
+  if (!pending_) return;
+  chunks_.push_back(*std::exchange(pending_, std::nullopt));
   messages_ += chunks_.back().messages;
   if (early_) early_(*this, chunks_.back());
 }
 
-void BagReader::inflate(const BagChunkData& chunk) {
+void BagReader::inflate(const BagChunk& chunk) {
   if (inflated_record_ == chunk.record) return;
   inflated_record_.reset();
   read_bag_chunk(file_, chunk, content_);
@@ -291,36 +238,21 @@ void BagReader::add_connection(const BagHeader& header, std::string_view data, c
     if (known->second == connection) return;
     throw BagError(header.place(), "conn", "another connection record " + std::to_string(number) + " stands before");
   }
-  connection_bytes_ += data.size() + connection.topic.size();
-  if (connections_.size() == kMaxConnections || connection_bytes_ > kMaxConnectionBytes) {
-    throw BagError(header.place(), "conn", "the bag has more than 10000 connections, or 64 MiB of them");
+  if (connections_.size() == kMaxConnections) {
+    throw BagError(header.place(), "conn", "the bag has more than 16 connections");
   }
   connections_.emplace(number, connection);
 }
 
-void BagReader::check_chunk_info(std::size_t number, const BagHeader& header, std::string_view data,
-                                 const BagPlace& place) const {
-  constexpr std::size_t kEntry = 8;
-  expect_version_1(header);
+void BagReader::check_chunk_info(const BagHeader& header) const {
   const std::uint64_t position = header.u64("chunk_pos");
-  if (number >= chunks_.size() || chunks_[number].data.record != position) {
+  if (listed_ >= chunks_.size() || chunks_[listed_].record != position) {
     throw BagError(header.place(), "chunk_pos",
-                   std::to_string(position) + " is not the begin of chunk " + std::to_string(number));
+                   std::to_string(position) + " is not the begin of chunk " + std::to_string(listed_));
   }
-  const BagChunk& chunk = chunks_[number];
-  const std::uint32_t count = header.u32("count");
-  if (data.size() != std::size_t{count} * kEntry) {
-    throw BagError(
-        place, "count",
-        std::to_string(count) + " entries of 8 bytes, but the data have " + std::to_string(data.size()) + " bytes");
-  }
-  BagCounts counts;
-  for (std::size_t at = 0; at < data.size(); at += kEntry) {
-    counts.add(bag_number<std::uint32_t>(data.substr(at)), bag_number<std::uint32_t>(data.substr(at + 4)));
-  }
-  if (counts.digest() != chunk.counts) throw BagError(place, "count", "contradicts the messages in the chunk");
+  const BagChunk& chunk = chunks_[listed_];
   const auto expect = [&](const char* field, std::uint64_t time_ns) {
-    if (chunk.messages > 0 && header.time_ns(field) != time_ns) {
+    if (header.time_ns(field) != time_ns) {
       throw BagError(header.place(), field, "contradicts the messages in the chunk");
     }
   };
@@ -330,7 +262,7 @@ void BagReader::check_chunk_info(std::size_t number, const BagHeader& header, st
 
 void BagReader::describe_cut(const BagError& error, std::uint64_t index) {
   std::uint64_t end = 0;
-  for (const BagChunk& chunk : chunks_) end = chunk.data.begin + chunk.data.packed;
+  if (!chunks_.empty()) end = chunks_.back().begin + chunks_.back().packed;
   cut_ = "the bag has no end (index_pos is " + std::to_string(index) + ", the file has " +
          std::to_string(file_.size()) + " bytes): its recorder was stopped, or the copy is not whole. Read are " +
          std::to_string(messages_) + " messages in " + std::to_string(chunks_.size()) + " chunks, up to byte " +
@@ -338,17 +270,14 @@ void BagReader::describe_cut(const BagError& error, std::uint64_t index) {
 }
 
 void BagReader::read(const BagChunk& chunk, const std::function<void(const BagMessage&)>& use) {
-  inflate(chunk.data);
-  // Behind the correct part of an unfinished chunk there may be broken data.
-  const std::string_view content = std::string_view(content_).substr(0, chunk.data.size);
+  inflate(chunk);
   const auto message = [&](const BagMessage& found) {
     if (!connections_.contains(found.connection)) {
-      throw BagError(chunk.data.place(found.offset), "conn", "the file has changed while it was read");
+      throw BagError({.offset = found.offset, .chunk = chunk.record}, "conn", "the file has changed while it was read");
     }
     use(found);
   };
-  std::size_t at = 0;
-  parse_bag_chunk(content, chunk.data, {.connection = [](const BagRecord&) {}, .message = message}, at);
+  parse_bag_chunk(content_, chunk, {.connection = [](const BagRecord&) {}, .message = message});
 }
 
 }  // namespace robot_control

@@ -1,17 +1,16 @@
 #pragma once
-/// A BagReader reads ROS bags of version 2.0 and checks the whole file before it returns any of it.
+/// A BagReader reads the ROS bags of bag_writer.h and checks the whole file before it returns any of it. Bags of other
+/// programs, which have other compressions, are read by the ROS library (python/robot_control/files/bag_file.py).
 ///
-/// The file may come from anywhere. Records, header fields, chunk sizes, compression, the index of each chunk,
-/// connection records and the chunk list at the end are compared with each other. The first contradiction refuses the
-/// whole bag with byte and field. Memory is bounded by kMaxChunk (twice, and 24 bytes per message of a chunk) and
-/// kMaxConnectionBytes; time by the size of the file and kInflatesTo. An accepted bag is also safe for librosbag, whose
-/// own parser reads out of bounds. Wrong data of messages are not found in uncompressed chunks, because only compressed
-/// chunks have a checksum.
+/// The file may come from anywhere. Records, header fields, chunk sizes, compression, connection records and the chunk
+/// list at the end are compared with each other, and times rise from chunk to chunk. The first contradiction refuses
+/// the whole bag with byte and field. Of the index behind each chunk but the last only its presence and its first time
+/// are compared. Memory is bounded by kMaxChunk (twice), kMaxConnections and the size of the file, time by that size,
+/// because LZ4 inflates to 255 times at most.
 ///
-/// A bag without a valid end is accepted, because its recorder may have been killed, the disk full or a copy
-/// interrupted. Then `index_pos` is 0 or behind the end of the file, or the file ends in the list behind the chunks.
-/// Everything before the first broken byte is read, also the messages of an unfinished uncompressed chunk, and `cut`
-/// names this part.
+/// A bag without a valid end is accepted, because its writer may have been killed, the disk full or a copy interrupted.
+/// Then `index_pos` is 0 or behind the end of the file, or the file ends in the list behind the chunks. Everything
+/// before the first broken byte is read, and `cut` names this part.
 ///
 /// Half of the work is to inflate the chunks. A caller that can discard data may therefore read each chunk while the
 /// file is checked (`Early`), so that no chunk is inflated twice.
@@ -23,16 +22,11 @@
 #include <string>
 #include <vector>
 
-#include "log/bag/bag_index.h"
+#include "log/bag/bag_chunk.h"
 
 namespace robot_control {
 
-inline constexpr std::uint64_t kInflatesTo = 100;  ///< times the size of the file; telemetry in bz2 has 5 to 20
-inline constexpr std::uint64_t kInflatesAnyhow = std::uint64_t{64}
-                                                 << 20U;  ///< bytes added to this bound for small bags
-inline constexpr std::size_t kMaxConnections = 10'000;
-inline constexpr std::size_t kMaxConnectionBytes = std::size_t{64}
-                                                   << 20U;  ///< bytes of all connection records together
+inline constexpr std::size_t kMaxConnections = 16;  ///< a log has four
 inline constexpr std::size_t kMaxChunks = std::size_t{1} << 20U;
 
 struct BagConnection {
@@ -76,34 +70,26 @@ class BagReader {
   void read_records(const End& end);
   std::uint64_t read_record(const End& end, std::uint64_t at);
   std::uint64_t next_chunk(std::uint64_t at);
-  void read_chunk(std::uint64_t record, const BagHeader& header, std::uint64_t begin, std::uint32_t length);
-  [[noreturn]] void read_unfinished(std::uint64_t record, const BagHeader& header, std::uint64_t begin);
-  void add_connection(const BagHeader& header, std::string_view data, const BagPlace& place);
-  void begin_list();
-  void end_chunk();
+  void read_chunk(BagChunk chunk, const BagHeader& header);
+  void check_index(std::string_view data, const BagPlace& place);
+  [[noreturn]] void refuse_index(const BagPlace& place, const char* field, const char* problem);
   void commit();
-  void parse(std::size_t& at, const BagChunkData& chunk);
-  void check_chunk_info(std::size_t number, const BagHeader& header, std::string_view data,
-                        const BagPlace& place) const;
+  void add_connection(const BagHeader& header, std::string_view data, const BagPlace& place);
+  void check_chunk_info(const BagHeader& header) const;
   void describe_cut(const BagError& error, std::uint64_t index);
-
-  void inflate(const BagChunkData& chunk);
+  void inflate(const BagChunk& chunk);
 
   BagFile file_;
   Early early_;
   Damaged damaged_;
   std::map<std::uint32_t, BagConnection> connections_;
-  std::size_t connection_bytes_ = 0;
   std::vector<BagChunk> chunks_;
+  std::optional<BagChunk> pending_;  // the last chunk, until its index is compared
+  bool indexed_ = false;             // an index stands behind it
   std::uint64_t messages_ = 0;
-  std::uint64_t inflated_ = 0;  // bytes of all compressed chunks
   std::string cut_;
-  bool behind_ = false;                   // the reader has passed the last chunk
-  std::size_t defined_ = 0, listed_ = 0;  // records behind the chunks
-
-  // These members describe the last parsed chunk until its index is compared.
-  bool pending_ = false;
-  BagChunkIndex index_;
+  bool behind_ = false;                           // the reader has passed the last chunk
+  std::size_t defined_ = 0, listed_ = 0;          // records behind the chunks
   std::optional<std::uint64_t> inflated_record_;  // record of the chunk whose content is in `content_`
   std::string content_;
 };

@@ -110,8 +110,7 @@ void BlackBox::write_chunk() {
 
 /// A bag that is read meanwhile, or that a kill leaves incomplete, begins with zeros or holds an incomplete chunk.
 bool BlackBox::begin_bag(std::int64_t time_ns) {
-  const std::size_t bag = begun_++ % bags_.size();
-  const bool again = begun_ > bags_.size();
+  const bool again = begun_++ >= bags_.size();
   at_ = 0;
   static const std::string zeros(1 << 16, '\0');
   for (std::size_t at = 0; again && at < bag_bytes_; at += zeros.size()) {
@@ -120,7 +119,7 @@ bool BlackBox::begin_bag(std::int64_t time_ns) {
   at_ = 0;
   const PackedChunk first = first_chunk(header_, time_ns);
   ++header_.part;
-  return bag < bags_.size() && append(bag_opening(0, log_connections().size(), 0) + first.record + first.index);
+  return append(bag_opening(0, log_connections().size(), 0) + first.record + first.index);
 }
 
 bool BlackBox::append(std::string_view bytes) {

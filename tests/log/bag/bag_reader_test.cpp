@@ -11,10 +11,8 @@ namespace {
 
 using ::testing::HasSubstr;
 
-class ASoundBag : public ::testing::TestWithParam<BagCompression> {};
-
-TEST_P(ASoundBag, IsReadToItsLastMessage) {
-  const MadeBag made = make_bag(GetParam(), 3, 200);
+TEST(ASoundBag, IsReadToItsLastMessage) {
+  const MadeBag made = make_bag(3, 200);
   const BagOfBytes file(made.bytes);
   BagReader bag(file.path());
   EXPECT_EQ(bag.cut(), "");
@@ -27,15 +25,15 @@ TEST_P(ASoundBag, IsReadToItsLastMessage) {
   EXPECT_EQ(bag.chunks()[1].last_ns, made.chunks[1].back().time_ns);
 }
 
-TEST_P(ASoundBag, ThatShrinksBetweenTwoReadsIsAnError) {
-  const BagOfBytes file(make_bag(GetParam(), 3, 10'000).bytes);
+TEST(ASoundBag, ThatShrinksBetweenTwoReadsIsAnError) {
+  const BagOfBytes file(make_bag(3, 100'000).bytes);
   BagReader bag(file.path());
   file.shorten(1000);
   EXPECT_THROW(read_all(bag), BagError);
 }
 
-TEST_P(ASoundBag, IsReadOnceWhereItIsReadWhileItIsChecked) {
-  const MadeBag made = make_bag(GetParam(), 3, 10'000);
+TEST(ASoundBag, IsReadOnceWhereItIsReadWhileItIsChecked) {
+  const MadeBag made = make_bag(3, 100'000);
   const BagOfBytes file(made.bytes);
   std::size_t chunks = 0;
   const auto compare = [&](BagReader& bag, const BagChunk& chunk) {
@@ -47,26 +45,18 @@ TEST_P(ASoundBag, IsReadOnceWhereItIsReadWhileItIsChecked) {
 }
 
 /// Each case has one contradiction: everything else in the bag agrees.
-TEST_P(ASoundBag, WithOneContradictionIsRefusedWithByteAndField) {
-  const auto said = [&](const BagFlaw& flaw) { return refusal(make_bag(GetParam(), 2, 20, flaw).bytes); };
-  EXPECT_THAT(said({.time_in_index = 1}), HasSubstr("field time: contradicts that of the message itself"));
-  EXPECT_THAT(said({.message_without_index = true}), HasSubstr("field offset: the message is not in the index"));
-  EXPECT_THAT(said({.message_indexed_twice = true}), HasSubstr("field offset: the message is in the index twice"));
-  EXPECT_THAT(said({.count_in_list = 1}), HasSubstr("field count: contradicts the messages in the chunk"));
+TEST(ASoundBag, WithOneContradictionIsRefusedWithByteAndField) {
+  const auto said = [&](const BagFlaw& flaw) { return refusal(make_bag(2, 20, flaw).bytes); };
   EXPECT_THAT(said({.start_in_list = 1}), HasSubstr("field start_time: contradicts the messages in the chunk"));
   EXPECT_THAT(said({.size_of_chunk = 1}), HasSubstr("field size: "));
   EXPECT_THAT(said({.index_pos = 1}), HasSubstr("field index_pos: the chunks end here"));
   EXPECT_THAT(said({.chunk_count = 1}), HasSubstr("field chunk_count: 3, but there are 2 chunks"));
   EXPECT_THAT(said({.connection_count = 1}), HasSubstr("field conn_count: 3, but there are 2 connections"));
   EXPECT_THAT(said({.other_type = "std_msgs/Bool"}), HasSubstr("another connection record 0 stands before"));
-  if (GetParam() != BagCompression::kNone) {
-    EXPECT_THAT(said({.behind_stream = "x"}), HasSubstr("1 bytes stand behind the end of the compressed stream"));
-  }
+  EXPECT_THAT(said({.behind_stream = "x"}), HasSubstr("1 bytes stand behind the end of the compressed stream"));
+  EXPECT_THAT(said({.compression = "bz2"}), HasSubstr("field compression: 'bz2' is none of a log; `rosbag compress"));
   EXPECT_EQ(said({}), "");
 }
-
-INSTANTIATE_TEST_SUITE_P(Compressed, ASoundBag,
-                         ::testing::Values(BagCompression::kNone, BagCompression::kBz2, BagCompression::kLz4));
 
 TEST(AForeignFile, IsRefusedInOneSentence) {
   EXPECT_THAT(refusal(""), HasSubstr("byte 0, field version: the file begins with ''"));
@@ -80,13 +70,6 @@ TEST(AForeignFile, IsRefusedInOneSentence) {
 TEST(AForeignFile, ThatIsNoRegularOneIsRefused) {
   EXPECT_THROW(BagReader("/dev/zero"), std::runtime_error);
   EXPECT_THROW(BagReader("/nowhere.bag"), std::runtime_error);
-}
-
-TEST(ABagHeader, OfAnEncryptedBagIsRefused) {
-  const std::string fields = bag_field("op", "\x03") + bag_field("index_pos", little_endian(0, 8)) +
-                             bag_field("conn_count", little_endian(0, 4)) +
-                             bag_field("chunk_count", little_endian(0, 4)) + bag_field("encryptor", "aes");
-  EXPECT_THAT(refusal("#ROSBAG V2.0\n" + bag_record(fields, "")), HasSubstr("field encryptor: encrypted bags"));
 }
 
 TEST(AHeader, IsReadFieldByField) {

@@ -2,10 +2,8 @@
 /// Each seed gives one damaged bag: bits flipped, lengths overwritten, bytes removed or inserted, records exchanged,
 /// repeated or removed, cut off, foreign. BagReader is right with the verdict
 ///   refused    with byte and field
-///   accepted   every connection, time and length of a message is that of the undamaged bag; so is its content, but in
-///              uncompressed chunks, which have no checksum
-///   cut        the same of what is read, which is the begin of the undamaged bag; the last chunk, whose index may be
-///              lost, is excepted where it is uncompressed
+///   accepted   every connection, time and content of a message is that of the undamaged bag
+///   cut        the same of what is read, which is the begin of the undamaged bag
 /// within a processor time and a memory that follow from the file's size.
 
 #include <cstdint>

@@ -1,6 +1,5 @@
 #include "log/bag/made_bag.h"
 
-#include <bzlib.h>
 #include <lz4frame.h>
 
 #include <map>
@@ -43,19 +42,14 @@ MadeChunk make_chunk(const std::vector<MadeMessage>& messages, bool first) {
   return chunk;
 }
 
-std::string index_records(const MadeChunk& chunk, const BagFlaw& flaw) {
+std::string index_records(const MadeChunk& chunk) {
   std::string records;
   for (const auto& [connection, entries] : chunk.index) {
     std::string data;
-    std::size_t count = entries.size();
-    for (const auto& [time_ns, offset] : entries) {
-      const std::uint64_t wrong = data.empty() ? flaw.time_in_index * kSecond : 0;
-      data += time_of(time_ns + wrong) + little_endian(offset, 4);
-    }
-    if (flaw.message_without_index) data.resize(data.size() - 12), --count;
-    if (flaw.message_indexed_twice) data += data.substr(0, 12), ++count;
+    for (const auto& [time_ns, offset] : entries) data += time_of(time_ns) + little_endian(offset, 4);
     records += bag_record(
-        number("op", 4, 1) + number("ver", 1, 4) + number("conn", connection, 4) + number("count", count, 4), data);
+        number("op", 4, 1) + number("ver", 1, 4) + number("conn", connection, 4) + number("count", entries.size(), 4),
+        data);
   }
   return records;
 }
@@ -64,8 +58,7 @@ std::string chunk_info(std::uint64_t position, const MadeChunk& chunk, const std
                        const BagFlaw& flaw) {
   std::string counts;
   for (const auto& [connection, entries] : chunk.index) {
-    counts +=
-        little_endian(connection, 4) + little_endian(entries.size() + (counts.empty() ? flaw.count_in_list : 0), 4);
+    counts += little_endian(connection, 4) + little_endian(entries.size(), 4);
   }
   return bag_record(number("op", 6, 1) + number("ver", 1, 4) + number("chunk_pos", position, 8) +
                         bag_field("start_time", time_of(messages.front().time_ns + flaw.start_in_list * kSecond)) +
@@ -96,17 +89,8 @@ std::string bag_record(const std::string& header, const std::string& data) {
   return little_endian(header.size(), 4) + header + little_endian(data.size(), 4) + data;
 }
 
-std::string packed(const std::string& content, BagCompression compression) {
-  if (compression == BagCompression::kNone) return content;
+std::string packed(const std::string& content) {
   std::string result;
-  if (compression == BagCompression::kBz2) {
-    auto size = static_cast<unsigned>(content.size() + content.size() / 100 + 600);
-    result.resize(size);
-    std::string source = content;
-    BZ2_bzBuffToBuffCompress(result.data(), &size, source.data(), static_cast<unsigned>(source.size()), 9, 0, 30);
-    result.resize(size);
-    return result;
-  }
   LZ4F_preferences_t preferences{};
   preferences.frameInfo.contentChecksumFlag = LZ4F_contentChecksumEnabled;  // as roslz4 writes it
   result.resize(LZ4F_compressFrameBound(content.size(), &preferences));
@@ -114,9 +98,8 @@ std::string packed(const std::string& content, BagCompression compression) {
   return result;
 }
 
-MadeBag make_bag(BagCompression compression, std::size_t chunks, std::size_t messages, const BagFlaw& flaw) {
+MadeBag make_bag(std::size_t chunks, std::size_t messages, const BagFlaw& flaw) {
   MadeBag bag;
-  const std::string names[] = {"none", "bz2", "lz4"};
   std::string body, list;
   const std::size_t begin = bag_header(0, 0, 0).size();
   const auto add = [&](const std::string& record) {
@@ -132,15 +115,11 @@ MadeBag make_bag(BagCompression compression, std::size_t chunks, std::size_t mes
     }
     const MadeChunk chunk = make_chunk(of_chunk, i == 0);
     const std::uint64_t position = begin + body.size();
-    const bool open = flaw.unfinished && i + 1 == chunks;
-    const std::string data = packed(chunk.content, compression) + flaw.behind_stream;
-    const std::string header = number("op", 5, 1) + bag_field("compression", names[static_cast<int>(compression)]);
-    if (open) {
-      body += bag_record(header + number("size", 0, 4), "") + data;
-      break;
-    }
+    const std::string data = packed(chunk.content) + flaw.behind_stream;
+    const std::string header = number("op", 5, 1) + bag_field("compression", flaw.compression);
     add(bag_record(header + number("size", chunk.content.size() + flaw.size_of_chunk, 4), data));
-    add(index_records(chunk, flaw));
+    if (flaw.unfinished && i + 1 == chunks) break;
+    add(index_records(chunk));
     list += chunk_info(position, chunk, of_chunk, flaw);
   }
   const std::uint64_t index = flaw.unfinished ? 0 : begin + body.size() + flaw.index_pos;

@@ -13,7 +13,7 @@ namespace robot_control {
 std::string little_endian(std::uint64_t number, std::size_t bytes);
 std::string bag_field(const std::string& name, const std::string& value);
 std::string bag_record(const std::string& header, const std::string& data);
-std::string packed(const std::string& content, BagCompression compression);
+std::string packed(const std::string& content);  ///< as an lz4 stream
 
 struct MadeMessage {
   std::uint32_t connection;
@@ -25,10 +25,6 @@ struct MadeMessage {
 
 /// Errors of the bag.
 struct BagFlaw {
-  std::uint32_t time_in_index = 0;     ///< s, added to the time of the first index entry
-  bool message_without_index = false;  ///< the last message of each chunk
-  bool message_indexed_twice = false;  ///< the first message of each chunk
-  std::uint32_t count_in_list = 0;     ///< added to the first count of each chunk info
   std::uint32_t start_in_list = 0;     ///< s, added to the start of each chunk info
   std::uint32_t size_of_chunk = 0;     ///< added to the size that a chunk states
   std::uint64_t index_pos = 0;         ///< added
@@ -36,7 +32,8 @@ struct BagFlaw {
   std::uint32_t connection_count = 0;  ///< added
   std::string other_type = {};         ///< type of the connections in the list behind the chunks
   std::string behind_stream = {};      ///< bytes behind the compressed stream of each chunk
-  bool unfinished = false;  ///< as its recorder leaves it at SIGKILL: the last chunk has neither sizes nor index
+  std::string compression = "lz4";     ///< as the chunks name it
+  bool unfinished = false;             ///< as its writer leaves it at SIGKILL: neither index nor list
 };
 
 struct MadeBag {
@@ -46,6 +43,6 @@ struct MadeBag {
 };
 
 /// `chunks` of `messages` each, of two connections, times in steps of 10 ms from 100 s on.
-MadeBag make_bag(BagCompression compression, std::size_t chunks, std::size_t messages, const BagFlaw& flaw = {});
+MadeBag make_bag(std::size_t chunks, std::size_t messages, const BagFlaw& flaw = {});
 
 }  // namespace robot_control

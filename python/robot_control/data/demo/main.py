@@ -15,19 +15,17 @@ from pathlib import Path
 from types import FrameType
 from typing import IO
 
-from robot_control._robot_control import BagError, BagReader
 from robot_control.data.csv_table import write_csv
 from robot_control.data.demo.arguments import LEGGED_ROBOT, parse
 from robot_control.data.demo.run_picture import draw_run
 from robot_control.data.demo.run_summary import summarize, to_json, to_table
 from robot_control.data.loop_timing import processor_time, stolen_share
 from robot_control.data.run_log import LogError, read_log
-from robot_control.files.files import in_words, printable, utf8
+from robot_control.files.files import in_words, printable
 from robot_control.installed_files import share_file
 from robot_control.loop.drives import DRIVES
 from robot_control.loop.roles import DRIVER, LEGGED, LOOP, TELEMETRY, WHEELED, Kind
 from robot_control.loop.signal_names import number_of
-from robot_control.msg import Trace
 from robot_control.ui.program import run
 
 LINEAR, ANGULAR = 0.5, 0.2
@@ -44,6 +42,17 @@ END_LIMIT = 20.0
 """s for an orderly end after SIGINT; roslaunch itself gives its nodes 15 s."""
 BUS = f"demo_{os.getpid()}"
 """The bus belongs to this demo alone, which removes it: 12 MB that outlive the nodes would fill a small /dev/shm."""
+SHOWN = (
+    "cycle",
+    "requested_linear",
+    "limited_linear",
+    "legged_phase",
+    "truth_x",
+    "truth_y",
+    "truth_linear",
+    "truth_angular",
+)
+"""columns that show how far the run is"""
 OUTPUTS = ("run.bag", "run.csv", "summary.json", "run.png", "launch.log", "send_cmd.log", "set_posture.log")
 EVERY_CYCLE = "telemetry: {record: always}\n"
 """parameters laid over the package's"""
@@ -237,35 +246,33 @@ def _progress(log: Path, driven: float) -> str:
     row = _last_row(log)
     if row is None:
         return f"{driven:5.1f} s"
-    (x, y, _), speed, turn = row.truth_position, row.truth_linear[0], row.truth_angular[2]
+    x, y, speed, turn = (row[f"truth_{name}"] for name in ("x", "y", "linear", "angular"))
     return f"{driven:5.1f} s  true: {speed:6.3f} m/s {turn:6.3f} rad/s at ({x:.2f}, {y:.2f}) m"
 
 
-def _last_row(log: Path) -> Trace | None:
-    """The last complete row of a run.bag that is being written, a second old at most."""
+def _last_row(log: Path) -> dict[str, float] | None:
+    """Columns of the last complete row of a run.bag that is being written, a second old at most."""
     try:
-        bag = BagReader(utf8(log))
-    except (OSError, BagError, RuntimeError):  # it has just begun
+        columns = read_log(log, SHOWN)
+    except (OSError, LogError):  # it has just begun
         return None
-    rows = {number for number, connection in bag.connections.items() if connection["topic"] == b"trace"}
-    messages = bag.messages(bag.chunks - 1, rows) if bag.chunks > 0 else []
-    return Trace().deserialize(messages[-1][2]) if messages else None
+    return {name: float(values[-1]) for name, values in columns.items()} if columns["cycle"].size else None
 
 
-def _rested(row: Trace | None) -> bool:
-    return row is not None and row.cycle * PERIOD >= REST_TIME
+def _rested(row: dict[str, float] | None) -> bool:
+    return row is not None and row["cycle"] * PERIOD >= REST_TIME
 
 
-def _commanded(row: Trace | None) -> bool:
-    return row is not None and row.requested_linear[0] == LINEAR
+def _commanded(row: dict[str, float] | None) -> bool:
+    return row is not None and row["requested_linear"] == LINEAR
 
 
-def _walks(row: Trace | None) -> bool:
-    return _is(row, "walking") and row is not None and row.limited_linear[0] == LINEAR
+def _walks(row: dict[str, float] | None) -> bool:
+    return _is(row, "walking") and row is not None and row["limited_linear"] == LINEAR
 
 
-def _is(row: Trace | None, posture: str) -> bool:
-    return row is not None and row.legged_phase == number_of("LegPhase", posture)
+def _is(row: dict[str, float] | None, posture: str) -> bool:
+    return row is not None and row["legged_phase"] == number_of("LegPhase", posture)
 
 
 def _print_refusals(launch_log: str) -> None:

@@ -5,11 +5,11 @@ from __future__ import annotations
 import argparse
 import sys
 
-from robot_control._robot_control import BagError, BagReader, TraceError
+from robot_control._robot_control import BagError, TraceError
 from robot_control.data.csv_table import write_csv
 from robot_control.data.export.mcap_file import McapError, write_mcap
 from robot_control.data.run_log import LogError, is_bag
-from robot_control.files.files import NewFiles, escaped, fit_for_message, given_path, in_words, utf8
+from robot_control.files.files import NewFiles, escaped, fit_for_message, given_path, in_words
 from robot_control.files.output_files import check_outputs
 
 EPILOG = """
@@ -32,18 +32,18 @@ def main(arguments: list[str] | None = None) -> None:
         if not is_bag(options.input):
             raise LogError(f"{options.input} is no ROS bag")
         check_outputs([options.csv, options.mcap, options.topics], [options.input])
-        cut = BagReader(utf8(options.input)).cut
+        cuts = []
         with NewFiles() as files:
             if options.csv is not None:
-                write_csv(options.input, files.name(options.csv))
+                cuts.append(write_csv(options.input, files.name(options.csv)))
             if options.mcap is not None:
-                write_mcap(options.input, files.name(options.mcap))
+                cuts.append(write_mcap(options.input, files.name(options.mcap)))
             if options.topics is not None:
                 from robot_control.data.export.topics import write_topics
 
-                write_topics(options.input, files.name(options.topics))
-        if cut:
-            print(escaped(f"export.py: {options.input}: {cut}"), file=sys.stderr)
+                cuts.append(write_topics(options.input, files.name(options.topics)))
+        if any(cuts):
+            print(escaped(f"export.py: {options.input}: {max(cuts)}"), file=sys.stderr)
     except BagError as error:
         sys.exit(f"export.py: {fit_for_message(f'{options.input}: {error}')}")
     except REFUSALS as error:

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from robot_control._robot_control import BagReader
-from robot_control.files.files import utf8
+from robot_control.files.bag_file import BagFile
 from robot_control.ui.pypi import use_packages
 
 
@@ -13,22 +12,22 @@ class McapError(RuntimeError):
     """No MCAP can be written."""
 
 
-def write_mcap(source: Path, target: Path) -> None:
-    """Raises McapError, BagError, OSError."""
+def write_mcap(source: Path, target: Path) -> str:
+    """Returns `BagFile.cut`. Raises McapError, BagFileError, OSError."""
     use_packages("export")
     try:
         from mcap.writer import Writer
     except ImportError as error:
         raise McapError(f"an MCAP needs PyPI's package mcap ({error}): scripts/setup --export") from None
-    bag = BagReader(utf8(source))
+    bag = BagFile(source)
     with target.open("wb") as file:
         writer = Writer(file)
         writer.start(profile="ros1", library="robot_control export.py")
         channels = {}
-        for number, connection in bag.connections.items():
-            schema = writer.register_schema(connection["type"].decode(), "ros1msg", connection["definition"])
-            channels[number] = writer.register_channel(connection["topic"].decode(), "ros1", schema)
-        for chunk in range(bag.chunks):
-            for number, time_ns, data in bag.messages(chunk, set(channels)):
-                writer.add_message(channels[number], log_time=time_ns, data=data, publish_time=time_ns)
+        for number, (topic, kind, _, definition) in bag.connections.items():
+            schema = writer.register_schema(kind, "ros1msg", definition.encode())
+            channels[number] = writer.register_channel(topic, "ros1", schema)
+        for number, time_ns, data in bag.raw(bag.topics):
+            writer.add_message(channels[number], log_time=time_ns, data=data, publish_time=time_ns)
         writer.finish()
+    return bag.cut

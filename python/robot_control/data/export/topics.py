@@ -25,14 +25,15 @@ ODOM_RATE = 50.0
 JOINT_STATES_RATE = 100.0
 
 
-def write_topics(source: Path, target: Path) -> None:
-    """Raises LogError, OSError."""
+def write_topics(source: Path, target: Path) -> str:
+    """Returns `RunLog.cut`. Raises LogError, OSError."""
     run = read_run(source)
     topics = Topics(run)
     with rosbag.Bag(str(target), "w") as bag:
         for row in range(run.ros_time.size):
             for topic, message, stamp in topics.of_row(row):
                 bag.write(topic, message, stamp)
+    return run.cut
 
 
 class Topics:
