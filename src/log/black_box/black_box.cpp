@@ -27,6 +27,10 @@ bool is_at(int descriptor, const std::string& path) noexcept {
          own.st_dev == present.st_dev;
 }
 
+std::string name_of(std::size_t bag) {
+  return std::to_string(bag) + ".bag";
+}
+
 }  // namespace
 
 BlackBox::BlackBox(const std::string& folder, std::size_t bytes, const LogHeader& header)
@@ -38,39 +42,33 @@ BlackBox::BlackBox(const std::string& folder, std::size_t bytes, const LogHeader
       window_(static_cast<std::size_t>(std::ceil(kWindow / header.period))) {
   header_.record = "always";
   header_.part = 0;
-  bag_bytes_ = std::max(kBagBytes, 4 * encode(header_).size());
+  constexpr std::size_t kMaxBags = 1000;
+  bag_bytes_ = std::max({kBagBytes, 4 * encode(header_).size(), bytes / kMaxBags});
+  bags_ = (bytes + bag_bytes_ - 1) / bag_bytes_ + 1;
   if (mkdir(folder.c_str(), 0700) == 0) lock_ = open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   if (lock_ < 0) throw LogError(folder + ": " + std::strerror(errno));
   flock(lock_, LOCK_EX | LOCK_NB);
-  make_bags((bytes + bag_bytes_ - 1) / bag_bytes_ + 1);
+  make_bags();
 }
 
-void BlackBox::make_bags(std::size_t bags) {
-  for (std::size_t i = 0; i < bags; ++i) {
-    const int bag = open(path(i).c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0600);
-    int problem = bag < 0 ? errno : 0;
-    if (bag >= 0) {
-      bags_.push_back(bag);
-      problem = posix_fallocate(bag, 0, static_cast<off_t>(bag_bytes_));
-    }
+void BlackBox::make_bags() {
+  for (std::size_t i = 0; i < bags_; ++i) {
+    const int bag = openat(lock_, name_of(i).c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0600);
+    const int problem = bag < 0 ? errno : posix_fallocate(bag, 0, static_cast<off_t>(bag_bytes_));
+    if (bag >= 0) close(bag);
     if (problem == 0) continue;
-    for (const int each : bags_) close(each);
     close(lock_);
     std::error_code ignored;
     std::filesystem::remove_all(folder_, ignored);
     throw LogError(folder_ + ": there is no room for the black box of " +
-                   std::to_string(bags * bag_bytes_ / 1'000'000) + " MB: " + std::strerror(problem) +
+                   std::to_string(bags_ * bag_bytes_ / 1'000'000) + " MB: " + std::strerror(problem) +
                    "; make room, or set telemetry.black_box to 0 or telemetry.directory");
   }
 }
 
 BlackBox::~BlackBox() {
-  for (const int bag : bags_) close(bag);
+  if (bag_ >= 0) close(bag_);
   close(lock_);
-}
-
-std::string BlackBox::path(std::size_t bag) const {
-  return folder_ + "/" + std::to_string(bag) + ".bag";
 }
 
 void BlackBox::set_state(std::int64_t time_offset_ns, std::uint64_t lost) noexcept {
@@ -110,7 +108,9 @@ void BlackBox::write_chunk() {
 
 /// A bag that is read meanwhile, or that a kill leaves incomplete, begins with zeros or holds an incomplete chunk.
 bool BlackBox::begin_bag(std::int64_t time_ns) {
-  const bool again = begun_++ >= bags_.size();
+  const bool again = begun_ >= bags_;
+  if (bag_ >= 0) close(bag_);
+  bag_ = openat(lock_, name_of(begun_++ % bags_).c_str(), O_WRONLY | O_CLOEXEC);
   at_ = 0;
   static const std::string zeros(1 << 16, '\0');
   for (std::size_t at = 0; again && at < bag_bytes_; at += zeros.size()) {
@@ -123,10 +123,9 @@ bool BlackBox::begin_bag(std::int64_t time_ns) {
 }
 
 bool BlackBox::append(std::string_view bytes) {
-  const int bag = bags_[(begun_ - 1) % bags_.size()];
   if (at_ + bytes.size() > bag_bytes_) return false;
   while (!bytes.empty()) {
-    const ssize_t taken = pwrite(bag, bytes.data(), bytes.size(), static_cast<off_t>(at_));
+    const ssize_t taken = pwrite(bag_, bytes.data(), bytes.size(), static_cast<off_t>(at_));
     if (taken < 0 && errno == EINTR) continue;
     if (taken <= 0) return false;
     at_ += static_cast<std::size_t>(taken);
@@ -146,14 +145,14 @@ void BlackBox::mark_ended() const noexcept {
 }
 
 bool BlackBox::sound() const noexcept {
-  return !failed_ && is_at(lock_, folder_) &&
-         (begun_ == 0 || is_at(bags_[(begun_ - 1) % bags_.size()], path((begun_ - 1) % bags_.size())));
+  const bool present = bag_ < 0 || is_at(bag_, folder_ + "/" + name_of((begun_ - 1) % bags_));
+  return !failed_ && present && is_at(lock_, folder_);
 }
 
 double BlackBox::seconds_held() const noexcept {
   if (begun_ == 0) return 0;
   const double written = static_cast<double>((begun_ - 1) * bag_bytes_ + at_);
-  return seconds_added() * static_cast<double>((bags_.size() - 1) * bag_bytes_) / written;
+  return seconds_added() * static_cast<double>((bags_ - 1) * bag_bytes_) / written;
 }
 
 }  // namespace robot_control

@@ -13,7 +13,6 @@
 
 #include <cstdint>
 #include <string>
-#include <vector>
 
 #include "log/log_chunk.h"
 #include "log/rows/join.h"
@@ -23,8 +22,9 @@ namespace robot_control {
 
 class BlackBox {
  public:
-  static constexpr std::size_t kBagBytes = std::size_t{2} << 20U;  ///< more for a header of more than a quarter of it
-  static constexpr double kWindow = 0.25;                          ///< s; a ring of a node is found within 0.1 s
+  /// The least size of a bag. It has at least a thousandth of the ring, and four times the header.
+  static constexpr std::size_t kBagBytes = std::size_t{2} << 20U;
+  static constexpr double kWindow = 0.25;  ///< s; a ring of a node is found within 0.1 s
 
   /// Makes the folder with room for the newest `bytes`. Throws LogError if it cannot be made, or if the disk has no
   /// room; then nothing is left of it.
@@ -68,8 +68,7 @@ class BlackBox {
   double seconds_held() const noexcept;
 
  private:
-  std::string path(std::size_t bag) const;
-  void make_bags(std::size_t bags);
+  void make_bags();
   void write(const JoinedRow& row);
   void write_chunk();
   bool begin_bag(std::int64_t time_ns);
@@ -78,9 +77,9 @@ class BlackBox {
   std::string folder_;
   int lock_;  ///< descriptor of the folder
   LogHeader header_;
-  std::string begin_;  ///< of the bag that was begun last
   std::size_t bag_bytes_ = 0;
-  std::vector<int> bags_;    ///< descriptors
+  std::size_t bags_ = 0;
+  int bag_ = -1;             ///< descriptor of the present bag
   std::uint64_t begun_ = 0;  ///< number of bags that were begun
   std::size_t at_ = 0;       ///< position in the present bag
   bool failed_ = false;

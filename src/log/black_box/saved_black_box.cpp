@@ -168,15 +168,9 @@ class Saver {
   std::vector<std::string> places_;
 };
 
-/// Another part is in the file now.
-class Overwritten : public std::runtime_error {
- public:
-  using std::runtime_error::runtime_error;
-};
-
 void read_bag(const RingBag& bag, Saver& saver, const std::function<void()>& go_on) {
   const auto begin = [&](const LogHeader& header) {
-    if (header.part != bag.part) throw Overwritten(bag.path);
+    if (header.part != bag.part) throw NoTraceError(bag.path + " was overwritten meanwhile");
     saver.begin(header, bag.path);
   };
   const auto add = [&](const TraceRow& row, std::int64_t time_ns) {
@@ -200,7 +194,6 @@ void read_ring(const Ring& ring, Saver& saver, const std::function<void()>& go_o
     before = bag.part;
     try {
       read_bag(bag, saver, go_on);
-    } catch (const Overwritten&) {
     } catch (const BagError&) {
     } catch (const NoTraceError&) {
     }

@@ -72,6 +72,13 @@ TEST_F(JoinTest, WaitsForALateNodeWithinTheWindow) {
   EXPECT_EQ(rows.back(), "0:7 decm");
 }
 
+TEST_F(JoinTest, EmitsBeyondASmallerWindowWhereThatIsAskedFor) {
+  for (std::uint64_t k = 0; k < 5; ++k) cycle(7, k, "dcm");
+  EXPECT_THAT(rows, IsEmpty());
+  join.emit_beyond(3);
+  EXPECT_THAT(rows, ElementsAre("0:0 dcm", "0:1 dcm"));
+}
+
 TEST_F(JoinTest, LeavesCellsEmptyWhereANodeMovedPastACycle) {
   cycle(7, 0);
   cycle(7, 1, "dcm");
