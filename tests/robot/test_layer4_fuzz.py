@@ -19,7 +19,7 @@ from typing import Any
 import genpy
 import pytest
 from robot_control import _robot_control
-from robot_control.drive.pad.main import Refusal, Source
+from robot_control.drive.pad.main import Source
 from robot_control.drive.pad_law import Pad
 from robot_control.drive.path.frames import Tf, located
 from robot_control.drive.path.robot import Robot
@@ -32,6 +32,7 @@ from robot_control.robot.diagnosis.listener import Listener
 from robot_control.robot.pose import Pose
 from robot_control.robot.safety_watch import SafetyWatch
 from robot_control.robot.services import Answer, in_words
+from robot_control.robot.view import View as RobotView
 from robot_control.settings.parameter_layers import layered
 from robot_control.setup.calibrate.robot import CalibratedRobot
 from robot_control.watch.latency import main as latency
@@ -126,13 +127,13 @@ def why() -> Step:
 
 def teleop() -> Step:
     limits, watch = SpeedLimits(), SafetyWatch()
-    return lambda: (limits.newest(), watch.interruptions(), watch.drivable(1.0), watch.revoked(0.0, waited=True))
+    return lambda: (limits.newest(), watch.interruptions(), watch.drivable(), watch.revoked(0.0, waited=True))
 
 
 def pad() -> Step:
-    law, refusal = Pad(), Refusal()
+    law, robot = Pad(), RobotView("drive_state", "leg_state")
     source = Source(law, None, topic=True)
-    return lambda: (source.poll(time.monotonic()), law.command(time.monotonic()), law.state(0.0), refusal.active)
+    return lambda: (source.poll(time.monotonic()), law.command(time.monotonic()), law.state(0.0), robot.refused)
 
 
 def send_cmd() -> Step:

@@ -12,7 +12,6 @@ from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from typing import Protocol
 
-from robot_control.drive.path.waypoints import FARTHEST
 from robot_control.fleet.settings import Settings
 from robot_control.fleet.v2.capability import INSTANT, Capabilities
 from robot_control.fleet.v2.leg import Leg, PathPoint, aligned, leg_of
@@ -21,6 +20,7 @@ from robot_control.fleet.v2.order import NONE, Action, Node, Order, order_of
 from robot_control.fleet.v2.state import STATE_PERIOD, Facts, Machine, factsheet, state, visualization
 from robot_control.fleet.v2.vehicle import FAILED, FINISHED, RUNNING, ActionState, Vehicle
 from robot_control.robot.boundary import Boundary
+from robot_control.robot.pose import FARTHEST
 
 IDLE, DRIVING, DONE, ENDED = "idle", "driving", "done", "ended"
 OFF_EDGE = 0.3

@@ -16,7 +16,6 @@ from sensor_msgs.msg import BatteryState
 from tf2_msgs.msg import TFMessage
 
 from robot_control.drive.path.frames import Tf
-from robot_control.drive.path.robot import subscribe_odometry
 from robot_control.drive.path.run import path_of, placed_pose
 from robot_control.drive.path.waypoints import PathError, Waypoint
 from robot_control.fleet.client import DONE, DRIVING, ENDED, Progress
@@ -26,17 +25,15 @@ from robot_control.fleet.v2.leg import PathPoint
 from robot_control.fleet.v2.messages import Error
 from robot_control.fleet.v2.order import Action
 from robot_control.fleet.v2.state import Facts
-from robot_control.msg import FollowPathAction, FollowPathFeedback, FollowPathGoal, RobotStatus, SafetyStatus
-from robot_control.robot.boundary import guard_action, subscribe, unsealed
+from robot_control.msg import FollowPathAction, FollowPathFeedback, FollowPathGoal, SafetyStatus
+from robot_control.robot.boundary import guard_action, unsealed
+from robot_control.robot.diagnosis.state import SILENCE
 from robot_control.robot.pose import pose_of, turned
 from robot_control.robot.safety_states import DRIVABLE, STOPPED
 from robot_control.robot.safety_watch import CATCH_UP, LATE
+from robot_control.robot.view import View
 
 MAP = "map"
-SILENCE = 0.5
-"""s without odometry; it comes at 50 Hz"""
-STATUS_SILENCE = 3.0
-"""s without safety_status, robot_status or feedback of follow_path; the slowest come once per second"""
 ACTION = "follow_path"
 RESUME = CustomAction(service=f"{ACTION}/resume", timeout=5.0)
 """stopPause for a path that is held at the robot"""
@@ -56,20 +53,13 @@ class RosRobot:
         self.progress, self._goal = Progress(), 0
         self._settings, self.actions = settings, Actions({**settings.actions, "stopPause": RESUME})
         self._odometry: Odometry | None = None
-        self._safety: SafetyStatus | None = None
-        self._status: RobotStatus | None = None
-        self._battery: BatteryState | None = None
-        self._odometry_at = self._safety_at = self._status_at = self._feedback_at = -math.inf
-        self._asked_at = -math.inf
+        self._feedback_at = self._asked_at = -math.inf
         self._held_by = ""
-        self._saved = saved
+        self._saved, self._run = saved, 0
         self.map_odom: list[Any] | None = None  # mapId, x, y, yaw of odom in the map, if this program sets it
         self._tf = Tf() if settings.localization else None
         self._static = rospy.Publisher("tf_static", TFMessage, queue_size=1, latch=True)
-        subscribe_odometry(self._receive_odometry)
-        subscribe("safety_status", SafetyStatus, self._receive_safety, queue_size=1)
-        subscribe("robot_status", RobotStatus, self._receive_status, queue_size=1)
-        subscribe("battery_state", BatteryState, self._receive_battery, queue_size=1)
+        self._view = View("odom", "safety_status", "robot_status", "battery_state")
         action = FollowPathAction()
         results, feedback = (unsealed(type(each)) for each in (action.action_result, action.action_feedback))
         guard_action(ACTION, status=unsealed(GoalStatusArray), result=results, feedback=feedback)
@@ -94,11 +84,11 @@ class RosRobot:
         """As measured now. After a late call the receiving threads first take what waits for them."""
         if time.monotonic() - self._asked_at > LATE:
             time.sleep(CATCH_UP)
-        now, odometry, status = time.monotonic(), self._odometry, self._status
-        self._asked_at = now
-        safety, speaks = self._safety, now - self._safety_at < STATUS_SILENCE
-        fresh = odometry is not None and now - self._odometry_at < SILENCE
-        if self.progress.status == DRIVING and now - self._feedback_at > STATUS_SILENCE:
+        self._asked_at = now = time.monotonic()
+        (odometry, _), (safety, _), (battery, _) = map(self._view.newest, ("odom", "safety_status", "battery_state"))
+        self._follow(odometry, safety)
+        fresh, speaks, status = (self._view.fresh(topic, now) for topic in ("odom", "safety_status", "robot_status"))
+        if self.progress.status == DRIVING and now - self._feedback_at > SILENCE:
             self._goal += 1
             self.stop()  # one that goes on later must not drive the leg of a paused order
             self.progress = Progress(ENDED, self.progress.distance, f"{ACTION} is silent: follow_path.py has ended")
@@ -116,13 +106,12 @@ class RosRobot:
             result["deviation"] = math.sqrt(spread) if 0 <= spread < math.inf else None
             twist = odometry.twist.twist
             result["linear"], result["angular"] = (twist.linear.x, twist.angular.z) if fresh else (0.0, 0.0)
-        battery = self._battery
         if battery is not None:
             charge, voltage = 100 * battery.percentage, battery.voltage
             result["battery_charge"] = min(100.0, max(0.0, charge)) if math.isfinite(charge) else None
             result["battery_voltage"] = voltage if math.isfinite(voltage) else None
             result["charging"] = battery.power_supply_status == BatteryState.POWER_SUPPLY_STATUS_CHARGING
-        manual = status is not None and now - self._status_at < STATUS_SILENCE and status.mode == "manual"
+        manual = status is not None and status.mode == "manual"
         return Facts(
             **result,
             mode="MANUAL" if manual else "AUTOMATIC",
@@ -140,7 +129,7 @@ class RosRobot:
     @property
     def position(self) -> list[Any]:
         """map → odom with the run of the robot's nodes in which it holds."""
-        return [self.map_odom, self._safety.run if self._safety is not None else 0]
+        return [self.map_odom, self._run]
 
     def _map_odom(self) -> list[Any] | None:
         if self._tf is None:
@@ -233,24 +222,19 @@ class RosRobot:
 
     # messages
 
-    def _receive_odometry(self, message: Odometry) -> None:
-        if self._odometry is not None and self._tf is None and _jumped(self._odometry, message):
+    def _follow(self, odometry: Odometry | None, safety: SafetyStatus | None) -> None:
+        """Whether map → odom holds, by the newest messages."""
+        before, self._odometry = self._odometry, odometry
+        if before is not None and self._tf is None and _jumped(before, odometry):
             self.map_odom = None
             rospy.logwarn("odometry was set: the position on the map is not known any more; send initPosition")
-        self._odometry, self._odometry_at = message, time.monotonic()
-
-    def _receive_safety(self, message: SafetyStatus) -> None:
+        if safety is None:
+            return
+        self._run = safety.run
         saved, self._saved = self._saved, None
-        if saved is not None and saved[1] == message.run:
+        if saved is not None and saved[1] == safety.run:
             self.map_odom = saved[0]
             self.publish_map()
-        self._safety, self._safety_at = message, time.monotonic()
-
-    def _receive_status(self, message: RobotStatus) -> None:
-        self._status, self._status_at = message, time.monotonic()
-
-    def _receive_battery(self, message: BatteryState) -> None:
-        self._battery = message
 
 
 def _jumped(before: Odometry, after: Odometry) -> bool:

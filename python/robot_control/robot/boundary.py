@@ -108,9 +108,11 @@ def subscribe(topic: str, kind: type, receive: Callable[[Any], None], **options:
 class Latest:
     """The newest message of a topic, for a program that polls: it is checked when it is read, as most are not."""
 
-    def __init__(self, topic: str, kind: type, longest: int = 0) -> None:
-        """`longest`: bytes of a message, where they may be more than of another one of its type."""
-        self._topic, self._longest = topic, longest
+    def __init__(self, topic: str, kind: type, longest: int = 0, check: Callable[[Any], None] = lambda _: None) -> None:
+        """`longest`: bytes of a message, where they may be more than of another one of its type. `check`: raises
+        UnfitError.
+        """
+        self._topic, self._longest, self._check = topic, longest, check
         self._unread: deque[tuple[Any, float]] = deque(maxlen=1)
         self._newest: tuple[Any, float] = None, -math.inf
         self._subscriber = rospy.Subscriber(topic, _sealed(kind), self._receive, queue_size=1, tcp_nodelay=True)
@@ -120,8 +122,11 @@ class Latest:
         """The newest message that passed the checks, and when it was received, s, monotonic; None, minus infinity."""
         with contextlib.suppress(IndexError):
             sealed, at = self._unread.popleft()
-            with boundary.crossing(self._topic):  # another thread may have read a newer one meanwhile
-                self._newest = max(self._newest, (opened(sealed, longest=self._longest), at), key=lambda each: each[1])
+            with boundary.crossing(self._topic):
+                message = opened(sealed, longest=self._longest)
+                self._check(message)
+                # another thread may have read a newer one meanwhile
+                self._newest = max(self._newest, (message, at), key=lambda each: each[1])
         return self._newest
 
     @property

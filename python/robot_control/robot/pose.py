@@ -13,6 +13,9 @@ from numpy.typing import NDArray
 if TYPE_CHECKING:
     from nav_msgs.msg import Odometry
 
+FARTHEST = 1e6
+"""m, m/s, rad; a larger number in a path or in odometry is none: its square may overflow"""
+
 
 def rotation(quaternion: Sequence[float]) -> NDArray[np.float64]:
     """(3, 3), of x, y, z, w."""

@@ -10,6 +10,7 @@ from contextlib import contextmanager
 
 from robot_control.msg import SafetyStatus
 from robot_control.robot.boundary import boundary, subscribe
+from robot_control.robot.diagnosis.state import SILENCE
 from robot_control.robot.interruptions import SURPRISE, Interruptions, Status
 from robot_control.robot.process_start import process_began
 from robot_control.robot.safety_states import STOPPED
@@ -72,11 +73,11 @@ class SafetyWatch:
         with self._look(waited=waited) as interruptions:
             return interruptions.revoked(requested)
 
-    def drivable(self, silence: float) -> bool | None:
-        """True if the monitor permits to drive; None if no message has come for `silence` s."""
+    def drivable(self) -> bool | None:
+        """True if the monitor permits to drive; None if safety_status is silent."""
         with self._lock:
             status = self._interruptions.status
-            fresh = time.monotonic() - self.received_at < silence
+            fresh = time.monotonic() - self.received_at < SILENCE
             return status.drivable if status is not None and fresh else None
 
     def stopped_since(self, moment: float) -> str:

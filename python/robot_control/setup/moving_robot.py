@@ -7,14 +7,13 @@ import time
 
 import rospy
 from geometry_msgs.msg import Twist
-from nav_msgs.msg import Odometry
 
-from robot_control.robot.boundary import Latest
 from robot_control.robot.diagnosis.recent import Diagnostics, values_of
 from robot_control.robot.pose import pose_of
 from robot_control.robot.process_start import process_began
 from robot_control.robot.safety_watch import SafetyWatch
 from robot_control.robot.topic_sender import Sender
+from robot_control.robot.view import View
 from robot_control.setup.excitation_watch import Observation
 from robot_control.setup.recorded_log import RunningTelemetry
 
@@ -25,7 +24,7 @@ class RunningRobot:
     def __init__(self, *, sends: bool = True) -> None:
         """If `sends` is false, it only receives and does not count as a sender on cmd_vel."""
         self._reports = Diagnostics(math.inf)
-        self._odometry = Latest("odom", Odometry)
+        self._view = View("odom")
         self.requested = process_began()
         """s (monotonic), of the motion that follows"""
         self._watch = SafetyWatch()
@@ -56,13 +55,13 @@ class RunningRobot:
 
     def reports(self) -> bool:
         """True if odometry and a report of the safety monitor have arrived."""
-        return self._odometry.message is not None and self._watch.message is not None
+        return self._view.newest("odom")[0] is not None and self._watch.message is not None
 
     def observe(self, senders: tuple[str, ...] = ()) -> Observation:
         """The present state; `senders` are the others on cmd_vel."""
         revoked = self._watch.revoked(self.requested, waited=True)
         now = time.monotonic()
-        (odometry, at), status = self._odometry.newest, self._watch.message
+        (odometry, at), status = self._view.newest("odom"), self._watch.message
         return Observation(
             pose=None if odometry is None else pose_of(odometry),
             linear=0.0 if odometry is None else odometry.twist.twist.linear.x,

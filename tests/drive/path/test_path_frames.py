@@ -95,9 +95,13 @@ def robot(monkeypatch):
     """A robot with fresh messages of all topics: (robot, now)."""
     monkeypatch.setattr(rospy, "Subscriber", lambda *_, **__: None)
     robot = Robot()
-    robot._receive_odometry(Odometry())
+    receive(robot)
     robot.watch.receive(SafetyStatus(state_name="DRIVE"))
-    return robot, robot.odometry_at
+    return robot, robot.odometry[1]
+
+
+def receive(robot, age=0.0):
+    robot._view._topics["odom"]._newest = Odometry(), time.monotonic() - age
 
 
 def test_nothing_is_against_driving_while_all_speak(robot):
@@ -111,7 +115,7 @@ def test_odometry_that_falls_silent_ends_the_path(robot):
 def test_a_path_does_not_begin_on_odometry_from_before_a_gap(robot, monkeypatch):
     """A program that was suspended takes a goal before the odometry that waits beside it."""
     robot[0].commands = True
-    robot[0].odometry_at -= 10.0
+    receive(robot[0], age=10.0)
     monkeypatch.setattr("robot_control.drive.path.robot.PATIENCE", 0.3)
     sent = []
     topic = SimpleNamespace(connected=True, send=lambda *_: sent.append(None))
@@ -121,13 +125,13 @@ def test_a_path_does_not_begin_on_odometry_from_before_a_gap(robot, monkeypatch)
 
     assert begin() == "odom is silent for 0.5 s"
     sent.clear()
-    topic.send = lambda *_: (sent.append(None), robot[0]._receive_odometry(Odometry()))
+    topic.send = lambda *_: (sent.append(None), receive(robot[0]))
     assert begin() == ""
     assert len(sent) == 1
 
 
 def test_a_safety_monitor_that_falls_silent_ends_the_path(robot):
-    robot[0].odometry_at += 10.0
+    receive(robot[0], age=-10.0)
     assert robot[0].against_driving(robot[1] + 4.0) == "safety_status is silent for 3 s"
 
 

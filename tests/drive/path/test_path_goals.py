@@ -76,7 +76,7 @@ def follow_path(monkeypatch):
     made._tf = SimpleNamespace(lookup=lambda *_: (_ for _ in ()).throw(server.PathError("no tf")))
     odometry = Odometry()
     odometry.pose.pose.orientation.w = 1.0
-    made._robot = SimpleNamespace(frames=("odom", "base_link"), odometry=odometry, odometry_at=1.0, masked_by="")
+    made._robot = SimpleNamespace(frames=("odom", "base_link"), odometry=(odometry, 1.0), masked_by="")
     made._robot.speed_limit, made._robot.drivable = math.inf, True
     made._robot.await_drivable = lambda *_: ""
     made._robot.revoked = lambda *_, **__: ""
@@ -89,7 +89,8 @@ def executed(follow_path, payload):
     passes = itertools.count()
 
     def going_on():
-        follow_path._robot.odometry_at += 1.0
+        odometry, at = follow_path._robot.odometry
+        follow_path._robot.odometry = odometry, at + 1.0
         return next(passes) < 10
 
     follow_path._going_on = going_on

@@ -16,14 +16,12 @@ from robot_control.data.data_return.queue_file import QueueFile
 from robot_control.data.data_return.remote import Remote
 from robot_control.data.data_return.sender import Sender
 from robot_control.data.data_return.settings import Settings
-from robot_control.msg import RobotStatus
-from robot_control.robot.boundary import boundary, subscribe
+from robot_control.robot.boundary import boundary
 from robot_control.robot.topic_sender import Signals
+from robot_control.robot.view import View
 
 PERIOD = 1.0
 """s of one pass without anything to send, and of /diagnostics"""
-STATUS_SILENCE = 3.0
-"""s after which robot_status counts as silent; it comes every second"""
 ROUTES = Path("/proc/net/route")
 
 
@@ -39,10 +37,9 @@ class Node:
 
     def __init__(self, settings: Settings, queue: QueueFile, signals: Signals) -> None:
         self._settings, self._signals = settings, signals
-        self._mode, self._mode_at = "", -PERIOD
+        self._view = View("robot_status")
         self._sender = Sender(settings, queue, Remote(settings, self._why_not), rospy.logwarn)
         self._name = rospy.get_name().lstrip("/")
-        subscribe("robot_status", RobotStatus, self._receive, queue_size=1)
         self._diagnostics = rospy.Publisher("/diagnostics", DiagnosticArray, queue_size=1)
         rospy.Timer(rospy.Duration(PERIOD), self._report, reset=True)
 
@@ -55,13 +52,11 @@ class Node:
             if not again:
                 time.sleep(PERIOD)
 
-    def _receive(self, message: RobotStatus) -> None:
-        self._mode, self._mode_at = message.mode, time.monotonic()
-
     def _why_not(self) -> str:
         if not self._signals.going_on():
             return "the program ends"
-        mode = self._mode if time.monotonic() - self._mode_at < STATUS_SILENCE else ""
+        status = self._view.fresh("robot_status", time.monotonic())
+        mode = "" if status is None else status.mode
         return reason_to_wait(self._settings, datetime.now().astimezone(), mode, default_interfaces())
 
     def _report(self, _event: object) -> None:

@@ -50,14 +50,15 @@ def drive(points: list[Waypoint] | None, given: argparse.Namespace, signals: Sig
     robot, topic, tf = Robot(), CommandTopic(SOURCE), Tf()
     services = PauseServices()
     wrong = robot.await_drivable(topic, signals.going_on, requested)
-    if wrong or robot.odometry is None:
+    odometry, _ = robot.odometry
+    if wrong or odometry is None:
         return wrong
     odom, _ = robot.frames
     if points is None:
         message = received(given.topic)
         here, frame = located(points_of(message), message.header.frame_id, robot.frames, tf)
     else:
-        start = pose_of(robot.odometry)
+        start = pose_of(odometry)
         here = points if given.in_odom else placed(points, start.x, start.y, start.yaw)
         frame = PathFrame(odom, odom, tf)
     planned = route(here)

@@ -18,7 +18,7 @@ from robot_control.drive.path.frames import Tf, located
 from robot_control.drive.path.pieces import route
 from robot_control.drive.path.robot import SOURCE, Robot
 from robot_control.drive.path.run import Drive, PauseServices, points_of, shown
-from robot_control.drive.path.waypoints import FARTHEST, PathError, checked, limited, shortened
+from robot_control.drive.path.waypoints import PathError, checked, limited, shortened
 from robot_control.msg import (
     FollowPathAction,
     FollowPathActionGoal,
@@ -30,6 +30,7 @@ from robot_control.robot.boundary import boundary, guard_action, unsealed
 from robot_control.robot.command import Command
 from robot_control.robot.command_topic import CommandTopic
 from robot_control.robot.interruptions import GAP, requested_at
+from robot_control.robot.pose import FARTHEST
 from robot_control.robot.ros_node import running_node
 from robot_control.robot.topic_sender import Signals
 

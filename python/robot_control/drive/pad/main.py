@@ -15,8 +15,7 @@ from sensor_msgs.msg import Joy
 from robot_control.drive.pad.device import PACKAGE, Device, open_device
 from robot_control.drive.pad_law import Pad, PadParameters
 from robot_control.files.files import printable
-from robot_control.msg import DriveState, LegState
-from robot_control.robot.boundary import Latest, boundary, subscribe
+from robot_control.robot.boundary import boundary, subscribe
 from robot_control.robot.command import SEND_PERIOD, Pace
 from robot_control.robot.command_topic import CommandTopic
 from robot_control.robot.robot_kind import running_kind
@@ -24,6 +23,7 @@ from robot_control.robot.ros_node import running_node
 from robot_control.robot.safety_watch import SafetyWatch
 from robot_control.robot.server_values import ServerValueError, server_tree
 from robot_control.robot.topic_sender import Signals
+from robot_control.robot.view import View
 
 SOURCE = "joy_vel"
 PERIOD = 0.02
@@ -32,9 +32,6 @@ SEARCH_PERIOD = 1.0
 """s between two looks for a device"""
 MESSAGES = 100
 """on joy, kept between two looks"""
-SILENCE = 3.0
-"""s without safety_status, which comes once per second, after which its last message no longer counts"""
-
 REFUSED = "the controller refuses what was requested before a stop: zero; release the enable button once"
 
 
@@ -109,26 +106,13 @@ class Source:
             self._publisher.publish(message)
 
 
-class Refusal:
-    """Whether the controller refuses the motion that this program requests (DriveState.revoked, LegState.revoked)."""
-
-    def __init__(self) -> None:
-        self._states = Latest("drive_state", DriveState), Latest("leg_state", LegState)
-
-    @property
-    def active(self) -> bool:
-        """True if the newest message of the robot's controller says so."""
-        newest, _ = max((state.newest for state in self._states), key=lambda newest: newest[1])
-        return newest is not None and rospy.get_name() in newest.revoked
-
-
 def drive(given: argparse.Namespace, signals: Signals) -> None:
     """Drives until a signal comes."""
     pad, topic = Pad(parameters()), CommandTopic(SOURCE)
     source = Source(pad, given.device, topic=given.joy)
     pad.start(time.monotonic())
     pace, said = Pace(topic.send), ""
-    watch, interruptions, refusal, refused = SafetyWatch(), 0, Refusal(), False
+    watch, interruptions, view, refused = SafetyWatch(), 0, View("drive_state", "leg_state"), False
     while signals.going_on():
         now = time.monotonic()
         with boundary.crossing("the pad"):
@@ -138,13 +122,13 @@ def drive(given: argparse.Namespace, signals: Signals) -> None:
             interruptions = count
             pad.interrupt(now)
             rospy.logwarn(f"{why}: release the enable button once")
-        before, refused = refused, refusal.active
+        before, refused = refused, view.refused
         if refused:
             pad.refuse(now)
             if not before:
                 rospy.logwarn(REFUSED)
         pad.legged = running_kind().legged
-        pad.permit(watch.drivable(SILENCE))
+        pad.permit(watch.drivable())
         pace.step(pad.command(now), now)
         if pad.state(now) != said:
             said = pad.state(now)

@@ -12,9 +12,9 @@ import rospy
 import tf2_py
 from tf2_msgs.msg import TFMessage
 
-from robot_control.drive.path.waypoints import FARTHEST, PathError, Waypoint, placed
+from robot_control.drive.path.waypoints import PathError, Waypoint, placed
 from robot_control.robot.boundary import subscribe
-from robot_control.robot.pose import Pose, yaw_of
+from robot_control.robot.pose import FARTHEST, Pose, yaw_of
 
 SILENCE = 1.0
 """s without a newer transform between two frames that move against each other"""

@@ -9,39 +9,22 @@ from collections.abc import Callable
 import rospy
 from nav_msgs.msg import Odometry
 
-from robot_control.drive.path.waypoints import FARTHEST
 from robot_control.loop.roles import ESTIMATOR, MONITOR
 from robot_control.msg import DriveState, LegState, SafetyStatus
-from robot_control.robot.boundary import UnfitError, subscribe
+from robot_control.robot.boundary import subscribe
 from robot_control.robot.command import Command
 from robot_control.robot.command_topic import CommandTopic
-from robot_control.robot.pose import pose_of
 from robot_control.robot.safety_states import DRIVABLE, STOPPED
 from robot_control.robot.safety_watch import SafetyWatch
+from robot_control.robot.view import SILENCES, View
 
 SOURCE = "path_vel"
-SILENCE = 0.5
-"""s without odometry; it comes at 50 Hz"""
-SAFETY_SILENCE = 3.0
-"""s without safety_status; it comes once per second"""
 PATIENCE = 10.0
 """s to wait for odometry and the permit to drive"""
 ZERO_PERIOD = 0.02
 """s between two zeros before a path begins; with a list of sources it begins when one of them commands"""
 CAUSE_DELAY = 0.3
 """s by which the cause of a stop may follow the refusal that it leads to: they come from two nodes"""
-
-
-def subscribe_odometry(receive: Callable[[Odometry], None]) -> rospy.Subscriber:
-    """Messages of odom whose pose is a place, and whose speeds are some."""
-
-    def arrive(message: Odometry) -> None:
-        pose, twist = pose_of(message), message.twist.twist
-        if not all(abs(each) <= FARTHEST for each in (pose.x, pose.y, pose.yaw, twist.linear.x, twist.angular.z)):
-            raise UnfitError(f"holds a number beyond {FARTHEST:g}")
-        receive(message)
-
-    return subscribe("odom", Odometry, arrive, queue_size=1, tcp_nodelay=True)
 
 
 def in_words(safety: SafetyStatus) -> str:
@@ -51,25 +34,29 @@ def in_words(safety: SafetyStatus) -> str:
 
 
 class Robot:
-    """The last message of each topic."""
+    """The permit and the newest odometry, and what the controller does with the commands of this program."""
 
     def __init__(self, *, attended: bool = False) -> None:
         """`attended`: a thread that never plans calls `watch` all the time, so that every gap is a suspension."""
         self._attended = attended
-        self.odometry: Odometry | None = None
-        self.odometry_at = -math.inf
         self.watch = SafetyWatch()
         self.commands = False  # true if the commands of this program reach the joints
         self.refused_at = math.inf  # s, since when the controller awaits a zero from this program after a stop
         self.masked_by = ""
-        subscribe_odometry(self._receive_odometry)
+        self._view = View("odom")
         subscribe("drive_state", DriveState, self._receive_state, queue_size=1, tcp_nodelay=True)
         subscribe("leg_state", LegState, self._receive_refusal, queue_size=1, tcp_nodelay=True)
 
     @property
     def frames(self) -> tuple[str, str]:
         """Frames of odometry and of the robot; empty before the first odometry."""
-        return (self.odometry.header.frame_id, self.odometry.child_frame_id) if self.odometry is not None else ("", "")
+        odometry, _ = self.odometry
+        return (odometry.header.frame_id, odometry.child_frame_id) if odometry is not None else ("", "")
+
+    @property
+    def odometry(self) -> tuple[Odometry | None, float]:
+        """The newest odometry and when it came, s, monotonic; None, minus infinity without one."""
+        return self._view.newest("odom")
 
     @property
     def safety(self) -> SafetyStatus | None:
@@ -132,18 +119,13 @@ class Robot:
 
     def _silence(self, now: float) -> str:
         """Which topic is silent; empty if both come."""
-        if self.odometry is None:
-            return f"no odom: {ESTIMATOR} does not run"
-        if now - self.odometry_at > SILENCE:
-            return f"odom is silent for {SILENCE:g} s"
-        if self.safety is None:
-            return f"no safety_status: {MONITOR} does not run"
-        if now - self.watch.received_at > SAFETY_SILENCE:
-            return f"safety_status is silent for {SAFETY_SILENCE:g} s"
+        safety = self.watch.message, self.watch.received_at
+        for topic, (message, at), node in (("odom", self.odometry, ESTIMATOR), ("safety_status", safety, MONITOR)):
+            if message is None:
+                return f"no {topic}: {node} does not run"
+            if now - at > SILENCES[topic]:
+                return f"{topic} is silent for {SILENCES[topic]:g} s"
         return ""
-
-    def _receive_odometry(self, message: Odometry) -> None:
-        self.odometry, self.odometry_at = message, time.monotonic()
 
     def _receive_state(self, message: DriveState) -> None:
         states = {name: state for name, _, state in (text.partition(": ") for text in message.sources)}

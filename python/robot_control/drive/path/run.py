@@ -14,11 +14,12 @@ from std_srvs.srv import Trigger, TriggerResponse
 
 from robot_control.drive.path.follower import Follower, Motion, State
 from robot_control.drive.path.frames import PathFrame
-from robot_control.drive.path.robot import SILENCE, SOURCE, Robot
+from robot_control.drive.path.robot import SOURCE, Robot
 from robot_control.drive.path.waypoints import PathError, Waypoint, from_poses
 from robot_control.robot.command import Command
 from robot_control.robot.command_topic import CommandTopic
 from robot_control.robot.pose import pose_of
+from robot_control.robot.view import SILENCES
 
 POLL_PERIOD = 0.005
 """s between two looks for a new odometry message"""
@@ -45,11 +46,12 @@ class Drive:
         while going_on() and not self.follower.over:
             revoked = self._robot.revoked(self._requested, waited=waited)
             against, waited = self._robot.against_driving(time.monotonic()) or revoked, False
+            odometry, at = self._robot.odometry
             if against:
                 self.follower.fail(against)
-            elif self._robot.odometry_at > last:
-                last = self._robot.odometry_at
-                self._step(self._robot.odometry)
+            elif at > last:
+                last = at
+                self._step(odometry)
             poll()
             time.sleep(POLL_PERIOD)
 
@@ -83,9 +85,9 @@ class Drive:
         self._topic.send(Command(motion.linear, motion.angular), odometry.header.stamp)
 
     def _elapsed(self, odometry: Odometry) -> float:
-        """s since the last one; more than SILENCE would have ended the path."""
+        """s since the last one; more than its silence would have ended the path."""
         last, self._stamp = self._stamp, odometry.header.stamp.to_sec()
-        return min(max(0.0, self._stamp - (self._stamp if last is None else last)), SILENCE)
+        return min(max(0.0, self._stamp - (self._stamp if last is None else last)), SILENCES["odom"])
 
     def describe(self) -> str:
         """One line for the log."""

@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from robot_control.files.files import InputFileError, check_input, listed
+from robot_control.robot.pose import FARTHEST
 
 COLUMNS = ("x", "y", "yaw", "speed")
 APART = 1e-4
@@ -16,8 +17,6 @@ MAX_POINTS = 100_000
 """points"""
 MAX_FILE = 1 << 24
 """bytes of a CSV file"""
-FARTHEST = 1e6
-"""m, m/s, rad; a larger number in a path or in odometry is none: its square may overflow"""
 JUMP, JUMP_RATIO, ENOUGH = 1.0, 20.0, 10
 """m, times the median distance, points: in a path of so many a longer step than both is an error"""
 

@@ -22,7 +22,6 @@ from robot_control.robot.boundary import boundary
 from robot_control.robot.command import Command, Pace
 from robot_control.robot.command_topic import CommandTopic
 from robot_control.robot.diagnosis.listener import MASTER_PERIOD, Listener
-from robot_control.robot.diagnosis.state import SILENCE
 from robot_control.robot.ros_master import require_master
 from robot_control.robot.ros_node import begin_node
 from robot_control.robot.safety_watch import SafetyWatch
@@ -76,7 +75,7 @@ class Teleop:
                 self._operator.interrupt(now)
             if self._take(data, now, late=backlog.late(data, now)):
                 return
-            self._operator.permit(self._watch.drivable(SILENCE), now)
+            self._operator.permit(self._watch.drivable(), now)
             self._operator.limit(self._limits.newest())
             self._pace.step(self._operator.command(now), now)
             with boundary.crossing("the robot's answers"):

@@ -13,7 +13,7 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-from robot_control.drive.path.waypoints import FARTHEST
+from robot_control.robot.pose import FARTHEST
 
 Message = dict[str, Any]
 

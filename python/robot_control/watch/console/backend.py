@@ -16,7 +16,6 @@ from robot_control.robot.boundary import boundary
 from robot_control.robot.command import Pace
 from robot_control.robot.command_topic import CommandTopic
 from robot_control.robot.diagnosis.listener import MASTER_PERIOD, Listener
-from robot_control.robot.diagnosis.state import SILENCE
 from robot_control.robot.robot_kind import running_kind
 from robot_control.robot.safety_watch import SafetyWatch
 from robot_control.robot.services import AGAIN, E_STOP, Answer, Services, in_words
@@ -64,7 +63,7 @@ class Backend:
             self.authority.interrupt(now, why)
         if self.view.revoked(rospy.get_name()):
             self.authority.refuse(now)
-        self.authority.permit(self._watch.drivable(SILENCE), legged=running_kind().legged)
+        self.authority.permit(self._watch.drivable(), legged=running_kind().legged)
         command, self._age = self.authority.command(self._limits.newest(), now)
         self._pace.step(command, now)
         commander = self.authority.commander

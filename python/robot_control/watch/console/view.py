@@ -18,13 +18,12 @@ from robot_control.robot.command import Command
 from robot_control.robot.diagnosis.diagnosis import judge, missing_nodes
 from robot_control.robot.diagnosis.state import Facts
 from robot_control.robot.pose import pose_of
+from robot_control.robot.view import SILENCES
 from robot_control.watch.console.navigation import NavigationView
 from robot_control.watch.scene import Trail
 
 MAX_PATH = 2000
 """Points of a wanted path that are sent; a longer path is thinned evenly."""
-DRIVE_SILENCE = 1.0
-"""s after which a drive_state or leg_state is too old to count"""
 PROGRESS = ("state", "reason", "progress", "remaining_distance", "cross_track_error")
 
 Values = dict[str, Any]
@@ -53,7 +52,7 @@ class View:
     def revoked(self, node: str) -> bool:
         """True if the controller refuses what the node requested before a stop."""
         now = time.monotonic()
-        states = [self._topics[name].fresh(now, DRIVE_SILENCE) for name in ("drive", "legs")]
+        states = [self._topics[name].fresh(now, SILENCES["drive_state"]) for name in ("drive", "legs")]
         return any(state is not None and node in state.revoked for state in states)
 
     def pose(self) -> tuple[float, float, float] | None:

@@ -11,13 +11,14 @@ import xml.etree.ElementTree as ET
 import rospy
 
 from robot_control.installed_files import share_file
-from robot_control.msg import DriveState, LegState, RobotStatus, SafetyStatus
-from robot_control.robot.boundary import Latest, boundary
+from robot_control.msg import RobotStatus
+from robot_control.robot.boundary import boundary
 from robot_control.robot.diagnosis.facts import below
 from robot_control.robot.diagnosis.recent import Diagnostics
 from robot_control.robot.diagnosis.state import SILENCE
 from robot_control.robot.robot_kind import running_kind
 from robot_control.robot.ros_node import running_node
+from robot_control.robot.view import View
 from robot_control.watch.status.report import Reports, changed, status_of
 
 POLL_PERIOD = 0.05
@@ -34,8 +35,7 @@ class Status:
         self._began = time.monotonic()
         self._version = ET.parse(share_file("package.xml")).findtext("version", "")
         self._published_at = -math.inf
-        self._safety = Latest("safety_status", SafetyStatus)
-        self._drive, self._legs = Latest("drive_state", DriveState), Latest("leg_state", LegState)
+        self._view = View("safety_status", "drive_state", "leg_state")
         self._reports = Diagnostics(SILENCE)
         self._published = RobotStatus()
         self._publisher = rospy.Publisher("robot_status", RobotStatus, queue_size=1, latch=True)
@@ -52,10 +52,10 @@ class Status:
         self._publisher.publish(status)
 
     def _reports_of_now(self, now: float) -> Reports:
-        drive, legs = (topic.fresh(now, SILENCE) for topic in (self._drive, self._legs))
+        drive, legs = (self._view.fresh(topic, now) for topic in ("drive_state", "leg_state"))
         newest = {below(self._namespace, name): report for name, (_, report) in self._reports.items(now).items()}
         return Reports(
-            safety=self._safety.fresh(now, SILENCE),
+            safety=self._view.fresh("safety_status", now),
             diagnostics={name: report for name, report in newest.items() if name},
             kind=running_kind(),
             commander="" if drive is None else drive.commander,
