@@ -16,9 +16,7 @@ SERVICES = ("chronyd", "ntpd", "systemd-timesyncd", "systemd-timesyn", "ptp4l", 
 def source(system: System) -> Finding:
     """The kernel's clock source."""
     name = "sys/devices/system/clocksource/clocksource0/current_clocksource"
-    current = system.text(name)
-    if current is None:
-        return unseen(system.hidden(name))
+    current = system.seen(system.text(name), name)
     if current == "jiffies":
         return fault("jiffies: its resolution is a tick of 1 … 10 ms", "remove clocksource= from the boot arguments")
     if current in SLOW:

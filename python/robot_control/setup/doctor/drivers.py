@@ -7,7 +7,7 @@ import json
 import stat
 from typing import Any
 
-from robot_control.setup.doctor.finding import Check, Finding, Verdict, fault, ok, unseen, warning
+from robot_control.setup.doctor.finding import Check, Finding, Verdict, fault, ok, warning
 from robot_control.setup.doctor.processor import writable
 from robot_control.setup.doctor.system import System
 
@@ -161,8 +161,7 @@ def autosuspend(system: System) -> Finding:
 def device_files(system: System) -> Finding:
     """The rights of the user of this terminal to serial ports."""
     ports = system.names("dev/ttyUSB[0-9]*") + system.names("dev/ttyACM[0-9]*")
-    if not system.status("Uid"):
-        return unseen(system.hidden("proc/self/status"))
+    system.seen(system.status("Uid") or None, "proc/self/status")
     closed = [port for port in ports if not writable(system, port)]
     if not closed:
         return ok(", ".join(ports) or "no serial port")

@@ -64,8 +64,7 @@ def host_name(system: System) -> Finding:
     announced = system.environment.get("ROS_HOSTNAME") or system.text("proc/sys/kernel/hostname")
     if system.environment.get("ROS_IP") and not system.environment.get("ROS_HOSTNAME"):
         return ok("not used: ROS_IP is set")
-    if not announced:
-        return unseen(system.hidden("proc/sys/kernel/hostname"))
+    announced = system.seen(announced or None, "proc/sys/kernel/hostname")
     if not re.fullmatch(r"[A-Za-z0-9._:-]+", announced):
         value = f"{announced!r} is no name of a host"
         if system.environment.get("ROS_HOSTNAME"):
@@ -94,9 +93,7 @@ def ros_ip(system: System) -> Finding:
     given = system.environment.get("ROS_IP", "")
     if not given:
         return ok("not set")
-    own = _own_addresses(system)
-    if not own:
-        return unseen(system.hidden("proc/net/fib_trie"))
+    own = system.seen(_own_addresses(system) or None, "proc/net/fib_trie")
     if given.startswith("127.") and not remote_host(system):
         return ok(f"{given}: this machine alone")
     if given.startswith("127."):

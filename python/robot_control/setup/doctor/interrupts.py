@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 
-from robot_control.setup.doctor.finding import Check, Finding, note, ok, unseen, warning
+from robot_control.setup.doctor.finding import Check, Finding, note, ok, warning
 from robot_control.setup.doctor.system import CAP_SYS_NICE, System, cores_of
 
 MAX_RATE = 10_000
@@ -34,9 +34,7 @@ def _devices(system: System) -> dict[str, tuple[list[int], str]]:
 def steering(system: System) -> Finding:
     """Interrupts of devices on the loop's core, if it is isolated."""
     core = system.core
-    devices = _devices(system)
-    if not devices:
-        return unseen(system.hidden("proc/interrupts"))
+    devices = system.seen(_devices(system) or None, "proc/interrupts")
     if core is None:
         return ok("robot.core is -1: not pinned")
     some = MIN_RATE * (system.uptime or 0.0)
@@ -73,9 +71,7 @@ def storm(system: System) -> Finding:
 
 def slack(system: System) -> Finding:
     """A thread without real-time priority may be woken later by this time."""
-    value = system.number("proc/self/timerslack_ns")
-    if value is None:
-        return unseen(system.hidden("proc/self/timerslack_ns"))
+    value = system.seen(system.number("proc/self/timerslack_ns"), "proc/self/timerslack_ns")
     if value <= MAX_SLACK:
         return ok(f"{value / 1000:.0f} µs")
     if system.may(CAP_SYS_NICE) or (system.limit("Max realtime priority") or 0) > 0:

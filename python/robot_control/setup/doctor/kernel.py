@@ -13,9 +13,7 @@ MIN_SHARE = 0.3
 
 def preemption(system: System) -> Finding:
     """PREEMPT_RT is best; a kernel without preemption delays every wake-up."""
-    version = system.text("proc/version")
-    if version is None:
-        return unseen(system.hidden("proc/version"))
+    version = system.seen(system.text("proc/version"), "proc/version")
     chosen = re.search(r"\bpreempt=(\w+)", system.text("proc/cmdline") or "")
     if "PREEMPT_RT" in version or system.number("sys/kernel/realtime") == 1:
         return ok("PREEMPT_RT")
@@ -76,9 +74,7 @@ def group_budget(system: System) -> Finding:
         if budget is not None:
             return ok(f"{budget} µs in the control group {first}")
     release = system.text("proc/sys/kernel/osrelease")
-    settings = system.text(f"boot/config-{release}")
-    if settings is None:
-        return unseen(system.hidden(f"boot/config-{release}"))
+    settings = system.seen(system.text(f"boot/config-{release}"), f"boot/config-{release}")
     if "CONFIG_RT_GROUP_SCHED=y" not in settings:
         return ok("no budgets in this kernel (CONFIG_RT_GROUP_SCHED is not set)")
     if second not in ("", "/") and "rt_group_sched=0" not in (system.text("proc/cmdline") or ""):
@@ -99,9 +95,9 @@ def timers(system: System) -> Finding:
 
 def pressure(system: System) -> Finding:
     """The kernel's own figure for the time that runnable threads waited for a processor."""
-    found = re.search(r"^some avg10=([\d.]+)", system.text("proc/pressure/cpu") or "", re.MULTILINE)
-    if found is None:
-        return unseen(system.hidden("proc/pressure/cpu"))
+    found = system.seen(
+        re.search(r"^some avg10=([\d.]+)", system.text("proc/pressure/cpu") or "", re.MULTILINE), "proc/pressure/cpu"
+    )
     share = float(found[1])
     value = f"threads wait for a processor {share:.0f} % of the time (last 10 s)"
     return ok(value) if share < 50 else note(value, "end other work, or use a faster machine")

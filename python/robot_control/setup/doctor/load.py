@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from robot_control.setup.doctor.finding import Check, Finding, note, ok, unseen, warning
+from robot_control.setup.doctor.finding import Check, Finding, note, ok, warning
 from robot_control.setup.doctor.memory import MAX_PRIORITY
 from robot_control.setup.doctor.programs import NODES
 from robot_control.setup.doctor.system import CAP_SYS_NICE, System
@@ -31,8 +31,7 @@ def hogs(system: System) -> Finding:
         for task, share in load(system).busy()
         if share > HOG_SHARE and task.core == system.core and task.process not in ours
     ]
-    if not load(system).second.tasks:
-        return unseen(system.hidden("proc/1/task"))
+    system.seen(load(system).second.tasks or None, "proc/1/task")
     if not busy:
         return ok(f"no other program takes more than {100 * HOG_SHARE:.0f} % of core {system.core}")
     named = ", ".join(f"{task.name} ({task.process}) {100 * share:.0f} %" for task, share in busy[:MAX_SHOWN])
@@ -58,12 +57,11 @@ def _others(system: System) -> str:
 
 def rivals(system: System) -> Finding:
     """Real-time threads of other programs at the loop's priorities or above."""
-    if not load(system).second.tasks:
-        return unseen(system.hidden("proc/1/task"))
+    tasks = system.seen(load(system).second.tasks or None, "proc/1/task")
     ours = _ours(system)
     above = [
         task
-        for task in load(system).second.tasks.values()
+        for task in tasks.values()
         if task.priority >= LOWEST_PRIORITY and not task.of_kernel and task.process not in ours
     ]
     if not above:
@@ -78,9 +76,7 @@ def rivals(system: System) -> Finding:
 
 def steal(system: System) -> Finding:
     """The time in which the hypervisor ran another machine on the loop's core."""
-    share = load(system).steal(system.core or 0)
-    if share is None:
-        return unseen(system.hidden("proc/stat"))
+    share = system.seen(load(system).steal(system.core or 0), "proc/stat")
     value = f"{100 * share:.1f} % of core {system.core or 0}" + ("" if system.live else " since its start")
     if share > STEAL_SHARE:
         return warning(value, "reserve processors for this virtual machine on its host, or use a bare machine")

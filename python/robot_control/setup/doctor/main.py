@@ -24,7 +24,7 @@ from robot_control.setup.doctor import (
 )
 from robot_control.setup.doctor.finding import Check, Finding, unseen
 from robot_control.setup.doctor.report import Row, as_json, commands, exit_code, lines
-from robot_control.setup.doctor.system import DEFAULTS, System
+from robot_control.setup.doctor.system import DEFAULTS, HiddenError, System
 from robot_control.setup.doctor.tasks import first_sample
 
 GROUPS: dict[str, Sequence[Check]] = {
@@ -49,6 +49,8 @@ def _finding(check: Check, system: System) -> Finding:
     """The finding of one check; what cannot be read costs this check alone."""
     try:
         return check.examine(system)
+    except HiddenError as error:
+        return unseen(str(error))
     except UNREADABLE as error:
         return unseen(f"cannot be read: {type(error).__name__}: {error}")
 

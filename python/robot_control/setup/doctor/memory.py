@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 
-from robot_control.setup.doctor.finding import Check, Finding, fault, note, ok, unseen, warning
+from robot_control.setup.doctor.finding import Check, Finding, fault, note, ok, warning
 from robot_control.setup.doctor.system import CAP_IPC_LOCK, CAP_SYS_NICE, System
 
 MAX_PRIORITY = 83
@@ -44,9 +44,7 @@ def priority(system: System) -> Finding:
     """SCHED_FIFO needs RLIMIT_RTPRIO or CAP_SYS_NICE."""
     if system.may(CAP_SYS_NICE):
         return ok("CAP_SYS_NICE")
-    limit = system.limit("Max realtime priority")
-    if limit is None:
-        return unseen(system.hidden("proc/self/limits"))
+    limit = system.seen(system.limit("Max realtime priority"), "proc/self/limits")
     if limit >= MAX_PRIORITY:
         return ok(f"limit {limit:.0f}")
     if limit > 0:
@@ -58,9 +56,7 @@ def memory_lock(system: System) -> Finding:
     """Locked memory needs an unlimited RLIMIT_MEMLOCK or CAP_IPC_LOCK; a finite limit would end later mappings."""
     if system.may(CAP_IPC_LOCK):
         return ok("CAP_IPC_LOCK")
-    limit = system.limit("Max locked memory")
-    if limit is None:
-        return unseen(system.hidden("proc/self/limits"))
+    limit = system.seen(system.limit("Max locked memory"), "proc/self/limits")
     if limit == float("inf"):
         return ok("unlimited")
     return _refused(system, f"limit {limit / 1024:.0f} KiB", "memlock")
@@ -68,9 +64,7 @@ def memory_lock(system: System) -> Finding:
 
 def open_files(system: System) -> Finding:
     """Every peer of a topic takes a descriptor."""
-    limit = system.limit("Max open files")
-    if limit is None:
-        return unseen(system.hidden("proc/self/limits"))
+    limit = system.seen(system.limit("Max open files"), "proc/self/limits")
     if limit < MIN_FILES:
         return fault(f"{limit:.0f}: the nodes refuse to start", "raise the limit", "ulimit -n 1024")
     if limit < ENOUGH_FILES:
@@ -80,24 +74,20 @@ def open_files(system: System) -> Finding:
 
 def file_size(system: System) -> Finding:
     """A log that reaches the limit ends there."""
-    limit = system.limit("Max file size")
-    if limit is None:
-        return unseen(system.hidden("proc/self/limits"))
+    limit = system.seen(system.limit("Max file size"), "proc/self/limits")
     if limit == float("inf"):
         return ok("unlimited")
     return warning(f"{limit / 1e6:.0f} MB: logs end there", "remove the limit", "ulimit -f unlimited")
 
 
-def _meminfo(system: System, key: str) -> float | None:
+def _meminfo(system: System, key: str) -> float:
     found = re.search(rf"^{key}:\s+(\d+) kB", system.text("proc/meminfo") or "", re.MULTILINE)
-    return 1024.0 * int(found[1]) if found else None
+    return 1024.0 * int(system.seen(found, "proc/meminfo")[1])
 
 
 def free_memory(system: System) -> Finding:
     """Free memory of the machine, and of the control group of a container."""
     free = _meminfo(system, "MemAvailable")
-    if free is None:
-        return unseen(system.hidden("proc/meminfo"))
     limit, used = (system.number(f"sys/fs/cgroup/memory.{name}") for name in ("max", "current"))
     if limit is not None and used is not None:
         free = min(free, limit - used)
@@ -110,8 +100,6 @@ def free_memory(system: System) -> Finding:
 def swap(system: System) -> Finding:
     """A page that was swapped out is a page fault of milliseconds, unless the memory is locked."""
     total, free, all_memory = (_meminfo(system, key) for key in ("SwapTotal", "SwapFree", "MemTotal"))
-    if total is None or free is None or all_memory is None:
-        return unseen(system.hidden("proc/meminfo"))
     used = total - free
     if total == 0:
         return ok("none")

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from robot_control.setup.doctor.finding import Check, Finding, fault, note, ok, unseen, warning
+from robot_control.setup.doctor.finding import Check, Finding, fault, note, ok, warning
 from robot_control.setup.doctor.memory import GRANT, INSTALL
 from robot_control.setup.doctor.system import System, cores_of
 
@@ -36,10 +36,8 @@ def granted(system: System) -> Finding:
     """The nodes pin their loop to robot.core."""
     if system.core is None:
         return note("robot.core is -1: not pinned", "set robot.core, so that the chain wakes up on one core")
-    available = _available(system)
+    available = system.seen(_available(system) or None, "proc/self/status")
     online = cores_of(system.text(f"{CPU}/online"))
-    if not available:
-        return unseen(system.hidden("proc/self/status"))
     if system.core in available and (not online or system.core in online):
         return ok(f"core {system.core}")
     listed = ", ".join(map(str, sorted(available & online if online else available)))
@@ -53,8 +51,7 @@ def governor(system: System) -> Finding:
     """The governor of the loop's core, and the limit of its frequency."""
     folder = f"{CPU}/cpu{_core(system)}/cpufreq"
     name, driver = (system.text(f"{folder}/scaling_{key}") for key in ("governor", "driver"))
-    if name is None:
-        return unseen(system.hidden(f"{folder}/scaling_governor"))
+    name = system.seen(name, f"{folder}/scaling_governor")
     limit, highest = system.number(f"{folder}/scaling_max_freq"), system.number(f"{folder}/cpuinfo_max_freq")
     repair = f"echo performance | sudo tee /{CPU}/cpu*/cpufreq/scaling_governor"
     if limit and highest and limit < 0.8 * highest:
@@ -81,9 +78,10 @@ def idle_states(system: System) -> Finding:
             GRANT,
             INSTALL,
         )
-    states = [name.rsplit("/", 1)[0] for name in system.names(f"{CPU}/cpu{_core(system)}/cpuidle/state*/latency")]
-    if not states:
-        return unseen(system.hidden(f"{CPU}/cpu{_core(system)}/cpuidle"))
+    states = system.seen(
+        [name.rsplit("/", 1)[0] for name in system.names(f"{CPU}/cpu{_core(system)}/cpuidle/state*/latency")] or None,
+        f"{CPU}/cpu{_core(system)}/cpuidle",
+    )
     enabled = [state for state in states if system.number(f"{state}/disable") != 1]
     deepest = max(enabled or states[:1], key=lambda state: system.number(f"{state}/latency") or 0)
     latency = system.number(f"{deepest}/latency") or 0
@@ -127,8 +125,7 @@ def throttled(system: System) -> Finding:
     remedy = "cool the machine: clean the fan, lower the load, or limit the frequency yourself"
     if hot:
         return warning(f"too hot now: {', '.join(hot)}", remedy)
-    if count is None:
-        return unseen(system.hidden(f"{CPU}/cpu{_core(system)}/thermal_throttle"))
+    count = system.seen(count, f"{CPU}/cpu{_core(system)}/thermal_throttle")
     if count and spent and system.uptime and spent / 1000 > THROTTLED_SHARE * system.uptime:
         return warning(f"throttled {count} times, {spent / 1000:.0f} s since the start of the machine", remedy)
     return ok(f"throttled {count} times since the start of the machine")
@@ -136,9 +133,7 @@ def throttled(system: System) -> Finding:
 
 def isolation(system: System) -> Finding:
     """Isolated cores carry no other ordinary threads."""
-    isolated = cores_of(system.text(f"{CPU}/isolated"))
-    if system.text(f"{CPU}/isolated") is None:
-        return unseen(system.hidden(f"{CPU}/isolated"))
+    isolated = cores_of(system.seen(system.text(f"{CPU}/isolated"), f"{CPU}/isolated"))
     if not isolated:
         return note("no core is isolated", "isolcpus=N nohz_full=N rcu_nocbs=N and robot.core: N (docs/realtime.md)")
     if system.core not in isolated:
@@ -150,9 +145,9 @@ def isolation(system: System) -> Finding:
 
 def siblings(system: System) -> Finding:
     """Two threads of one core share its arithmetic units and caches."""
-    listed = system.text(f"{CPU}/cpu{_core(system)}/topology/thread_siblings_list")
-    if listed is None:
-        return unseen(system.hidden(f"{CPU}/cpu{_core(system)}/topology"))
+    listed = system.seen(
+        system.text(f"{CPU}/cpu{_core(system)}/topology/thread_siblings_list"), f"{CPU}/cpu{_core(system)}/topology"
+    )
     others = cores_of(listed) - {_core(system)}
     if not others:
         return ok("the loop's core is no half of another")

@@ -14,7 +14,9 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
+
+T = TypeVar("T")
 
 PROGRAM_TIMEOUT = 1.0
 """s, for the answer of a program; the whole report may take 3 s"""
@@ -23,6 +25,10 @@ DEFAULTS: Mapping[str, Any] = {"core": 0, "realtime": "preferred", "driver": "mu
 MAX_CORES = 4096
 CAP_IPC_LOCK, CAP_SYS_NICE = 14, 23
 """Bits of CapEff, capabilities(7)"""
+
+
+class HiddenError(Exception):
+    """A property that this machine does not show; the message says so."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -103,6 +109,12 @@ class System:
     def hidden(self, name: str) -> str:
         """The value of a property whose file is absent."""
         return f"not visible in {self.kind}" if self.kind else f"not visible: /{name.lstrip('/')} is absent"
+
+    def seen(self, value: T | None, name: str) -> T:
+        """The value, of the file `name`. Raises HiddenError where there is none."""
+        if value is None:
+            raise HiddenError(self.hidden(name))
+        return value
 
     @property
     def core(self) -> int | None:
