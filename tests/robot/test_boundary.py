@@ -201,7 +201,7 @@ def test_a_surprise_ends_what_was_requested_before_it(monkeypatch: pytest.Monkey
     with boundary_of_this_process.crossing("a page"):
         raise ZeroDivisionError
     assert watch.revoked(requested, waited=True) == SURPRISE
-    assert watch.interruptions() == (1, SURPRISE)
+    assert (watch.interrupted(), watch.interrupted()) == (SURPRISE, "")
 
 
 def report(*names: str, text: str = "") -> DiagnosticArray:

@@ -127,7 +127,7 @@ def why() -> Step:
 
 def teleop() -> Step:
     limits, watch = SpeedLimits(), SafetyWatch()
-    return lambda: (limits.newest(), watch.interruptions(), watch.drivable(), watch.revoked(0.0, waited=True))
+    return lambda: (limits.newest(), watch.interrupted(), watch.drivable(), watch.revoked(0.0, waited=True))
 
 
 def pad() -> Step:

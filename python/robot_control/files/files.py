@@ -6,6 +6,7 @@ import contextlib
 import os
 import shutil
 import stat
+import sys
 import tempfile
 from collections.abc import Iterable, Iterator
 from pathlib import Path
@@ -64,6 +65,15 @@ def in_words(error: Exception) -> str:
     if error.filename is None:
         return error.strerror
     return file_error(str(error.filename), error.strerror)
+
+
+@contextlib.contextmanager
+def one_message(program: str, *kinds: type[Exception]) -> Iterator[None]:
+    """An error of these kinds ends the program with its message and exit code 1."""
+    try:
+        yield
+    except kinds as error:
+        sys.exit(f"{program}: {fit_for_message(in_words(error))}")
 
 
 def problems_of(setting: str, path: Path, *, secret: bool, remedy: str = "") -> Iterator[str]:

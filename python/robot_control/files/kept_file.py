@@ -23,7 +23,7 @@ class DamagedError(ValueError):
 
 
 def digest_of(payload: bytes) -> str:
-    """Says whether a payload is another one."""
+    """SHA-256 as hexadecimal digits: says whether a payload is another one."""
     return hashlib.sha256(payload).hexdigest()
 
 

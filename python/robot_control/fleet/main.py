@@ -13,7 +13,7 @@ import rospy
 from std_srvs.srv import Trigger, TriggerResponse
 
 from robot_control._robot_control import ParameterError, RobotError
-from robot_control.files.files import InputFileError, fit_for_message, given_path, in_words
+from robot_control.files.files import InputFileError, fit_for_message, given_path, in_words, one_message
 from robot_control.fleet.client import DRIVING, Client
 from robot_control.fleet.machine import machine_of, running_description
 from robot_control.fleet.memory import Memory
@@ -28,6 +28,7 @@ from robot_control.robot.server_values import ServerValueError
 from robot_control.robot.topic_sender import Signals
 from robot_control.settings.files import SettingsError
 
+REFUSALS = (InputFileError, OSError, RobotError, ParameterError, ServerValueError)
 PERIOD = 0.02
 """s of one pass; odometry comes as often"""
 RECEIVING = 0.01
@@ -160,8 +161,5 @@ def main() -> None:
         sys.exit(f"vda5050.py: {MISSING}")
     except (SettingsError, OSError) as error:
         sys.exit(f"vda5050.py: {fit_for_message(in_words(error))}")
-    try:
-        with running_node("vda5050") as signals:
-            Node(settings).run(signals)
-    except (InputFileError, OSError, RobotError, ParameterError, ServerValueError) as error:
-        sys.exit(f"vda5050.py: {fit_for_message(in_words(error))}")
+    with one_message("vda5050.py", *REFUSALS), running_node("vda5050") as signals:
+        Node(settings).run(signals)

@@ -108,7 +108,9 @@ def subscribe(topic: str, kind: type, receive: Callable[[Any], None], **options:
 class Latest:
     """The newest message of a topic, for a program that polls: it is checked when it is read, as most are not."""
 
-    def __init__(self, topic: str, kind: type, longest: int = 0, check: Callable[[Any], None] = lambda _: None) -> None:
+    def __init__(
+        self, topic: str, kind: type, longest: int = 0, check: Callable[[Any], object] = lambda _: None
+    ) -> None:
         """`longest`: bytes of a message, where they may be more than of another one of its type. `check`: raises
         UnfitError.
         """

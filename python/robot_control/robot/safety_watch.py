@@ -49,7 +49,7 @@ class SafetyWatch:
         self.message: SafetyStatus | None = None  # the newest one
         self.received_at = -math.inf  # s, monotonic
         self._lock = threading.Lock()
-        self._looked = time.monotonic()
+        self._looked, self._count = time.monotonic(), 0
         self._interruptions = Interruptions(self._looked, process_began())
         subscribe("safety_status", SafetyStatus, self.receive, tcp_nodelay=True)
         boundary.stops(self._surprise)
@@ -60,10 +60,11 @@ class SafetyWatch:
             self.message, self.received_at = message, time.monotonic()
             self._interruptions.receive(status_of(message), self.received_at)
 
-    def interruptions(self) -> tuple[int, str]:
-        """One pass: the number of interruptions and the reason of the last one."""
+    def interrupted(self) -> str:
+        """One pass: why there was an interruption since the last one; empty if there was none."""
         with self._look(waited=False) as interruptions:
-            return interruptions.count, interruptions.reason
+            before, self._count = self._count, interruptions.count
+            return interruptions.reason if interruptions.count != before else ""
 
     def revoked(self, requested: float, *, waited: bool) -> str:
         """Why a request of the time `requested` s (monotonic) may not begin or go on; empty if it may.

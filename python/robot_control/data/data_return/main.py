@@ -14,7 +14,7 @@ from robot_control.data.data_return.plan import progress
 from robot_control.data.data_return.queue_file import QueueError, QueueFile
 from robot_control.data.data_return.remote import RemoteError, require_rclone
 from robot_control.data.data_return.settings import RCLONE_CONFIG, Settings, read_settings
-from robot_control.files.files import escaped, fit_for_message, given_path, in_words
+from robot_control.files.files import escaped, fit_for_message, given_path, one_message
 from robot_control.installed_files import share_file
 from robot_control.robot.ros_node import running_node
 from robot_control.settings.files import SettingsError
@@ -23,7 +23,7 @@ from robot_control.settings.files import SettingsError
 def main() -> int:
     """Entry point of scripts/data_return.py."""
     given = _parser().parse_args([each for each in rospy.myargv(sys.argv)[1:] if each])
-    try:
+    with one_message("data_return.py", SettingsError, QueueError, RemoteError, OSError):
         if given.command in ("fetch", "verify"):
             return 0 if verify(given.source, given.rclone_config, getattr(given, "out", None)) else 1
         settings = read_settings(Path(share_file("config/data_return.yaml")), *([given.config] if given.config else []))
@@ -31,8 +31,6 @@ def main() -> int:
             _print_status(QueueFile(settings.queue))
         else:
             _run(settings)
-    except (SettingsError, QueueError, RemoteError, OSError) as error:
-        sys.exit(f"data_return.py: {fit_for_message(in_words(error))}")
     return 0
 
 

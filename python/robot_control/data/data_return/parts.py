@@ -5,7 +5,6 @@ from __future__ import annotations
 import ctypes
 import errno
 import gzip
-import hashlib
 import json
 import os
 import zlib
@@ -16,6 +15,7 @@ from pathlib import Path
 from typing import Any, BinaryIO
 
 from robot_control.data.data_return.plan import PART_BYTES, Entry, Part, identity
+from robot_control.files.kept_file import digest_of
 
 MANIFEST = "manifest.json"
 MAX_FILE = 1 << 24
@@ -108,13 +108,8 @@ def packed(file: int, number: int) -> tuple[Part, bytes]:
     for tried in (raw[:SAMPLE], raw):
         data = gzip.compress(tried, compresslevel=1, mtime=0)
         if len(data) >= HELPS * len(tried):
-            return Part(f"{number:05d}", len(raw), sha256(raw)), raw
-    return Part(f"{number:05d}.gz", len(data), sha256(data)), data
-
-
-def sha256(data: bytes) -> str:
-    """Its hexadecimal digits."""
-    return hashlib.sha256(data).hexdigest()
+            return Part(f"{number:05d}", len(raw), digest_of(raw)), raw
+    return Part(f"{number:05d}.gz", len(data), digest_of(data)), data
 
 
 def manifest(entry: Entry) -> bytes:
@@ -190,7 +185,7 @@ def _read(read: Callable[[str], bytes], name: str) -> bytes:
 def _unpacked(data: bytes, part: Part, longest: int) -> bytes:
     if len(data) != part.size:
         raise GapError(f"{part.name} has {len(data)} of {part.size} bytes")
-    if sha256(data) != part.sha256:
+    if digest_of(data) != part.sha256:
         raise GapError(f"{part.name} has another content than was sent")
     try:
         raw = zlib.decompressobj(wbits=31).decompress(data, longest + 1) if part.name.endswith(".gz") else data

@@ -7,7 +7,6 @@ import json
 import math
 import textwrap
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
@@ -15,6 +14,7 @@ from robot_control.data.brakes import Brake, brakes_in_drive
 from robot_control.data.demo.tracking import ON_LEGS, ON_WHEELS, SETTLE, NotSteadyError, Tracking, judge
 from robot_control.data.loop_timing import Distribution, LoopTiming, loop_timing
 from robot_control.data.run_log import FloatArray, Log, last
+from robot_control.files.json_values import finite
 from robot_control.loop.signal_names import causes_in, states
 
 BRAKES_SHOWN = 4
@@ -117,7 +117,7 @@ def to_json(summary: RunSummary) -> str:
         tree["tracking"]["passed"] = summary.tracking.passed
         for check, entry in zip(summary.tracking.checks, tree["tracking"]["checks"], strict=True):
             entry["passed"] = check.passed
-    return json.dumps(_finite(tree), indent=2, allow_nan=False) + "\n"
+    return json.dumps(finite(tree), indent=2, allow_nan=False) + "\n"
 
 
 def to_table(summary: RunSummary) -> str:
@@ -206,13 +206,3 @@ def _name(state: float, kind: str) -> str:
     if math.isnan(state) or not 0 <= state < len(known):
         return "UNKNOWN"
     return known[int(state)]
-
-
-def _finite(value: Any) -> Any:  # noqa: ANN401 - any JSON value
-    if isinstance(value, dict):
-        return {key: _finite(item) for key, item in value.items()}
-    if isinstance(value, list | tuple):
-        return [_finite(item) for item in value]
-    if isinstance(value, float) and not math.isfinite(value):
-        return None
-    return value

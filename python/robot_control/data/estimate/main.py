@@ -28,6 +28,7 @@ from robot_control.files.files import NewFiles, escaped, fit_for_message, given_
 from robot_control.files.output_files import check_outputs
 from robot_control.loop.estimator import Estimate, Estimator
 from robot_control.loop.roles import refuse_legs
+from robot_control.robot.send_plan import positive
 from robot_control.ui.picture_file import check_picture
 
 if TYPE_CHECKING:
@@ -284,19 +285,19 @@ def _parser() -> argparse.ArgumentParser:
         metavar="OUT.yaml",
         help="write what was learned, as the node's calibration_file",
     )
-    parser.add_argument("--rate", type=_positive, metavar="HZ", help=f"rows a second; bag: {BAG_RATE:g} unless given")
+    parser.add_argument("--rate", type=positive, metavar="HZ", help=f"rows a second; bag: {BAG_RATE:g} unless given")
 
     robot = parser.add_argument_group("the robot")
     robot.add_argument("--urdf", type=given_path, metavar="FILE", help="robot description, .xacro too")
     robot.add_argument("--params", type=given_path, metavar="YAML", help="parameter file; installed: robot_params.yaml")
-    robot.add_argument("--wheel-radius", type=_positive, metavar="M", help="every wheel")
-    robot.add_argument("--wheel-base", type=_positive, metavar="M", help="between the left and the right wheels")
+    robot.add_argument("--wheel-radius", type=positive, metavar="M", help="every wheel")
+    robot.add_argument("--wheel-base", type=positive, metavar="M", help="between the left and the right wheels")
     robot.add_argument("--imu-position", type=_numbers, metavar="X,Y,Z", help="m, in base_link")
     robot.add_argument(
         "--imu-orientation", type=_numbers, metavar="R,P,Y", help="rad, as in a URDF, or a quaternion x,y,z,w"
     )
     robot.add_argument(
-        "--encoder-counts", type=_positive, metavar="N", help="a turn, gear included; else found, or 4096"
+        "--encoder-counts", type=positive, metavar="N", help="a turn, gear included; else found, or 4096"
     )
     robot.add_argument("--gyro-unit", choices=GYRO_UNITS, help="of the recording; rad/s unless given")
     robot.add_argument("--accel-unit", choices=ACCEL_UNITS, help="m/s2 unless given")
@@ -306,12 +307,12 @@ def _parser() -> argparse.ArgumentParser:
         metavar="S",
         help="by which the IMU's stamps are later than the wheels'; else found by the turning of both",
     )
-    robot.add_argument("--period", type=_positive, metavar="S", help="between samples; else their median")
+    robot.add_argument("--period", type=positive, metavar="S", help="between samples; else their median")
 
     table = parser.add_argument_group("a CSV")
     table.add_argument("--columns", type=_pairs, metavar="time=t,left=…", help="the file's names of our columns")
     table.add_argument(
-        "--counts-per-turn", type=_positive, metavar="N", help="unit of left and right: 360 for degrees, 1 for turns"
+        "--counts-per-turn", type=positive, metavar="N", help="unit of left and right: 360 for degrees, 1 for turns"
     )
     table.add_argument("--time-unit", choices=TIME_UNITS)
 
@@ -330,12 +331,6 @@ def _finite(text: str) -> float:
         if math.isfinite(value := float(text)):
             return value
     raise argparse.ArgumentTypeError(f"{text} is no number")
-
-
-def _positive(text: str) -> float:
-    if (value := _finite(text)) > 0:
-        return value
-    raise argparse.ArgumentTypeError(f"{text} is no number above 0")
 
 
 def _numbers(text: str) -> list[float]:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import argparse
 import shutil
 import subprocess
-import sys
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import IO, cast
@@ -18,7 +17,7 @@ from robot_control.data.render.mujoco import Camera, Picture, Renderer, RenderEr
 from robot_control.data.render.run import Moment, read_moments
 from robot_control.data.render.scene import Scene
 from robot_control.data.run_log import LogError
-from robot_control.files.files import given_path, in_words, printable
+from robot_control.files.files import given_path, one_message, printable
 from robot_control.installed_files import share_file
 from robot_control.loop.roles import DRIVER
 from robot_control.robot.send_plan import positive
@@ -26,6 +25,7 @@ from robot_control.settings.parameter_layers import DEFAULTS
 from robot_control.ui.program import run
 
 FRAMES_PER_SECOND = 25
+REFUSALS = (RobotError, ParameterError, DriverError, RenderError, LogError, OSError, ValueError)
 AHEAD = 12
 """moments before and after the present one over which the camera's place is averaged"""
 FAR = 6.0
@@ -120,7 +120,7 @@ def main(given: list[str] | None = None) -> None:
     """Entry point."""
     options = arguments(given)
     out = options.out or options.run.parent
-    try:
+    with one_message("scripts/render", *REFUSALS):
         scene = Scene(model_of(options))
         moments = read_moments(options.run, 1 / FRAMES_PER_SECOND)
         out.mkdir(parents=True, exist_ok=True)
@@ -134,8 +134,6 @@ def main(given: list[str] | None = None) -> None:
         if not options.no_video:
             refusal = write_video(film, options.size, out / "render.mp4")
             print(refusal or f"wrote {printable(str(out / 'render.mp4'))} ({moments[-1].time - moments[0].time:.0f} s)")
-    except (RobotError, ParameterError, DriverError, RenderError, LogError, OSError, ValueError) as error:
-        sys.exit(f"scripts/render: {in_words(error)}")
 
 
 if __name__ == "__main__":

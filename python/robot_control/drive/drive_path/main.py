@@ -17,7 +17,7 @@ from robot_control.drive.path.robot import PATIENCE, SOURCE, Robot
 from robot_control.drive.path.run import Drive, PauseServices, points_of, shown
 from robot_control.drive.path.shapes import SHAPES
 from robot_control.drive.path.waypoints import PathError, Waypoint, placed, read_csv
-from robot_control.files.files import fit_for_message, in_words
+from robot_control.files.files import fit_for_message, in_words, one_message
 from robot_control.robot.boundary import MAX_LONG_BYTES, next_message
 from robot_control.robot.command import Command
 from robot_control.robot.command_topic import CommandTopic
@@ -120,10 +120,7 @@ def main() -> None:
         sys.exit(f"drive_path.py: {fit_for_message(in_words(error))}; the shapes are {', '.join(SHAPES)}")
     except (PathError, OSError) as error:
         sys.exit(f"drive_path.py: {fit_for_message(in_words(error))}")
-    try:
-        with running_node("drive_path") as signals:
-            reason = drive(points, given, signals)
-    except PathError as error:
-        sys.exit(f"drive_path.py: {error}")
+    with one_message("drive_path.py", PathError), running_node("drive_path") as signals:
+        reason = drive(points, given, signals)
     if reason:
         sys.exit(f"drive_path.py: {reason}")

@@ -91,7 +91,7 @@ class Server:
 
     def attend(self) -> None:
         """Notes a gap in which goals may have waited; it is called in every pass, whether a goal is driven or not."""
-        self._robot.watch.interruptions()
+        self._robot.watch.interrupted()
 
     def await_end(self) -> None:
         """Waits after a signal for the end of the goal that is driven."""

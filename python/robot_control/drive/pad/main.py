@@ -112,14 +112,12 @@ def drive(given: argparse.Namespace, signals: Signals) -> None:
     source = Source(pad, given.device, topic=given.joy)
     pad.start(time.monotonic())
     pace, said = Pace(topic.send), ""
-    watch, interruptions, view, refused = SafetyWatch(), 0, View("drive_state", "leg_state"), False
+    watch, view, refused = SafetyWatch(), View("drive_state", "leg_state"), False
     while signals.going_on():
         now = time.monotonic()
         with boundary.crossing("the pad"):
             source.poll(now)
-        count, why = watch.interruptions()
-        if count != interruptions:
-            interruptions = count
+        if why := watch.interrupted():
             pad.interrupt(now)
             rospy.logwarn(f"{why}: release the enable button once")
         before, refused = refused, view.refused

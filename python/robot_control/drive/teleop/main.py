@@ -18,6 +18,7 @@ from robot_control.drive.speed_limits import SpeedLimits
 from robot_control.drive.teleop.backlog import Backlog
 from robot_control.drive.teleop.screen import View, render
 from robot_control.drive.teleop.terminal import NoTerminalError, Terminal
+from robot_control.files.files import one_message
 from robot_control.robot.boundary import boundary
 from robot_control.robot.command import Command, Pace
 from robot_control.robot.command_topic import CommandTopic
@@ -30,6 +31,7 @@ from robot_control.robot.services import Services, in_words
 from robot_control.robot.topic_sender import Signals, ended_by_signals
 
 SOURCE = "key_vel"
+FIRST_HOLD = "s that the first byte of a key holds; more than the keyboard's delay until its first repeat"
 POLL_PERIOD = 0.02
 """s between two looks at keys and holds; a key is read at once"""
 HEARTBEAT_PERIOD = 0.1
@@ -51,7 +53,6 @@ class Teleop:
         )
         self._decoder = Decoder()
         self._listener, self._watch = Listener(), SafetyWatch()
-        self._interruptions = 0
         self._services = Services(self._watch)
         self._topic = CommandTopic(SOURCE)
         self._heartbeat = rospy.Publisher("heartbeat", Empty, queue_size=1, tcp_nodelay=True)
@@ -69,9 +70,7 @@ class Teleop:
         while signals.going_on():
             data = self._terminal.read(POLL_PERIOD)
             now = time.monotonic()
-            count, _ = self._watch.interruptions()
-            if count != self._interruptions:
-                self._interruptions = count
+            if self._watch.interrupted():
                 self._operator.interrupt(now)
             if self._take(data, now, late=backlog.late(data, now)):
                 return
@@ -151,37 +150,14 @@ def arguments(given: list[str]) -> argparse.Namespace:
         help="arrows: arrow keys and w a s d; "
         "classic: u i o j k l m , . of teleop_twist_keyboard (default %(default)s)",
     )
-    parser.add_argument(
-        "--linear",
-        type=positive,
-        default=0.5,
-        help="m/s, chosen speed, at most the robot's max_linear_speed (default %(default)s)",
-    )
-    parser.add_argument(
-        "--angular",
-        type=positive,
-        default=1.0,
-        help="rad/s, chosen speed, at most max_angular_speed (default %(default)s)",
-    )
-    parser.add_argument(
-        "--lateral",
-        type=positive,
-        default=0.3,
-        help="m/s sideways, chosen speed of a robot on legs, at most max_lateral_speed (default %(default)s)",
-    )
-    parser.add_argument(
-        "--first-hold",
-        type=positive,
-        default=HoldParameters.first_hold,
-        help="s that the first byte "
-        "of a key holds; more than the keyboard's delay until its first repeat (default %(default)s)",
-    )
-    parser.add_argument(
-        "--max-hold",
-        type=positive,
-        default=HoldParameters.max_hold,
-        help="s after which a key that was never released stops the robot (default %(default)s)",
-    )
+    for name, default, meaning in (
+        ("--linear", 0.5, "m/s, chosen speed, at most the robot's max_linear_speed"),
+        ("--angular", 1.0, "rad/s, chosen speed, at most max_angular_speed"),
+        ("--lateral", 0.3, "m/s sideways, chosen speed of a robot on legs, at most max_lateral_speed"),
+        ("--first-hold", HoldParameters.first_hold, FIRST_HOLD),
+        ("--max-hold", HoldParameters.max_hold, "s after which a key that was never released stops the robot"),
+    ):
+        parser.add_argument(name, type=positive, default=default, help=f"{meaning} (default %(default)s)")
     return parser.parse_args(given)
 
 
@@ -189,10 +165,7 @@ def main() -> None:
     """Entry point of scripts/teleop.py."""
     given = arguments(rospy.myargv(sys.argv)[1:])
     require_master()
-    try:
-        with Terminal() as terminal:
-            begin_node("teleop", anonymous=True)
-            with ended_by_signals() as signals:
-                Teleop(given, terminal).run(signals)
-    except NoTerminalError as error:
-        sys.exit(f"teleop.py: {error}")
+    with one_message("teleop.py", NoTerminalError), Terminal() as terminal:
+        begin_node("teleop", anonymous=True)
+        with ended_by_signals() as signals:
+            Teleop(given, terminal).run(signals)

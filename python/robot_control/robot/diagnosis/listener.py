@@ -2,7 +2,6 @@
 
 import time
 from collections.abc import Sequence
-from dataclasses import replace
 from typing import Any
 
 import rospy
@@ -10,7 +9,7 @@ from geometry_msgs.msg import Twist, TwistStamped
 from nav_msgs.msg import Odometry
 
 from robot_control.msg import SafetyStatus
-from robot_control.robot.boundary import Latest, subscribe
+from robot_control.robot.boundary import Latest
 from robot_control.robot.diagnosis.facts import below, nodes_of, other_robots, safety_of
 from robot_control.robot.diagnosis.recent import Diagnostics, values_of
 from robot_control.robot.diagnosis.state import SILENCE, Facts, Report, Safety, Speeds
@@ -31,14 +30,10 @@ class Listener:
         self._state: Sequence[Any] | None = None
         self._queried_at = 0.0
         self._registered = True  # with the present master, by all of its topics
-        self._safety: tuple[Safety, float, rospy.Time] | None = None  # when it came, and since when the state is held
+        self._safety = Latest("safety_status", SafetyStatus, check=lambda message: safety_of(message, 0.0, 0.0))
         self._reports = Diagnostics(SILENCE)
         self._limited, self._measured = Latest("cmd_vel_out", TwistStamped), Latest("odom", Odometry)
         self._parameters = LiveParameters()
-        subscribe("safety_status", SafetyStatus, self._receive_status)
-
-    def _receive_status(self, message: SafetyStatus) -> None:
-        self._safety = safety_of(message, 0.0, 0.0), time.monotonic(), message.since
 
     def query_master(self) -> None:
         """Queries the master at most every MASTER_PERIOD; waits up to ros_master.TIMEOUT.
@@ -83,19 +78,20 @@ class Listener:
             elsewhere=other_robots(self.namespace, reports),
             senders=senders_of(state[0], map(rospy.resolve_name, kind.request_topics), rospy.get_name()),
             clearance_senders=senders_of(state[0], [rospy.resolve_name("clearance")], rospy.get_name()),
-            limited=None if limited is None else _speeds(limited.twist),
-            measured=None if measured is None else _speeds(measured.twist.twist),
+            limited=None if limited is None else speeds_of(limited.twist),
+            measured=None if measured is None else speeds_of(measured.twist.twist),
             command_timeout=self._parameters.command_timeout,
         )
 
     def safety(self, now: float) -> Safety | None:
         """The last status of the monitor."""
-        if self._safety is None:
+        message, at = self._safety.newest
+        if message is None:
             return None
-        safety, at, since = self._safety
-        held = max(0.0, (rospy.Time.now() - since).to_sec()) if since else 0.0
-        return replace(safety, held=held, age=now - at)
+        held = max(0.0, (rospy.Time.now() - message.since).to_sec()) if message.since else 0.0
+        return safety_of(message, held, now - at)
 
 
-def _speeds(twist: Twist) -> Speeds:
+def speeds_of(twist: Twist) -> Speeds:
+    """Those of a message."""
     return (twist.linear.x, twist.angular.z, twist.linear.y)

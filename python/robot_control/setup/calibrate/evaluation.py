@@ -27,6 +27,8 @@ from robot_control.setup.calibrate.law import (
     return_errors,
     umbmark,
 )
+from robot_control.setup.overlay import to_yaml
+from robot_control.ui.table import table
 
 RATIO = (0.95, 1.05)
 BASE = (0.7, 1.3)
@@ -212,7 +214,7 @@ def evaluate(
         rows.append(
             ("right over left radius", "1", _with(1, truth.ratio, truth.ratio_deviation, unit=""), _factor(truth.ratio))
         )
-    lines = _columns(rows)
+    lines = table(rows)
     if squares:
         lines += ["", *_square_lines(squares, wheels, truth, side)]
     lines += [
@@ -226,7 +228,7 @@ def evaluate(
         *lines,
         *(f"! {sentence}" for sentence in said),
     ]
-    return Outcome(truth, "\n".join(lines), said, _yaml(head, overlay(robot, truth)))
+    return Outcome(truth, "\n".join(lines), said, to_yaml(head, overlay(robot, truth)))
 
 
 def overlay(robot: Mapping[str, Any], truth: Truth) -> dict[str, dict[str, float]]:
@@ -300,17 +302,3 @@ def _with(nominal: float, factor: float, deviation: float, unit: str = " m") -> 
 
 def _factor(factor: float) -> str:
     return f"{factor:.5f}"
-
-
-def _columns(rows: Sequence[tuple[str, ...]]) -> list[str]:
-    widths = [max(len(row[i]) for row in rows) for i in range(len(rows[0]))]
-    return ["  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip() for row in rows]
-
-
-def _yaml(head: Sequence[str], values: Mapping[str, Mapping[str, float]]) -> str:
-    text = "".join(f"# {line}".rstrip() + "\n" for line in head)
-    for block, keys in values.items():
-        text += f"{block}:\n" + "".join(
-            f"  {key}: {value:.7g}\n" if value != 1.0 else f"  {key}: 1.0\n" for key, value in keys.items()
-        )
-    return text

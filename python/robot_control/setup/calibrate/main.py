@@ -13,7 +13,7 @@ import rospy
 
 from robot_control import ParameterError, RobotError
 from robot_control._robot_control import describe as describe_robot
-from robot_control.files.files import fit_for_message, in_words, printable, write_text
+from robot_control.files.files import one_message, printable, write_text
 from robot_control.files.output_files import check_outputs
 from robot_control.loop.roles import CONTROLLER, ESTIMATOR
 from robot_control.robot.pose import Pose
@@ -238,7 +238,7 @@ class Wizard:
 def main() -> None:
     """Entry point of scripts/calibrate.py: exit code 0 with a YAML written, else 1 with one message."""
     options = parse_options(rospy.myargv(sys.argv)[1:])
-    try:
+    with one_message("calibrate.py", *REFUSALS):
         check_outputs([options.out])
         with running_settings("calibrate", ESTIMATOR, *OTHERWISE) as settings:
             with ended_by_signals() as signals:
@@ -250,8 +250,6 @@ def main() -> None:
         write_text(options.out, outcome.yaml)
         name = printable(str(options.out))
         print(f"wrote {name}: rosparam load it (in the robot's namespace), then restart every node")
-    except REFUSALS as error:
-        sys.exit(f"calibrate.py: {fit_for_message(in_words(error))}")
 
 
 OTHERWISE = ("and let the robot stand where it may drive", "as a tape measure does")

@@ -17,8 +17,9 @@ from robot_control.robot.send_plan import number_of_sends, positive
 from robot_control.settings.block import Settings
 from robot_control.setup.identify.excitation import AxisLimits, Excitation, plan_excitation
 from robot_control.setup.identify.fit import identify
-from robot_control.setup.identify.report import to_table, to_yaml, warnings
+from robot_control.setup.identify.report import to_table, warnings
 from robot_control.setup.identify.tuning_proposal import base_of, feed_forward, propose
+from robot_control.setup.overlay import to_yaml
 
 RIM_RESERVE = 0.9
 """Share of a joint's velocity limit; nearer to it the gate reduces the torque."""
@@ -114,7 +115,7 @@ def evaluate(log: Log, settings: Settings, mass: float | None, source: str) -> O
         *table.splitlines(),
         *(f"! {sentence}" for sentence in said),
     ]
-    return Outcome(table, said, to_yaml(proposal, head))
+    return Outcome(table, said, to_yaml(head, {CONTROLLER: proposal.overlay()}))
 
 
 def _robot(settings: Settings) -> dict[str, Any]:

@@ -9,7 +9,7 @@ import rospy
 
 from robot_control import ParameterError, RobotError
 from robot_control.data.run_log import FloatArray, LogError, kind_in, read_run
-from robot_control.files.files import escaped, fit_for_message, in_words, write_text
+from robot_control.files.files import escaped, one_message, write_text
 from robot_control.files.output_files import check_outputs
 from robot_control.loop.roles import CONTROLLER, refuse_legs
 from robot_control.robot.diagnosis.facts import nodes_of
@@ -49,7 +49,7 @@ REFUSALS = (
 def main() -> None:
     """Entry point of scripts/identify.py: exit code 0 with a YAML written, else 1 with one message."""
     options = parse_options(rospy.myargv(sys.argv)[1:])
-    try:
+    with one_message("identify.py", *REFUSALS):
         check_outputs([options.output], [options.log, options.params, options.urdf])
         if options.log is not None:
             run = read_run(options.log)
@@ -60,8 +60,6 @@ def main() -> None:
                 with ended_by_signals() as signals:
                     log = _drive(settings, options, signals)
                 _fit(log, settings, options, "driven")
-    except REFUSALS as error:
-        sys.exit(f"identify.py: {fit_for_message(in_words(error))}")
 
 
 def _fit(log: dict[str, FloatArray], settings: Settings, options: Options, source: str) -> None:

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
-from robot_control.loop.roles import CONTROLLER
 from robot_control.setup.identify.fit import Estimate, Identification
 from robot_control.setup.identify.tuning_proposal import RESERVE, Proposal
+from robot_control.ui.table import table
 
 UNLIKE = 0.2
 """Difference between the sides relative to their mean; a larger one is a defect of the machine"""
@@ -48,10 +48,7 @@ def to_table(
         ("gain margin", f"{proposal.margins_before.gain:.3g}", "", f"{proposal.margins_after.gain:.3g}"),
         ("delay margin, cycles", str(proposal.margins_before.delay), "", str(proposal.margins_after.delay)),
     ]
-    widths = [max(len(row[i]) for row in rows) for i in range(4)]
-    return "\n".join(
-        "  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip() for row in rows
-    )
+    return "\n".join(table(rows))
 
 
 def ground_friction(found: Identification, now: Sequence[Mapping[str, Any]]) -> Estimate | None:
@@ -93,28 +90,6 @@ def warnings(found: Identification, proposal: Proposal) -> list[str]:
                 "proposed for both. Look at gears, tyres, load"
             )
     return said
-
-
-def to_yaml(proposal: Proposal, lines: Iterable[str]) -> str:
-    """The overlay, below `lines` as comments."""
-    head = "".join(f"# {line}".rstrip() + "\n" for line in lines)
-    return head + f"{CONTROLLER}:\n" + "".join(_yaml_lines(proposal.overlay(), "  "))
-
-
-def _yaml_lines(tree: Mapping[str, Any], indent: str) -> Iterator[str]:
-    for key, value in tree.items():
-        if isinstance(value, Mapping):
-            yield f"{indent}{key}:\n"
-            yield from _yaml_lines(value, indent + "  ")
-        else:
-            yield f"{indent}{key}: {_float(value)}\n"
-
-
-def _float(value: float) -> str:
-    """A number that YAML 1.1, ROS' own, reads as a real one: 1.0e-05, not 1e-05."""
-    text = repr(float(value))
-    mantissa, exponent, power = text.partition("e")
-    return mantissa + (".0" if exponent and "." not in mantissa else "") + exponent + power
 
 
 def _number(value: float) -> str:

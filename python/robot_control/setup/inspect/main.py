@@ -7,7 +7,7 @@ import json
 import sys
 
 from robot_control._robot_control import DriverError, ParameterError, RobotError
-from robot_control.files.files import escaped, fit_for_message, given_path, in_words, write_text
+from robot_control.files.files import escaped, fit_for_message, given_path, one_message, write_text
 from robot_control.files.output_files import check_outputs
 from robot_control.setup.description import Description, describe, mjcf, stand
 from robot_control.setup.inspect.report import report
@@ -19,7 +19,7 @@ def main(arguments: list[str] | None = None) -> None:
     options = _parser().parse_args(arguments)
 
     fallen = None
-    try:
+    with one_message("inspect_robot.py", RobotError, ParameterError, DriverError, OSError, ValueError):
         check_outputs([options.mjcf, options.picture], [options.file, options.params])
         if options.picture is not None:
             check_picture(options.picture)
@@ -36,8 +36,6 @@ def main(arguments: list[str] | None = None) -> None:
             fallen = f"it does not stand: {error}"
         except ParameterError as error:
             fallen = f"it cannot be driven: {error}"
-    except (RobotError, ParameterError, DriverError, OSError, ValueError) as error:
-        sys.exit(f"inspect_robot.py: {fit_for_message(in_words(error))}")
     print(_json(robot) if options.json else report(robot))
     for written in (options.mjcf, options.picture):
         if written is not None:

@@ -8,6 +8,7 @@ from typing import Any
 
 from robot_control.files.files import escaped_lines
 from robot_control.setup.shapes import ground_height
+from robot_control.ui.table import table
 
 WIDTH = 110
 HEADINGS = {
@@ -78,7 +79,7 @@ def _wheels(robot: dict[str, Any]) -> list[str]:
                 f"{wheel['inertia']:.3g}",
             )
         )
-    return _table(rows, left=2)
+    return table(rows, left=2)
 
 
 def _legs(robot: dict[str, Any]) -> list[str]:
@@ -101,7 +102,7 @@ def _legs(robot: dict[str, Any]) -> list[str]:
             )
         )
     rotor = f"rotors             {robot['rotor_inertia']:.3g} kg·m² at each joint (robot.leg_rotor_inertia)"
-    return [*_table(rows, left=2), "", rotor]
+    return [*table(rows, left=2), "", rotor]
 
 
 def _base(robot: dict[str, Any]) -> list[str]:
@@ -122,14 +123,14 @@ def _casters(robot: dict[str, Any]) -> list[str]:
         )
         for caster in robot.get("casters", ())
     ]
-    return _table(rows, left=1) if robot.get("casters") else []
+    return table(rows, left=1) if robot.get("casters") else []
 
 
 def _joints(robot: dict[str, Any]) -> list[str]:
     others = [joint for joint in robot["joints"] if joint["role"] not in ("wheel", "leg")]
     rows: list[tuple[str, ...]] = [("other joint", "role", "type", "moves", "range")]
     rows += [(joint["name"], joint["role"], joint["type"], joint["link"], _range(joint)) for joint in others]
-    return _table(rows, left=5) if others else []
+    return table(rows, left=5) if others else []
 
 
 def _range(joint: dict[str, Any]) -> str:
@@ -155,15 +156,3 @@ def _notes(robot: dict[str, Any], kind: str) -> list[str]:
 
 def _vector(values: tuple[float, ...] | list[float]) -> str:
     return "(" + ", ".join(f"{value + 0.0:.4g}" for value in values) + ") m"
-
-
-def _table(rows: list[tuple[str, ...]], left: int) -> list[str]:
-    """Columns are as wide as their texts need; the first `left` are flush left, numbers flush right."""
-    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
-    return [
-        "  ".join(
-            cell.ljust(width) if column < left else cell.rjust(width)
-            for column, (cell, width) in enumerate(zip(row, widths, strict=True))
-        ).rstrip()
-        for row in rows
-    ]

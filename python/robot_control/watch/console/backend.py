@@ -22,7 +22,7 @@ from robot_control.robot.services import AGAIN, E_STOP, Answer, Services, in_wor
 from robot_control.watch.console.authority import Authority, Page
 from robot_control.watch.console.calls import CALLS, Calls, against
 from robot_control.watch.console.settings import Settings
-from robot_control.watch.console.view import View, finite
+from robot_control.watch.console.view import View, rounded
 
 SOURCE = "console_vel"
 HEARTBEAT_PERIOD = 0.1
@@ -47,7 +47,7 @@ class Backend:
         self._topic, self._age = CommandTopic(SOURCE), 0.0
         self._heartbeat = rospy.Publisher("heartbeat", Empty, queue_size=1, tcp_nodelay=True)
         self._pace = Pace(lambda command: self._topic.send(command, rospy.Time.now() - rospy.Duration(self._age)))
-        self._interruptions, self._beat_at = 0, float("-inf")
+        self._beat_at = -math.inf
         threading.Thread(target=self._query_master, daemon=True).start()
 
     def step(self) -> None:
@@ -57,9 +57,7 @@ class Backend:
         for answer in answers:
             if answer.service == E_STOP:
                 self._e_stop, self._e_stop_at = answer, now
-        count, why = self._watch.interruptions()
-        if count != self._interruptions:
-            self._interruptions = count
+        if why := self._watch.interrupted():
             self.authority.interrupt(now, why)
         if self.view.revoked(rospy.get_name()):
             self.authority.refuse(now)
@@ -100,7 +98,7 @@ class Backend:
         """The values that this page shows of itself and of the others."""
         now, commander = time.monotonic(), self.authority.commander
         dead_man, limits = page.dead_man, self._limits.newest()
-        return finite(
+        return rounded(
             {
                 "type": "authority",
                 "you": page.number,

@@ -5,17 +5,18 @@ from __future__ import annotations
 import dataclasses
 import math
 import time
-from collections.abc import Iterable
 from typing import Any
 
 from geometry_msgs.msg import TwistStamped
 from nav_msgs.msg import Odometry, Path
 from sensor_msgs.msg import JointState
 
+from robot_control.files.json_values import finite
 from robot_control.msg import DriveState, FollowPathActionFeedback, LegState, RobotStatus
 from robot_control.robot.boundary import Latest, subscribe
 from robot_control.robot.command import Command
 from robot_control.robot.diagnosis.diagnosis import judge, missing_nodes
+from robot_control.robot.diagnosis.listener import speeds_of
 from robot_control.robot.diagnosis.state import Facts
 from robot_control.robot.pose import pose_of
 from robot_control.robot.view import SILENCES
@@ -63,7 +64,7 @@ class View:
     def _receive_wanted(self, message: Path) -> None:
         poses = message.poses[:: max(1, math.ceil(len(message.poses) / MAX_PATH))]
         points = [(each.pose.position.x, each.pose.position.y) for each in poses]
-        values = finite({"type": "wanted", "frame": message.header.frame_id, "points": points})
+        values = rounded({"type": "wanted", "frame": message.header.frame_id, "points": points})
         self.wanted = time.monotonic(), values
 
     def fast(self, asked: Command | None) -> Values:
@@ -75,16 +76,16 @@ class View:
             "type": "fast",
             "ages": {name: topic.age(now) for name, topic in self._topics.items()},
             "asked": None if asked is None else [asked.linear, asked.angular, asked.lateral],
-            "limited": None if newest["limited"] is None else _speeds(newest["limited"].twist),
+            "limited": None if newest["limited"] is None else speeds_of(newest["limited"].twist),
             "joints": {} if joints is None else dict(zip(joints.name, joints.position, strict=False)),
         }
         if odometry is not None:
             pose, covariance = _pose(odometry), odometry.pose.covariance
             self.trail.add(pose[0], pose[1])
-            values |= {"pose": pose, "measured": _speeds(odometry.twist.twist)}
+            values |= {"pose": pose, "measured": speeds_of(odometry.twist.twist)}
             values["covariance"] = (covariance[0], covariance[1], covariance[7])
         if truth is not None:
-            values |= {"truth": _pose(truth), "true": _speeds(truth.twist.twist)}
+            values |= {"truth": _pose(truth), "true": speeds_of(truth.twist.twist)}
         if drive is not None:
             rows = zip(drive.name, drive.error, drive.effort, strict=False)
             values["driven"] = [{"name": name, "error": error, "effort": effort} for name, error, effort in rows]
@@ -94,7 +95,7 @@ class View:
                 {"name": name, "error": wanted - actual, "effort": effort}
                 for name, wanted, actual, effort in zip(legs.name, legs.wanted, legs.actual, legs.effort, strict=False)
             ]
-        return finite(values)
+        return rounded(values)
 
     def slow(self, facts: Facts) -> Values:
         """The values that change rarely: state, causes, remedies, senders."""
@@ -103,7 +104,7 @@ class View:
         feedback, revoked, status = self._topics["feedback"], drive or legs, self._status.message
         way = None if feedback.message is None else feedback.message.feedback
         progress = {} if way is None else {name: getattr(way, name) for name in PROGRESS}
-        return finite(
+        return rounded(
             {
                 "type": "slow",
                 "master": facts.master_answers,
@@ -138,10 +139,6 @@ def _pose(odometry: Odometry) -> tuple[float, float, float]:
     return pose.x, pose.y, pose.yaw
 
 
-def _speeds(twist: Any) -> tuple[float, float, float]:  # noqa: ANN401 (geometry_msgs)
-    return twist.linear.x, twist.angular.z, twist.linear.y
-
-
 def legs_of(message: LegState) -> Values:
     """Posture, gait and feet."""
     feet = zip(message.foot, message.bears, message.load, strict=False)
@@ -154,16 +151,6 @@ def legs_of(message: LegState) -> Values:
     }
 
 
-def finite(values: Values) -> Values:
+def rounded(values: Values) -> Values:
     """The same with null for numbers that are not finite, and five decimals."""
-    return {key: _finite(value) for key, value in values.items()}
-
-
-def _finite(value: Any) -> Any:  # noqa: ANN401 (any value of JSON)
-    if isinstance(value, float):
-        return round(value, 5) if math.isfinite(value) else None
-    if isinstance(value, dict):
-        return finite(value)
-    if isinstance(value, str) or not isinstance(value, Iterable):
-        return value
-    return [_finite(each) for each in value]
+    return {key: finite(value, digits=5) for key, value in values.items()}

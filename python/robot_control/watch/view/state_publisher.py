@@ -16,6 +16,7 @@ import roslib.packages
 import rospkg
 import rospy
 
+from robot_control.files.files import one_message
 from robot_control.robot.ros_master import require_master
 from robot_control.robot.ros_node import begin_node
 from robot_control.robot.server_values import ServerValueError, server_description
@@ -80,10 +81,8 @@ def main() -> None:
     require_master()
     begin_node(PROGRAM)
     own, name = rospy.resolve_name("~robot_description"), rospy.resolve_name("robot_description")
-    try:
+    with one_message("state_publisher.py", ServerValueError):
         description = await_description()
-    except ServerValueError as error:
-        sys.exit(f"state_publisher.py: {error}")
     if not description:
         return
     rospy.set_param(own, for_transforms(description))
