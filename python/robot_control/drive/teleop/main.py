@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import argparse
 import sys
-import threading
 import time
 
 import rospy
@@ -22,7 +21,7 @@ from robot_control.files.files import one_message
 from robot_control.robot.boundary import boundary
 from robot_control.robot.command import Command, Pace
 from robot_control.robot.command_topic import CommandTopic
-from robot_control.robot.diagnosis.listener import MASTER_PERIOD, Listener
+from robot_control.robot.diagnosis.listener import Listener
 from robot_control.robot.ros_master import require_master
 from robot_control.robot.ros_node import begin_node
 from robot_control.robot.safety_watch import SafetyWatch
@@ -60,7 +59,7 @@ class Teleop:
         self._beat_at = self._drawn_at = float("-inf")
         self._answer = ""
         self._releases = False
-        threading.Thread(target=self._query_master, daemon=True).start()
+        self._listener.follow_master()
 
     def run(self, signals: Signals) -> None:
         """Runs until Ctrl-C, a signal, or the end of the terminal (NoTerminalError)."""
@@ -126,12 +125,6 @@ class Teleop:
         )
         _, height = self._terminal.size()
         self._terminal.draw(render(self._listener.facts(), view, height))
-
-    def _query_master(self) -> None:
-        while True:
-            with boundary.crossing("the master"):
-                self._listener.query_master()
-            time.sleep(MASTER_PERIOD)
 
 
 def arguments(given: list[str]) -> argparse.Namespace:

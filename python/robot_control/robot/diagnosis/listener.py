@@ -1,7 +1,8 @@
 """Receives the messages of the robot and the answers of the master, as facts for a diagnosis."""
 
+import threading
 import time
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import rospy
@@ -9,7 +10,7 @@ from geometry_msgs.msg import Twist, TwistStamped
 from nav_msgs.msg import Odometry
 
 from robot_control.msg import SafetyStatus
-from robot_control.robot.boundary import Latest
+from robot_control.robot.boundary import Latest, boundary
 from robot_control.robot.diagnosis.facts import below, nodes_of, other_robots, safety_of
 from robot_control.robot.diagnosis.recent import Diagnostics, values_of
 from robot_control.robot.diagnosis.state import SILENCE, Facts, Report, Safety, Speeds
@@ -48,6 +49,18 @@ class Listener:
         self._state = self.master.state()
         if self._state is not None and not (self._registered and rospy.get_name() in nodes_of(self._state)):
             self._registered = self.master.register_again()
+
+    def follow_master(self, then: Callable[[], None] = lambda: None) -> None:
+        """Queries the master in a thread of its own from now on; `then` is called after each query."""
+
+        def work() -> None:
+            while True:
+                with boundary.crossing("the master"):
+                    self.query_master()
+                    then()
+                time.sleep(MASTER_PERIOD)
+
+        threading.Thread(target=work, daemon=True).start()
 
     def complete(self) -> bool:
         """True if every node of the loop has reported."""

@@ -22,6 +22,10 @@ class Verdict(enum.Enum):
     FAULT = "FAULT"
     """The robot cannot work as it is configured."""
 
+    def __call__(self, value: str, remedy: str = "", *commands: str) -> Finding:
+        """A finding with this verdict."""
+        return Finding(self, value, remedy, commands)
+
 
 @dataclass(frozen=True)
 class Finding:
@@ -43,26 +47,4 @@ class Check:
     examine: Callable[[System], Finding]
 
 
-def ok(value: str) -> Finding:
-    """The property is as it should be."""
-    return Finding(Verdict.OK, value)
-
-
-def note(value: str, remedy: str, *commands: str) -> Finding:
-    """The property could be better."""
-    return Finding(Verdict.NOTE, value, remedy, commands)
-
-
-def warning(value: str, remedy: str, *commands: str) -> Finding:
-    """The property disturbs the robot at times."""
-    return Finding(Verdict.WARNING, value, remedy, commands)
-
-
-def fault(value: str, remedy: str, *commands: str) -> Finding:
-    """The property prevents the robot from working."""
-    return Finding(Verdict.FAULT, value, remedy, commands)
-
-
-def unseen(value: str) -> Finding:
-    """The property is not visible here."""
-    return Finding(Verdict.UNSEEN, value)
+ok, note, warning, fault, unseen = Verdict.OK, Verdict.NOTE, Verdict.WARNING, Verdict.FAULT, Verdict.UNSEEN

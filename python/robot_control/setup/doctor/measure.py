@@ -19,6 +19,7 @@ import time
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from statistics import median
 
 from robot_control.data.loop_timing import loop_timing
 from robot_control.data.run_log import LogError, read_log
@@ -88,7 +89,7 @@ def judge(pairs: Sequence[Pair], period: float) -> Finding:
         return unseen("nothing was measured")
     ratios = sorted(pair.nodes / pair.cyclictest for pair in pairs)
     lowest, highest = interval(ratios)
-    own, reference = (median(sorted(values)) for values in zip(*((p.nodes, p.cyclictest) for p in pairs), strict=True))
+    own, reference = (median(values) for values in zip(*((p.nodes, p.cyclictest) for p in pairs), strict=True))
     value = (
         f"p99 {own:.0f} µs, cyclictest {reference:.0f} µs, ratio {median(ratios):.2f} "
         f"({lowest:.2f} … {highest:.2f}, {len(pairs)} pairs of {SECONDS} s)"
@@ -105,12 +106,6 @@ def judge(pairs: Sequence[Pair], period: float) -> Finding:
     if own > MAX_SHARE * period:
         return note(value, "lower robot.rate, or follow docs/realtime.md")
     return ok(value)
-
-
-def median(ordered: Sequence[float]) -> float:
-    """The median of an ordered sequence."""
-    middle = len(ordered) // 2
-    return ordered[middle] if len(ordered) % 2 else (ordered[middle - 1] + ordered[middle]) / 2
 
 
 def interval(ordered: Sequence[float]) -> tuple[float, float]:

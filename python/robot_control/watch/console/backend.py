@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import asyncio
 import math
-import threading
 import time
 from typing import Any
 
@@ -12,10 +11,9 @@ import rospy
 from std_msgs.msg import Empty
 
 from robot_control.drive.speed_limits import SpeedLimits
-from robot_control.robot.boundary import boundary
 from robot_control.robot.command import Pace
 from robot_control.robot.command_topic import CommandTopic
-from robot_control.robot.diagnosis.listener import MASTER_PERIOD, Listener
+from robot_control.robot.diagnosis.listener import Listener
 from robot_control.robot.robot_kind import running_kind
 from robot_control.robot.safety_watch import SafetyWatch
 from robot_control.robot.services import AGAIN, E_STOP, Answer, Services, in_words
@@ -48,7 +46,7 @@ class Backend:
         self._heartbeat = rospy.Publisher("heartbeat", Empty, queue_size=1, tcp_nodelay=True)
         self._pace = Pace(lambda command: self._topic.send(command, rospy.Time.now() - rospy.Duration(self._age)))
         self._beat_at = -math.inf
-        threading.Thread(target=self._query_master, daemon=True).start()
+        self.listener.follow_master(self._note_services)
 
     def step(self) -> None:
         """One pass: receives what the robot reports, and sends the command."""
@@ -125,10 +123,5 @@ class Backend:
             }
         )
 
-    def _query_master(self) -> None:
-        while True:
-            with boundary.crossing("the master"):
-                self.listener.query_master()
-                forgotten = self.listener.facts().forgotten
-                self.available = None if forgotten else self.listener.services()
-            time.sleep(MASTER_PERIOD)
+    def _note_services(self) -> None:
+        self.available = None if self.listener.facts().forgotten else self.listener.services()
