@@ -32,7 +32,7 @@ class Listener:
         self._queried_at = 0.0
         self._registered = True  # with the present master, by all of its topics
         self._safety = Latest("safety_status", SafetyStatus, check=lambda message: safety_of(message, 0.0, 0.0))
-        self._reports = Diagnostics(SILENCE)
+        self._reports = Diagnostics()
         self._limited, self._measured = Latest("cmd_vel_out", TwistStamped), Latest("odom", Odometry)
         self._parameters = LiveParameters()
 

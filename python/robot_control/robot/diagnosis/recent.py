@@ -8,6 +8,7 @@ import time
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 
 from robot_control.robot.boundary import subscribe
+from robot_control.robot.diagnosis.state import SILENCE
 
 MAX_NAMES, MAX_SIZE, MAX_SENDERS = 100, 1 << 16, 100
 """names of one sender, bytes of its reports, senders; a node of this robot reports 4 kB under one name"""
@@ -22,7 +23,7 @@ class Diagnostics:
     one of many names displaces no report of another one.
     """
 
-    def __init__(self, life: float) -> None:
+    def __init__(self, life: float = SILENCE) -> None:
         """`life`: s for which a report counts."""
         self._life, self._lock = life, threading.Lock()
         self._senders: dict[str, dict[str, tuple[float, DiagnosticStatus, int]]] = {}

@@ -19,9 +19,6 @@ from robot_control.watch.latency.figures import Figures, figures_of, table
 
 FRAME = 1.0
 """s between two tables; nodes report once per second"""
-SILENCE = 3.0
-"""s; the values of a node that reports no longer are not shown"""
-
 FIGURE = "period_10s_us"
 """Key of a report with figures"""
 MAX_SAMPLES = 1_000_000
@@ -32,7 +29,7 @@ class Listener:
     """Keeps the newest values of each node with figures, and all figures for the plot."""
 
     def __init__(self) -> None:
-        self._reports = Diagnostics(SILENCE)
+        self._reports = Diagnostics()
         self._start = time.monotonic()
         self.samples: deque[tuple[float, str, dict[str, Figures]]] = deque(maxlen=MAX_SAMPLES)
         subscribe("/diagnostics", DiagnosticArray, self._receive, queue_size=100)

@@ -15,7 +15,6 @@ from robot_control.msg import RobotStatus
 from robot_control.robot.boundary import boundary
 from robot_control.robot.diagnosis.facts import below
 from robot_control.robot.diagnosis.recent import Diagnostics
-from robot_control.robot.diagnosis.state import SILENCE
 from robot_control.robot.robot_kind import running_kind
 from robot_control.robot.ros_node import running_node
 from robot_control.robot.view import View
@@ -36,7 +35,7 @@ class Status:
         self._version = ET.parse(share_file("package.xml")).findtext("version", "")
         self._published_at = -math.inf
         self._view = View("safety_status", "drive_state", "leg_state")
-        self._reports = Diagnostics(SILENCE)
+        self._reports = Diagnostics()
         self._published = RobotStatus()
         self._publisher = rospy.Publisher("robot_status", RobotStatus, queue_size=1, latch=True)
 
