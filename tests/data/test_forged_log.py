@@ -28,7 +28,7 @@ def log(tmp_path_factory):
 def forged(log, folder, edit, later=0):
     """A copy in which `edit(topic, message)` changes each message, or leaves it out by False; all are `later`, s."""
     changed = folder / "changed.bag"
-    with rosbag.Bag(str(log)) as source, rosbag.Bag(str(changed), "w") as target:
+    with rosbag.Bag(str(log)) as source, rosbag.Bag(str(changed), "w", compression="lz4") as target:
         for topic, message, time in source.read_messages():
             if edit(topic, message) is not False:
                 target.write(topic, message, type(time)(time.secs + later, time.nsecs))
@@ -159,7 +159,7 @@ def test_a_period_of_no_loop_is_refused_in_one_sentence(timeless_log, monkeypatc
 
 def test_a_log_of_another_layout_is_refused_with_the_version_that_wrote_it_and_the_remedy(log, tmp_path, capsys):
     other = tmp_path / "other.bag"
-    with rosbag.Bag(str(log)) as source, rosbag.Bag(str(other), "w") as target:
+    with rosbag.Bag(str(log)) as source, rosbag.Bag(str(other), "w", compression="lz4") as target:
         version = ""
         for topic, message, time in source.read_messages(raw=True):
             name, data, md5sum, _, kind = message

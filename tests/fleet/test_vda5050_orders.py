@@ -5,6 +5,7 @@ import re
 from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 import pytest
 from robot_control.fleet.v2.capability import Capabilities
 from robot_control.fleet.v2.curve import CurveError, points_of
@@ -519,6 +520,13 @@ def test_a_straight_edge_of_any_length_follows_a_curve():
         run.until_over()
         assert kinds(run.state) == []
         assert (run.robot.pose.x, run.robot.pose.y) == pytest.approx((1.0, 1.0 + length), abs=0.02)
+    for angle in np.arange(0.0, 1.6, 0.016):  # rounding may make a piece of whole metres longer than they are
+        run = Run()
+        message = order([(0.0, 0.0), (1.0, 1.0), (1.0 + 5 * math.sin(angle), 1.0 + 5 * math.cos(angle))])
+        message["edges"][0]["trajectory"] = arc
+        run.send(message)
+        run.step(0.1)
+        assert kinds(run.state) == [], angle
 
 
 def test_a_trajectory_is_a_nurbs():

@@ -163,6 +163,18 @@ def test_a_reset_that_waited_too_long_behind_a_silent_service_is_dropped(robot, 
     assert not answers[1].accepted
 
 
+def test_an_emergency_stop_that_the_topic_has_answered_is_not_answered_again_by_a_late_service(robot, monkeypatch):
+    monkeypatch.setattr(module, "PATIENCE", 0.0)
+    robot.answers = False
+    services, answers = Services(robot.watch), []
+    services.e_stop()
+    wait_for(lambda: answers.extend(services.poll()) or answers)
+    robot.answers = True
+    services.reset()
+    wait_for(lambda: answers.extend(services.poll()) or answers[-1].service == "e_stop_reset")
+    assert [answer.service for answer in answers] == [module.E_STOP, "e_stop_reset"]
+
+
 def stopped_by(*causes, namespace="/"):
     return Facts(master="http://localhost:11311", namespace=namespace, safety=Safety("STOPPED", "brake", causes=causes))
 

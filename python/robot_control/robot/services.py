@@ -104,6 +104,8 @@ class Services:
                 self._refusal = answer.text
                 continue
             if answer.service == E_STOP:
+                if self._e_stop_at is None:  # the topic has answered it
+                    continue
                 self._e_stop_at = None
             elif not answer.accepted and not self._topic_said_true:
                 # A restarted safety_monitor holds the topic true for a publisher that it does not know and that is

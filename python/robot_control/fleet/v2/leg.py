@@ -27,6 +27,8 @@ END_GAP = 0.1
 """m that the ends of a trajectory may lie off their nodes"""
 SHORTEST = 0.02
 """m of an edge that is driven; a shorter one has no length"""
+STEP = JUMP / 2
+"""m between points beside a curve, at most"""
 SLOWEST = FollowParameters.slowest
 """m/s, rad/s that follow_path keeps"""
 
@@ -171,7 +173,7 @@ class Leg:
             PathPoint(ax + (bx - ax) * part / parts, ay + (by - ay) * part / parts, *way.limits(number, fastest))
             for way in self.ways
             for number, ((ax, ay), (bx, by)) in enumerate(pairwise(way.points))
-            for parts in [1 + int(math.dist((ax, ay), (bx, by)) / JUMP) if dense else 1]
+            for parts in [math.ceil(math.dist((ax, ay), (bx, by)) / STEP) if dense else 1]
             for part in range(parts)
         ]
         last, place = self.ways[-1], self.nodes[-1].place
