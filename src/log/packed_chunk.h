@@ -83,7 +83,7 @@ struct PackedChunk {
   std::map<std::uint32_t, std::uint32_t> count = {};  ///< messages by connection
 };
 
-/// Of the compression: a thorough one needs ten times as long for two thirds of the bytes.
+/// A thorough compression needs ten times as long for two thirds of the bytes.
 enum class Effort { kFast = 0, kThorough = 3 };  // LZ4 has levels 0 … 12; the thorough ones begin at 3
 
 /// Collects messages for a chunk.

@@ -1,4 +1,4 @@
-"""Where the black boxes of a robot lie, and those that telemetry has saved."""
+"""The places of a robot's black boxes, and those that telemetry has saved."""
 
 from __future__ import annotations
 

@@ -86,7 +86,7 @@ class BagFile:
             yield message, time_ns
 
     def _read(self, topics: list[str]) -> Iterator[tuple[int, int, bytes]]:
-        """What read_bag.py writes, without the end."""
+        """The messages that read_bag.py writes, without the end."""
         command = [sys.executable, "-P", "-m", "robot_control.files.read_bag", utf8(self._path), *topics]
         environment = os.environ | {"PYTHONPATH": os.pathsep.join(sys.path)}
         with subprocess.Popen(

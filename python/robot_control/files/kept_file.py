@@ -1,4 +1,4 @@
-"""What a program keeps over its end, or over a loss of power at any moment: a value of JSON in a file.
+"""A value of JSON in a file, which a program keeps over its end, or over a loss of power at any moment.
 
 The first line is the digest of the second one, so that nothing is taken from a file that was damaged or is another.
 """

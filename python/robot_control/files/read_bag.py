@@ -1,7 +1,7 @@
 """Writes the messages of a ROS bag to standard output: python3 -m robot_control.files.read_bag FILE [TOPIC …].
 
 Debian's rosbag trusts a bag: 11 kB of bz2 inflate to 6.4 GB. So it reads in this process, which has limits of memory
-and of processor time, and as far as the kernel permits that no network, changes no file and starts no program.
+and of processor time. As far as the kernel permits it uses no network, changes no file and starts no program.
 bag_file.py starts it. Each message is `FRAME` (number of its connection, time of reception in ns, bytes) and its data.
 The first one is HEAD, the last one END or ERROR.
 """

@@ -207,7 +207,7 @@ def unsealed(kind: type, not_finite: Collection[str] = ()) -> type:
 
 def guard_action(name: str, **kinds: type) -> None:
     """The topics of an action arrive as these types, by their last names, at the client or server that is made after
-    this: of the types with which a process subscribes to one topic rospy takes the first. A latched message is lost.
+    this. A process may subscribe to one topic with several types; rospy takes the first. A latched message is lost.
     """
     for topic, kind in kinds.items():
         rospy.Subscriber(f"{rospy.remap_name(name)}/{topic}", kind, None)

@@ -53,7 +53,7 @@ BY_DEFAULT = {bool: FLAG, str: TEXT, tuple: list_of(TEXT)}
 
 
 def rules_of(settings: type, **own: Rule) -> dict[str, Rule]:
-    """Of each field of a dataclass: its own, or that of the type of its default."""
+    """The rule of each field of a dataclass: its own, or that of the type of its default."""
     return {each.name: own.get(each.name) or BY_DEFAULT[type(each.default)] for each in fields(settings)}
 
 

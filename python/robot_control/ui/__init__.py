@@ -1,1 +1,1 @@
-"""What the programs print and draw, and how they end."""
+"""Pictures, tables and ends of programs."""

@@ -4,8 +4,9 @@
 /// The 11-bit identifier is node (6 bits) << 5 | command (5 bits). Data are little-endian. A remote request under the
 /// identifier of a message makes the axis send it now. A message has 8 bytes, as in the DBC files, or what its layout
 /// uses if that is at most one byte. The torque of each cycle has the 4 bytes that it uses, which both firmwares
-/// accept. Numbers are not checked: NaN in a frame is NaN in the message. Sources: tests/fixtures/odrive-cansimple-*.dbc;
-/// ODrive firmware 0.5.6, communication/can/can_simple.cpp; ros_odrive, can_simple_messages.hpp (0.6).
+/// accept. Numbers are not checked: NaN in a frame is NaN in the message. Sources:
+/// tests/fixtures/odrive-cansimple-*.dbc; ODrive firmware 0.5.6, communication/can/can_simple.cpp; ros_odrive,
+/// can_simple_messages.hpp (0.6).
 
 #include <cstdint>
 #include <optional>

@@ -3,8 +3,8 @@
 ///
 ///   folder/N.bag  a bag of a fixed size: its begin (connections, header), a chunk for each `flush`, then zeros
 ///
-/// What `flush` has written is in the kernel's page cache: it survives the end of the process by any signal, and
-/// reaches the disk with the next writeback. A kill leaves at most one incomplete chunk, the last one. The space of all
+/// `flush` writes into the kernel's page cache. That survives the end of the process by any signal, and reaches the
+/// disk with the next writeback. A kill leaves at most one incomplete chunk, the last one. The space of all
 /// bags is reserved at the start, so that no flush meets a full disk. The oldest bag is filled with zeros and written
 /// again; TraceHeader::part gives their order. The folder is locked while it is written; the lock of a killed process
 /// ends with it. The file `ended` marks an orderly end.

@@ -270,7 +270,7 @@ SavedBlackBox save_black_box(const std::string& path, const std::string& bag, co
   };
   const Ring ring(path);
   Growing growing(bag);
-  // What is missing between the rows is known after they were read, and stands in the header.
+  // Gaps between the rows are known after they were read, and stand in the header.
   std::string missing = missing_in(ring, "");
   for (bool again = false;; again = true) {
     LogFolder logs(growing.folder(), 0);

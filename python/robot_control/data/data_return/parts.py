@@ -86,7 +86,8 @@ def remove(path: Path, known: os.stat_result) -> None:
 
 
 def renamed(path: Path, new: Path) -> bool:
-    """False if the new name exists already. Where the file system cannot tell at that moment, it was looked up before.
+    """False if the new name exists already. A file system that cannot tell at that moment was
+    asked before.
 
     Raises:
         OSError: it cannot be renamed.

@@ -189,7 +189,7 @@ class Vehicle:
     # instant actions
 
     def add_instant(self, action: Action) -> ActionState | None:
-        """Its state, triggered; None if an action of this id is here already: it came twice. Where too many are not
+        """Its state, triggered; None if an action of this id is here already: it came twice. If too many are not
         over, one that concerns the order itself takes the place of the oldest one of its kind.
 
         Raises:
