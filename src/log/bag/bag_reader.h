@@ -4,8 +4,9 @@
 ///
 /// The file may come from anywhere. Records, header fields, chunk sizes, compression, connection records and the chunk
 /// list at the end are compared with each other. Times rise from chunk to chunk. The first contradiction refuses the
-/// whole bag with byte and field. The index behind each chunk but the last is compared by presence and first time only. Memory is bounded by kMaxChunk (twice), kMaxConnections and the size of the file, time by that size,
-/// because LZ4 inflates to 255 times at most.
+/// whole bag with byte and field. The index behind each chunk but the last is compared by presence and first time only.
+/// Memory is bounded by kMaxChunk (twice), kMaxConnections and the size of the file, time by that size, because LZ4
+/// inflates to 255 times at most.
 ///
 /// A bag without a valid end is accepted, because its writer may have been killed, the disk full or a copy interrupted.
 /// Then `index_pos` is 0 or behind the end of the file, or the file ends in the list behind the chunks. Everything
