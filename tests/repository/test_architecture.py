@@ -364,7 +364,7 @@ def test_the_core_speaks_of_roles():
 
 
 def test_the_tools_speak_of_roles():
-    """Texts of the tools take program names from common/roles.py; docstrings may name a block of parameters."""
+    """Texts of the tools take program names from loop/roles.py; docstrings may name a block of parameters."""
     named = []
     for path in (ROOT / "python" / "robot_control").rglob("*.py"):
         tree = ast.parse(path.read_text())

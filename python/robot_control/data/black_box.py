@@ -15,7 +15,7 @@ INCIDENT = re.compile(r"(stop|crash)\.\d+\.bag")
 
 
 def ring_of(path: Path) -> Path:
-    """The newest black box of a folder of logs, or `path` itself where it is a file.
+    """The newest black box of a folder of logs, or `path` itself where it is one, or no folder.
 
     Raises:
         FileNotFoundError: there is none.

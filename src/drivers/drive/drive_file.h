@@ -1,7 +1,7 @@
 #pragma once
 /// A DriveFile holds what the drive file states about the drives of one robot: a block about their line, and one block
-/// per joint. Each drive of drive_table.def has its own, with its keys and the rules across them. It
-/// is read by drivers/table/read_drive_file.h, and makes the driver.
+/// per joint. Each drive of drive_table.def has its own, with its keys and the rules across them. It is read by
+/// drivers/table/read_drive_file.h, and makes the driver.
 
 #include <cstdint>
 #include <functional>

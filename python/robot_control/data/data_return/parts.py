@@ -86,8 +86,7 @@ def remove(path: Path, known: os.stat_result) -> None:
 
 
 def renamed(path: Path, new: Path) -> bool:
-    """False if the new name exists already. A file system that cannot tell at that moment was
-    asked before.
+    """False if the new name exists already. A file system without RENAME_NOREPLACE is asked for that name just before.
 
     Raises:
         OSError: it cannot be renamed.
