@@ -62,13 +62,13 @@ inline LeaningWalk leaning_walk(const LegModel& model, const Parameters& paramet
   return result;
 }
 
-/// Returns the robot with first joints that need 0.6 of their torque for half of the weight, as in a trot in place.
+/// Returns the robot with first joints that need 0.97 of their torque for half of the weight, as in a trot in place.
 inline LegModel with_weak_hips(LegModel robot) {
   for (std::size_t leg = 0; leg < kLegs; ++leg) {
     const LegKinematics& kinematics = robot.legs[leg].kinematics;
     const double lever = std::abs(kinematics.position(robot.legs[leg].lying).y() - kinematics.geometry().hip.y());
     double& limit = robot.joints[kLegJoints * leg].effort_limit;
-    limit = std::min(limit, robot.mass * 9.81 / 2 * lever / 0.6);
+    limit = std::min(limit, robot.mass * 9.81 / 2 * lever / 0.97);
   }
   return robot;
 }

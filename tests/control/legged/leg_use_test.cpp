@@ -34,8 +34,16 @@ TEST_F(LegUseTest, IsInfiniteWhereALegReachesItsFootNoMore) {
 /// The hip bears half of the weight beside its axis, in a trot on the spot.
 TEST_F(LegUseTest, CountsTheTorqueOfHalfOfTheWeight) {
   const double lever = std::abs(stance.feet[0].y() - robot.legs[0].kinematics.geometry().hip.y());
-  robot.joints[0].effort_limit = robot.mass * kGravity / 2 * lever / (2 * kOfWeight);
+  robot.joints[0].effort_limit = robot.mass * kGravity / 2 * lever / (2 * kOfEffort);
   EXPECT_NEAR(steady({}), 2 * kOfJointSpeed, 1e-6);
+}
+
+/// Forces through the centre of gravity load a hip in the same way wherever the feet of a walk to the side are; those
+/// of a turn are farther from it.
+TEST_F(LegUseTest, HipsBearAWalkToTheSideAsTheyBearTheRobotOnTheSpot) {
+  for (std::size_t leg = 0; leg < kLegs; ++leg) robot.joints[kLegJoints * leg].effort_limit /= 8;
+  EXPECT_NEAR(steady({0, 0.3, 0}) / steady({}), 1, 0.03);
+  EXPECT_GT(steady({0, 0, 1}) / steady({}), 1.1);
 }
 
 /// The feet stay where they are while the body moves through the pose.

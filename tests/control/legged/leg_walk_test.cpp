@@ -448,6 +448,7 @@ TEST(LegWalk, AsksForNoMoreSpeedThanTheLegsCarryInThePoseInForce) {
 TEST(LegWalk, TakesOfAPoseWhatTheLegsCarryInTheGaitOfNow) {
   LegModel weak = lopsided();
   for (JointModel& joint : weak.joints) joint.effort_limit *= 0.49;
+  for (std::size_t leg = 0; leg < kLegs; ++leg) weak.joints[kLegJoints * leg].effort_limit *= 0.68;
   const NominalStance stance = nominal_stance(weak);
   const LegUse use(weak, stance);
   const auto used = [&](GaitName gait, const WalkingTwist& twist, const CarriedBody& body) {

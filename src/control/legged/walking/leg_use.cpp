@@ -14,6 +14,7 @@ namespace robot_control {
 namespace {
 
 constexpr double kOutOfReach = std::numeric_limits<double>::infinity();
+const Eigen::Vector3d kNoForce = Eigen::Vector3d::Zero();
 
 }  // namespace
 
@@ -26,7 +27,7 @@ LegUse::LegUse(const LegModel& robot, const NominalStance& stance) noexcept
   for (std::size_t leg = 0; leg < kLegs; ++leg) legs_[leg] = robot.legs[leg].kinematics;
   for (std::size_t i = 0; i < kLegsJoints; ++i) {
     speeds_[i] = robot.joints[i].velocity_limit;
-    efforts_[i] = kOfWeight / kOfJointSpeed * robot.joints[i].effort_limit;
+    efforts_[i] = kOfEffort / kOfJointSpeed * robot.joints[i].effort_limit;
   }
 }
 
@@ -47,7 +48,7 @@ Eigen::Vector3d LegUse::placed(std::size_t leg, const WalkingTwist& twist, const
 }
 
 double LegUse::needed_at(std::size_t leg, const Place& body, const Eigen::Vector3d& place,
-                         const Eigen::Vector3d& velocity, double force) const noexcept {
+                         const Eigen::Vector3d& velocity, const Eigen::Vector3d& force) const noexcept {
   const LegKinematics& kinematics = legs_[leg];
   const Eigen::Vector3d turned = (body.back - Eigen::Matrix3d::Identity()) * (place - centre_);
   const std::optional<LegAngles> angles = kinematics.reached(place + turned - body.height * body.back.col(2));
@@ -57,7 +58,7 @@ double LegUse::needed_at(std::size_t leg, const Place& body, const Eigen::Vector
   const Eigen::Vector3d up = Eigen::Vector3d::UnitZ();
   const Eigen::Vector3d moves = velocity - body.turns.cross(place - centre_ - body.height * up) - body.rises * up;
   const Eigen::Vector3d rates = jacobian.inverse() * (body.back * moves);
-  const Eigen::Vector3d efforts = force * (jacobian.transpose() * body.back.col(2));
+  const Eigen::Vector3d efforts = jacobian.transpose() * (body.back * force);
   double part = 0;
   for (std::size_t i = 0; i < kLegJoints; ++i) {
     const auto axis = static_cast<Eigen::Index>(i);
@@ -82,7 +83,8 @@ double LegUse::swinging(const Gait& gait, const WalkingTwist& twist, const Carri
     for (int i = 0; i <= samples; ++i) {
       const double swung = static_cast<double>(i) / samples;
       const SwingPoint point = swing_point(from, to, foot.z() + gait.lift, swung, time);
-      part = std::max(part, needed_at(leg, at, point.place + swung * time * velocity, point.velocity + velocity, 0));
+      part = std::max(part,
+                      needed_at(leg, at, point.place + swung * time * velocity, point.velocity + velocity, kNoForce));
     }
   }
   return part;
@@ -96,8 +98,12 @@ double LegUse::steady(const Gait& gait, const WalkingTwist& twist, const Carried
   for (std::size_t leg = 0; leg < kLegs; ++leg) {
     const Eigen::Vector3d foot = placed(leg, twist, body);
     const Eigen::Vector3d velocity = velocity_below(foot, twist);
-    for (const double stood : {-half, 0.0, half})
-      part = std::max(part, needed_at(leg, at, foot + stood * velocity, velocity, force));
+    const double high = centre_.z() - foot.z() + body[0];
+    for (const double stood : {-half, 0.0, half}) {
+      const Eigen::Vector3d moved = foot - feet_[leg] - stood * Eigen::Vector3d(twist[0], twist[1], 0);
+      const Eigen::Vector3d through_centre = Eigen::Vector3d::UnitZ() - moved / high;
+      part = std::max(part, needed_at(leg, at, foot + stood * velocity, velocity, force * through_centre));
+    }
   }
   return part;
 }
@@ -110,7 +116,7 @@ double LegUse::changing(const Gait& last, const Gait& next, const WalkingTwist& 
     if (stands == 0) continue;
     const double stood = last.period * (std::min(last.leg_phase(leg, 0), last.duty) - last.duty / 2);
     const Eigen::Vector3d velocity = velocity_below(feet_[leg], twist);
-    part = std::max(part, needed_at(leg, {}, feet_[leg] + (stood + stands) * velocity, velocity, 0));
+    part = std::max(part, needed_at(leg, {}, feet_[leg] + (stood + stands) * velocity, velocity, kNoForce));
   }
   return part;
 }

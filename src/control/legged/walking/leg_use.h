@@ -2,13 +2,15 @@
 /// How much of what they can the legs of a robot need to walk, in a pose of its body.
 ///
 ///   speed   |q̇| of a joint, of its velocity limit, during stance and swing (swing.h)
-///   torque  |Jᵀ f| of a joint, of kOfWeight/kOfJointSpeed of its effort limit. f is the weight, on as many feet as
-///           the gait leaves on the ground at least, at the ends and in the middle of a stance
+///   torque  |Jᵀ f| of a joint, of kOfEffort/kOfJointSpeed of its effort limit. f is the weight, on as many feet as
+///           the gait leaves on the ground at least, at the ends and in the middle of a stance. It is parallel to the
+///           line through the centre of gravity and the middle of the feet that bear: these turn no body, so the load
+///           of a joint hardly grows where its foot moves away with those of the other legs
 ///   reach   infinite where a leg stretches beyond kOfLength of its length, or a joint leaves its range, in other poses
 ///           than the nominal one less kFromEnd
 ///
-/// The largest of these is at most kOfJointSpeed where the legs carry the body. A trot puts 1.27 times an equal share
-/// of the weight on a foot at its peak (leg_tuning.h). The centre of gravity stays above the middle of the feet.
+/// The largest of these is at most kOfJointSpeed where the legs carry the body. The centre of gravity stays above the
+/// middle of the nominal feet.
 
 #include <Eigen/Core>
 #include <array>
@@ -22,7 +24,7 @@ namespace robot_control {
 
 inline constexpr double kOfJointSpeed = 0.85;
 inline constexpr double kOfLength = 0.95;
-inline constexpr double kOfWeight = 0.76;  ///< times 1.27 is 0.97 (walker.cpp)
+inline constexpr double kOfEffort = 0.97;  ///< the rest bears the leg itself (docs/evidence/legs.md, weak_hips)
 inline constexpr double kFromEnd = 0.03;   ///< rad
 
 /// Height in m, roll and pitch in rad of a body that walks, from the nominal pose.
@@ -61,7 +63,7 @@ class LegUse {
   Eigen::Vector3d placed(std::size_t leg, const WalkingTwist& twist, const CarriedBody& body) const noexcept;
   /// Returns what a leg needs whose foot has this place and velocity, and bears this force, in level axes.
   double needed_at(std::size_t leg, const Place& body, const Eigen::Vector3d& place, const Eigen::Vector3d& velocity,
-                   double force) const noexcept;
+                   const Eigen::Vector3d& force) const noexcept;
 
   std::array<LegKinematics, kLegs> legs_;
   std::array<double, kLegsJoints> speeds_{};   ///< rad/s, limits

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "control/legged/foothold.h"
+#include "control/legged/walking/leg_use.h"
 #include "control/legged/walking/swing.h"
 #include "control/legged/walking/walking_speed.h"
 #include "machine/gravity.h"
@@ -14,7 +15,6 @@
 namespace robot_control {
 namespace {
 
-constexpr double kOfEffort = 0.97;    // of the limits, the largest effort
 constexpr double kFarthest = 0.2;     // m, the target from the robot, of a leg of kReferenceLeg
 constexpr double kFarthestYaw = 0.3;  // rad
 constexpr double kGroundTime = 0.05;  // s, in which the ground follows the feet
