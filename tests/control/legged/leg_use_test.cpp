@@ -38,8 +38,7 @@ TEST_F(LegUseTest, CountsTheTorqueOfHalfOfTheWeight) {
   EXPECT_NEAR(steady({}), 2 * kOfJointSpeed, 1e-6);
 }
 
-/// Forces through the centre of gravity load a hip in the same way wherever the feet of a walk to the side are; those
-/// of a turn are farther from it.
+/// Forces through the centre of gravity load a hip alike wherever the feet of a walk to the side are.
 TEST_F(LegUseTest, HipsBearAWalkToTheSideAsTheyBearTheRobotOnTheSpot) {
   for (std::size_t leg = 0; leg < kLegs; ++leg) robot.joints[kLegJoints * leg].effort_limit /= 8;
   EXPECT_NEAR(steady({0, 0.3, 0}) / steady({}), 1, 0.03);
