@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace robot_control {
+namespace robot_control::navigation {
 namespace {
 
 constexpr float kNever = -std::numeric_limits<float>::infinity();
@@ -58,7 +58,8 @@ std::vector<Point> points_of(const Scan& scan, const PlanarPose& sensor) {
 Costmap::Costmap(const Grid& map, Footprint footprint, bool unknown_is_free)
     : grid_(coarsened(map, kCoarsest)),
       footprint_(std::move(footprint)),
-      farthest_(std::max(footprint_.circumscribed + kPadding, footprint_.inscribed + kComfort) + 2 * grid_.resolution),
+      farthest_(std::max(footprint_.circumscribed + kPadding, footprint_.inscribed + kFullClearance) +
+                2 * grid_.resolution),
       unknown_(grid_.cells.size()),
       unknown_is_free_(unknown_is_free),
       marked_(grid_.cells.size(), kNever) {
@@ -129,7 +130,7 @@ void Costmap::update(double now) {
 }
 
 double Costmap::step_cost(Cell cell) const noexcept {
-  return 1 + std::clamp(1 - (distance(cell) - footprint_.inscribed) / kComfort, 0.0, 1.0);
+  return 1 + std::clamp(1 - (distance(cell) - footprint_.inscribed) / kFullClearance, 0.0, 1.0);
 }
 
 bool Costmap::free(const PlanarPose& pose) const noexcept {
@@ -151,4 +152,4 @@ bool Costmap::free(const PlanarPose& pose) const noexcept {
   return true;
 }
 
-}  // namespace robot_control
+}  // namespace robot_control::navigation

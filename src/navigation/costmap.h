@@ -17,14 +17,14 @@
 #include "navigation/grid.h"
 #include "navigation/scan.h"
 
-namespace robot_control {
+namespace robot_control::navigation {
 
-inline constexpr double kMemory = 10;       ///< s; less than the patience of a goal that it blocks
-inline constexpr double kExplained = 0.1;   ///< m
-inline constexpr double kBehindWall = 0.3;  ///< m; a ray that ends so far behind a wall contradicts the map
-inline constexpr double kCoarsest = 0.05;   ///< m
-inline constexpr double kComfort = 0.4;     ///< m of air from which on more is no better
-inline constexpr double kPadding = 0.07;    ///< m of air about the outline: noise of the laser and lag of the follower
+inline constexpr double kMemory = 10;          ///< s; less than kNoProgressTime of a goal that it blocks
+inline constexpr double kExplained = 0.1;      ///< m
+inline constexpr double kBehindWall = 0.3;     ///< m; a ray that ends so far behind a wall contradicts the map
+inline constexpr double kCoarsest = 0.05;      ///< m
+inline constexpr double kFullClearance = 0.4;  ///< m of air from which on more is no better
+inline constexpr double kPadding = 0.07;  ///< m of air about the outline: noise of the laser and lag of the follower
 
 /// Returns the ends of all rays that hit, in the frame in which `sensor` is given.
 std::vector<Point> points_of(const Scan& scan, const PlanarPose& sensor);
@@ -43,7 +43,7 @@ class Costmap {
   /// Takes one scan whose sensor was at `sensor` in the map; `now` in s of any clock that does not turn back.
   Agreement insert(const Scan& scan, const PlanarPose& sensor, double now);
 
-  /// Takes the places, in the map, that things in motion will take soon. They count as occupied until the next call.
+  /// Takes the places, in the map, that moving objects will take soon. They count as occupied until the next call.
   void foresee(const std::vector<Point>& places);
 
   /// Brings the distances up to date, which all below use. Takes about 20 ns a cell.
@@ -62,7 +62,7 @@ class Costmap {
 
   /// Returns the cost of a metre at this cell, d m from the nearest occupied one:
   ///
-  ///   1 + max(0, 1 − (d − inscribed)/kComfort)
+  ///   1 + max(0, 1 − (d − inscribed)/kFullClearance)
   double step_cost(Cell cell) const noexcept;
 
   const Grid& grid() const noexcept { return grid_; }
@@ -86,4 +86,4 @@ class Costmap {
 /// Returns the distance of each cell from the nearest one that is set, in m, at most `farthest`.
 std::vector<float> distances(const std::vector<bool>& occupied, int columns, double resolution, double farthest);
 
-}  // namespace robot_control
+}  // namespace robot_control::navigation

@@ -8,7 +8,7 @@
 
 #include "machine/bodies/shape_support.h"
 
-namespace robot_control {
+namespace robot_control::navigation {
 
 double Footprint::distance(Point point) const noexcept {
   double farthest = -circumscribed;
@@ -64,4 +64,4 @@ Footprint footprint_of_urdf(const std::string& urdf, const std::string& source) 
   });
 }
 
-}  // namespace robot_control
+}  // namespace robot_control::navigation

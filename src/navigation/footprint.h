@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace robot_control {
+namespace robot_control::navigation {
 
 struct Point {
   double x = 0, y = 0;  ///< m
@@ -32,4 +32,4 @@ Footprint footprint_of(const std::function<double(Point)>& reach);
 /// base lies beside them.
 Footprint footprint_of_urdf(const std::string& urdf, const std::string& source);
 
-}  // namespace robot_control
+}  // namespace robot_control::navigation

@@ -10,7 +10,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace robot_control {
+namespace robot_control::navigation {
 
 inline constexpr std::int8_t kUnknownCell = -1;
 inline constexpr std::int8_t kFreeCell = 0;
@@ -81,4 +81,4 @@ inline PlanarPose composed(const PlanarPose& outer, const PlanarPose& inner) noe
   return {outer.x + c * inner.x - s * inner.y, outer.y + s * inner.x + c * inner.y, outer.yaw + inner.yaw};
 }
 
-}  // namespace robot_control
+}  // namespace robot_control::navigation

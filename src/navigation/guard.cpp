@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-namespace robot_control {
+namespace robot_control::navigation {
 namespace {
 
 constexpr double kStep = 0.02;       // m of the way of the outline's widest place
@@ -22,9 +22,9 @@ struct Watched {
 }  // namespace
 
 double free_way(const Footprint& footprint, const std::vector<Point>& points, const PlanarMotion& motion,
-                const std::vector<Mover>& movers) {
+                const std::vector<MovingObject>& objects) {
   const bool spot = std::abs(motion.linear) < kOnTheSpot && motion.angular != 0;
-  const double reach = footprint.circumscribed + kBeside + (spot ? 0 : kLookout);
+  const double reach = footprint.circumscribed + kBeside + (spot ? 0 : kLookAhead);
   std::vector<Watched> watched;
   const auto watch = [&](Point point, Point velocity, double until) {
     const double distance = footprint.distance(point);
@@ -35,14 +35,14 @@ double free_way(const Footprint& footprint, const std::vector<Point>& points, co
   };
   constexpr double kNever = std::numeric_limits<double>::infinity();
   for (const Point point : points) watch(point, {}, kNever);
-  for (const Mover& mover : movers) {
-    for (const Point point : mover.points) watch(point, mover.velocity, kForesight);
+  for (const MovingObject& object : objects) {
+    for (const Point point : object.points) watch(point, object.velocity, kForesight);
   }
   const double sign = std::copysign(1.0, spot ? motion.angular : motion.linear);
   const double turn = spot                 ? sign / footprint.half_width  // rad per m
                       : motion.linear != 0 ? motion.angular / std::abs(motion.linear)
                                            : 0;
-  const double end = spot ? 2 * M_PI * footprint.half_width : kLookout;
+  const double end = spot ? 2 * M_PI * footprint.half_width : kLookAhead;
   const double speed =
       std::max(kSlow, spot ? std::abs(motion.angular) * footprint.half_width : std::abs(motion.linear));
   for (double along = kStep; along < end; along += kStep) {
@@ -60,4 +60,4 @@ double free_way(const Footprint& footprint, const std::vector<Point>& points, co
   return std::numeric_limits<double>::infinity();
 }
 
-}  // namespace robot_control
+}  // namespace robot_control::navigation

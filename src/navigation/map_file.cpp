@@ -15,7 +15,7 @@
 #include "files/message_text.h"
 #include "files/output_file.h"
 
-namespace robot_control {
+namespace robot_control::navigation {
 namespace {
 
 constexpr std::size_t kMaxHead = 65536;  // bytes of a picture before its pixels, comments included
@@ -185,4 +185,4 @@ void write_map(const std::string& given, const Grid& grid) {
   }
 }
 
-}  // namespace robot_control
+}  // namespace robot_control::navigation

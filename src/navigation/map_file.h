@@ -18,7 +18,7 @@
 
 #include "navigation/grid.h"
 
-namespace robot_control {
+namespace robot_control::navigation {
 
 /// The text is one sentence with file, value, rule and remedy.
 class MapError : public std::runtime_error {
@@ -37,4 +37,4 @@ std::string grid_problem(double columns, double rows, double resolution, double 
 /// MapError.
 void write_map(const std::string& path, const Grid& grid);
 
-}  // namespace robot_control
+}  // namespace robot_control::navigation

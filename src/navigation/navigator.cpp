@@ -8,7 +8,7 @@
 
 #include "navigation/text.h"
 
-namespace robot_control {
+namespace robot_control::navigation {
 namespace {
 
 /// s between two updates of the distances: 20 ns a cell are 5 % of one processor at most.
@@ -54,8 +54,8 @@ NavigatorOutput Navigator::step(const NavigatorInput& input, Costmap* costmap) {
     } else if (input.now - planned_at_ >= kReplan) {
       plan(input, *costmap, out);
     }
-    const double patience = driven_ ? kPatience : kStartPatience, waited = input.now - progress_at_;
-    if (active() && waited > patience)
+    const double longest = driven_ ? kNoProgressTime : kFirstPathTime, waited = input.now - progress_at_;
+    if (active() && waited > longest)
       fail((reason_.empty() ? "the robot does not move" : reason_) + text(" (for %.0f s)", waited), out);
   }
   out.state = state_;
@@ -114,7 +114,7 @@ void Navigator::drive(const NavigatorInput& input, Costmap& costmap, NavigatorOu
   const bool blocked = free < kWatched;
   if (blocked && input.now - planned_at_ >= kReplan) plan(input, costmap, out);
   if (blocked && !out.path && free < kStopBefore) wait(reason_.empty() ? "the way is blocked" : reason_, out);
-  if (!blocked) reason_ = input.now - progress_at_ > kReplan ? input.held : "";
+  if (!blocked) reason_ = input.now - progress_at_ > kReplan ? input.slowed_by : "";
 }
 
 void Navigator::note_progress(const NavigatorInput& input) {
@@ -138,4 +138,4 @@ double Navigator::remaining(const PlanarPose& pose) const {
   return left;
 }
 
-}  // namespace robot_control
+}  // namespace robot_control::navigation

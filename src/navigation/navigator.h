@@ -3,27 +3,27 @@
 /// ROS; follow_path drives what it plans.
 ///
 ///   planning   the first plan of a goal; a goal that the map alone does not allow is refused at once
-///   driving    follow_path has a path. A path that is blocked within kLookout is replaced, at most once per kReplan.
+///   driving    follow_path has a path. A path that is blocked within kLookAhead is replaced, at most once per kReplan.
 ///              Where there is no other way, the robot drives on until kStopBefore before the obstacle
 ///   waiting    nothing is driven: the way is blocked, or the laser, the map or the place is not to be trusted. After
-///              kPatience the goal is given up, before the first path after kStartPatience
+///              kNoProgressTime the goal is given up, before the first path after kFirstPathTime
 ///
 /// A path that follow_path gave up is planned again, kAttempts times without kProgress in between. No later path from
-/// standstill renews the patience. follow_path refuses what a stop of the robot has revoked.
+/// standstill restarts these times. follow_path refuses what a stop of the robot has revoked.
 
 #include <optional>
 #include <string>
 
 #include "navigation/planner.h"
 
-namespace robot_control {
+namespace robot_control::navigation {
 
-inline constexpr double kPatience = 20;      ///< s
-inline constexpr double kStartPatience = 2;  ///< s, in which a map, a scan and tf arrive after a start
-inline constexpr double kReplan = 1;         ///< s
-inline constexpr double kWatched = 4;        ///< m ahead of the robot; farther obstacles may have gone until then
-inline constexpr double kStopBefore = 0.6;   ///< m
-inline constexpr double kProgress = 0.3;     ///< m
+inline constexpr double kNoProgressTime = 20;  ///< s
+inline constexpr double kFirstPathTime = 2;    ///< s, in which a map, a scan and tf arrive after a start
+inline constexpr double kReplan = 1;           ///< s
+inline constexpr double kWatched = 4;          ///< m ahead of the robot; farther obstacles may have gone until then
+inline constexpr double kStopBefore = 0.6;     ///< m
+inline constexpr double kProgress = 0.3;       ///< m
 inline constexpr int kAttempts = 3;
 
 /// The end of the last path that was sent to follow_path.
@@ -34,11 +34,11 @@ struct PathReport {
 };
 
 struct NavigatorInput {
-  double now = 0;       ///< s of a clock that does not turn back
-  std::string problem;  ///< why map, scan or place cannot be trusted now; then `pose` may be old
-  std::string remark;   ///< what the reason of a failure ends with
-  std::string held;     ///< what slows the robot, if something does: why it may not come nearer
-  PlanarPose pose;      ///< of the base in the map
+  double now = 0;         ///< s of a clock that does not turn back
+  std::string problem;    ///< why map, scan or place cannot be trusted now; then `pose` may be old
+  std::string remark;     ///< what the reason of a failure ends with
+  std::string slowed_by;  ///< what slows the robot, if something does: why it may not come nearer
+  PlanarPose pose;        ///< of the base in the map
   PathReport path;
 };
 
@@ -92,4 +92,4 @@ class Navigator {
   std::string reason_;
 };
 
-}  // namespace robot_control
+}  // namespace robot_control::navigation

@@ -12,7 +12,7 @@
 #include "navigation/straightening.h"
 #include "navigation/text.h"
 
-namespace robot_control {
+namespace robot_control::navigation {
 namespace {
 
 constexpr int kSectors = 16;
@@ -277,4 +277,4 @@ double free_distance(const Costmap& costmap, const std::vector<PlanarPose>& pose
   return std::numeric_limits<double>::infinity();
 }
 
-}  // namespace robot_control
+}  // namespace robot_control::navigation

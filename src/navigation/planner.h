@@ -15,7 +15,7 @@
 
 #include "navigation/costmap.h"
 
-namespace robot_control {
+namespace robot_control::navigation {
 
 inline constexpr double kBackFactor = 3;
 inline constexpr double kSectorCost = 0.15;  ///< m; 22.5° take 0.4 s, in which follow_path drives 0.2 m
@@ -37,4 +37,4 @@ Plan plan_path(const Costmap& costmap, const PlanarPose& start, const PlanarPose
 double free_distance(const Costmap& costmap, const std::vector<PlanarPose>& poses, const PlanarPose& robot,
                      std::size_t& passed);
 
-}  // namespace robot_control
+}  // namespace robot_control::navigation

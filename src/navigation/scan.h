@@ -5,7 +5,7 @@
 #include <limits>
 #include <vector>
 
-namespace robot_control {
+namespace robot_control::navigation {
 
 struct Scan {
   double angle_min = 0, angle_increment = 0;  ///< rad; a negative increment is that of a laser on its head
@@ -17,4 +17,4 @@ struct Scan {
   double angle(std::size_t ray) const noexcept { return angle_min + static_cast<double>(ray) * angle_increment; }
 };
 
-}  // namespace robot_control
+}  // namespace robot_control::navigation

@@ -5,7 +5,7 @@
 
 #include "navigation/text.h"
 
-namespace robot_control {
+namespace robot_control::navigation {
 
 std::string ScanWatch::structure_problem(const Scan& scan) const {
   const std::size_t rays = scan.ranges.size();
@@ -71,4 +71,4 @@ std::string ScanWatch::problem(double now) const {
   return "";
 }
 
-}  // namespace robot_control
+}  // namespace robot_control::navigation

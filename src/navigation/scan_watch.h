@@ -15,7 +15,7 @@
 
 #include "navigation/scan.h"
 
-namespace robot_control {
+namespace robot_control::navigation {
 
 inline constexpr std::size_t kMaxRays = 20'000;
 inline constexpr double kSilence = 0.5;  ///< s
@@ -41,4 +41,4 @@ class ScanWatch {
   bool blind_ = false;
 };
 
-}  // namespace robot_control
+}  // namespace robot_control::navigation

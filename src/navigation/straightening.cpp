@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-namespace robot_control {
+namespace robot_control::navigation {
 namespace {
 
 double heading(Point a, Point b, bool back) {
@@ -111,4 +111,4 @@ double length_of(const std::vector<PlanarPose>& poses) {
   return length;
 }
 
-}  // namespace robot_control
+}  // namespace robot_control::navigation

@@ -6,7 +6,7 @@
 
 #include "navigation/costmap.h"
 
-namespace robot_control {
+namespace robot_control::navigation {
 
 inline constexpr double kSpacing = 0.1;  ///< m
 
@@ -21,4 +21,4 @@ std::vector<PlanarPose> straightened(const Costmap& costmap, const std::vector<P
 /// m
 double length_of(const std::vector<PlanarPose>& poses);
 
-}  // namespace robot_control
+}  // namespace robot_control::navigation

@@ -4,7 +4,7 @@
 #include <cstdio>
 #include <string>
 
-namespace robot_control {
+namespace robot_control::navigation {
 
 /// Returns what printf would write, up to 300 characters.
 template <class... Values>
@@ -14,4 +14,4 @@ std::string text(const char* format, Values... values) {
   return buffer;
 }
 
-}  // namespace robot_control
+}  // namespace robot_control::navigation

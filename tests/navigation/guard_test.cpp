@@ -4,7 +4,7 @@
 
 #include "navigation/house.h"
 
-namespace robot_control {
+namespace robot_control::navigation {
 namespace {
 
 using testing_house::diffbot;
@@ -46,4 +46,4 @@ TEST(FreeWayTest, APointInsideTheOutlineIsAPartOfTheRobot) {
 }
 
 }  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::navigation

@@ -8,7 +8,7 @@
 
 #include "navigation/costmap.h"
 
-namespace robot_control::testing_house {
+namespace robot_control::navigation::testing_house {
 
 inline constexpr double kCell = 0.1;  ///< m
 
@@ -75,4 +75,4 @@ inline Scan scan_of(const Grid& world, const PlanarPose& sensor, int rays = 360)
   return scan;
 }
 
-}  // namespace robot_control::testing_house
+}  // namespace robot_control::navigation::testing_house

@@ -8,7 +8,7 @@
 #include <iterator>
 #include <vector>
 
-namespace robot_control {
+namespace robot_control::navigation {
 namespace {
 
 /// A map of 3 × 2 cells, as map_server's map_saver writes it.
@@ -164,4 +164,4 @@ TEST_F(MapFileTest, EachWrongPictureIsRefused) {
 }
 
 }  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::navigation

@@ -5,7 +5,7 @@
 #include "navigation/guard.h"
 #include "navigation/house.h"
 
-namespace robot_control {
+namespace robot_control::navigation {
 namespace {
 
 using namespace testing_house;
@@ -132,7 +132,7 @@ TEST_F(NavigatorTest, ADoorThatStaysShutIsGivenUpWithTheReason) {
   run(0.5);
   box(31, 16);
   remark_ = "; perhaps the map is wrong";
-  run(kPatience + 10);
+  run(kNoProgressTime + 10);
   EXPECT_EQ(out_.state, State::kFailed);
   EXPECT_THAT(out_.reason, HasSubstr("(for 20 s); perhaps the map is wrong"));
 }
@@ -149,7 +149,7 @@ TEST_F(NavigatorTest, ABoxOnTheGoalIsWaitedForFromTheStart) {
 TEST_F(NavigatorTest, AGoalWithoutALaserIsRefusedAfterTheStartPatience) {
   problem_ = "scan is silent";
   navigator_.begin({4.7, 1.6, 0}, now_);
-  run(kStartPatience + 1);
+  run(kFirstPathTime + 1);
   EXPECT_EQ(out_.state, State::kFailed);
   EXPECT_THAT(out_.reason, HasSubstr("scan is silent"));
   EXPECT_EQ(paths_, 0);
@@ -180,7 +180,7 @@ TEST_F(NavigatorTest, APathThatCannotBeFollowedIsTriedAgainAndGivenUp) {
 TEST_F(NavigatorTest, ARobotThatDoesNotMoveIsGivenUp) {
   paused_ = true;
   navigator_.begin({4.7, 1.6, 0}, now_);
-  run(kPatience + 1);
+  run(kNoProgressTime + 1);
   EXPECT_EQ(out_.state, State::kFailed);
   EXPECT_THAT(out_.reason, HasSubstr("does not move"));
 }
@@ -188,7 +188,7 @@ TEST_F(NavigatorTest, ARobotThatDoesNotMoveIsGivenUp) {
 TEST_F(NavigatorTest, AWayThatIsBlockedAgainAndAgainIsGivenUp) {
   paused_ = true;
   navigator_.begin({4.7, 1.6, 0}, now_);
-  for (const double end = now_ + 2 * kPatience; now_ < end && out_.state != State::kFailed;) {
+  for (const double end = now_ + 2 * kNoProgressTime; now_ < end && out_.state != State::kFailed;) {
     problem_ = "scan is silent";
     run(0.5);
     problem_.clear();
@@ -208,4 +208,4 @@ TEST_F(NavigatorTest, AStartTooNearToAWallIsLeftOnOnePath) {
 }
 
 }  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::navigation

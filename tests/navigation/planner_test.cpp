@@ -6,10 +6,10 @@
 #include <iterator>
 #include <random>
 
-#include "navigation/doubt.h"
 #include "navigation/house.h"
+#include "navigation/map_consistency.h"
 
-namespace robot_control {
+namespace robot_control::navigation {
 namespace {
 
 using namespace testing_house;
@@ -128,14 +128,14 @@ TEST(CostmapTest, AnUntruePoseLetsRaysPassWalls) {
 TEST(DoubtTest, AnUntruePoseIsDoubtedAfterHalfASecondAndATrueOneTrustedAgain) {
   const Grid map = two_rooms(0.8);
   Costmap costmap = costmap_of(map);
-  Doubt doubt;
+  MapConsistency consistency;
   const PlanarPose wrong{kLeft.x + 0.5, kLeft.y, kLeft.yaw};
-  for (int i = 0; i < kDoubtful - 1; ++i) doubt.update(costmap.insert(scan_of(map, kLeft), wrong, 1));
-  EXPECT_EQ(doubt.problem(), "");
-  doubt.update(costmap.insert(scan_of(map, kLeft), wrong, 1));
-  EXPECT_THAT(doubt.problem(), HasSubstr("contradicts the map: of 360 rays"));
-  for (int i = 0; i < kDoubtful; ++i) doubt.update(costmap.insert(scan_of(map, kLeft), kLeft, 1));
-  EXPECT_EQ(doubt.problem(), "");
+  for (int i = 0; i < kBadScans - 1; ++i) consistency.update(costmap.insert(scan_of(map, kLeft), wrong, 1));
+  EXPECT_EQ(consistency.problem(), "");
+  consistency.update(costmap.insert(scan_of(map, kLeft), wrong, 1));
+  EXPECT_THAT(consistency.problem(), HasSubstr("contradicts the map: of 360 rays"));
+  for (int i = 0; i < kBadScans; ++i) consistency.update(costmap.insert(scan_of(map, kLeft), kLeft, 1));
+  EXPECT_EQ(consistency.problem(), "");
 }
 
 TEST(DoubtTest, AHouseThatHasOtherWallsIsRemarked) {
@@ -145,10 +145,10 @@ TEST(DoubtTest, AHouseThatHasOtherWallsIsRemarked) {
     other.cells[other.index({24, row})] = kOccupiedCell;  // nearer than the map's
   for (const Grid* house : std::initializer_list<const Grid*>{&map, &other}) {
     Costmap costmap = costmap_of(map);
-    Doubt doubt;
-    for (int i = 0; i < 10; ++i) doubt.update(costmap.insert(scan_of(*house, kLeft), kLeft, 1));
-    EXPECT_EQ(doubt.remark().empty(), house == &map) << doubt.remark();
-    EXPECT_EQ(doubt.problem(), "");
+    MapConsistency consistency;
+    for (int i = 0; i < 10; ++i) consistency.update(costmap.insert(scan_of(*house, kLeft), kLeft, 1));
+    EXPECT_EQ(consistency.explanation().empty(), house == &map) << consistency.explanation();
+    EXPECT_EQ(consistency.problem(), "");
   }
 }
 
@@ -254,4 +254,4 @@ TEST(PlannerTest, TheDistanceToWhatBlocksThePathFallsAsTheRobotMoves) {
 }
 
 }  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::navigation

@@ -4,7 +4,7 @@
 
 #include <functional>
 
-namespace robot_control {
+namespace robot_control::navigation {
 namespace {
 
 using testing::HasSubstr;
@@ -96,4 +96,4 @@ TEST_F(ScanWatchTest, AnOpenFieldIsNotFrozenAndACoveredLaserIsBlind) {
 }
 
 }  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::navigation

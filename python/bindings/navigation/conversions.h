@@ -10,7 +10,7 @@
 #include "navigation/grid.h"
 #include "navigation/scan.h"
 
-namespace robot_control {
+namespace robot_control::navigation {
 
 namespace py = pybind11;
 
@@ -50,4 +50,4 @@ inline Grid grid_of(const py::tuple& map) {
           .cells = {cells.data(), cells.data() + cells.size()}};
 }
 
-}  // namespace robot_control
+}  // namespace robot_control::navigation

@@ -11,7 +11,7 @@
 
 namespace py = pybind11;
 
-namespace robot_control {
+namespace robot_control::navigation {
 namespace {
 
 UncertainPose uncertain(const Pose& pose, const Eigen::Matrix3d& covariance) {
@@ -46,11 +46,11 @@ void bind_localizer(py::module_& module) {
 }
 
 }  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::navigation
 
 PYBIND11_MODULE(_mrpt, module) {
-  using namespace robot_control;
-  check_numpy_version();
+  using namespace robot_control::navigation;
+  robot_control::check_numpy_version();
   py::class_<Mapper>(module, "Mapper")
       .def(py::init<>())
       .def(py::init([](const py::tuple& map, const Pose& pose) { return Mapper(grid_of(map), planar_of(pose)); }),

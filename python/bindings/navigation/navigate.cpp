@@ -6,16 +6,16 @@
 
 #include "bindings/navigation/conversions.h"
 #include "bindings/numpy_version.h"
-#include "navigation/doubt.h"
 #include "navigation/guard.h"
+#include "navigation/map_consistency.h"
 #include "navigation/map_file.h"
-#include "navigation/movers.h"
+#include "navigation/moving_objects.h"
 #include "navigation/navigator.h"
 #include "navigation/scan_watch.h"
 
 namespace py = pybind11;
 
-namespace robot_control {
+namespace robot_control::navigation {
 namespace {
 
 std::vector<Pose> poses_of(const Plan& plan) {
@@ -36,17 +36,17 @@ class Navigation {
                      double moved) {
     const Scan scan = scan_of(given);
     watch_.receive(scan, "laser", now, now, moved);
-    doubt_.update(costmap_.insert(scan, composed(planar_of(place), planar_of(sensor)), now));
+    consistency_.update(costmap_.insert(scan, composed(planar_of(place), planar_of(sensor)), now));
     const PlanarPose base = planar_of(odometry);
-    seen_ = movers_seen_from(movers_.update(scan, composed(base, planar_of(sensor)), now), base);
+    seen_ = objects_seen_from(objects_.update(scan, composed(base, planar_of(sensor)), now), base);
     costmap_.foresee(placed(places_ahead(seen_, costmap_.footprint()), planar_of(place)));
     const std::string problem = watch_.problem(now);
-    return problem.empty() ? doubt_.problem() : problem;
+    return problem.empty() ? consistency_.problem() : problem;
   }
   bool silent(double now) const { return !watch_.problem(now).empty(); }
   double free_way(const py::dict& scan, const Pose& sensor, double linear, double angular) const {
-    return robot_control::free_way(costmap_.footprint(), points_of(scan_of(scan), planar_of(sensor)), {linear, angular},
-                                   seen_);
+    return navigation::free_way(costmap_.footprint(), points_of(scan_of(scan), planar_of(sensor)), {linear, angular},
+                                seen_);
   }
   double distance(double x, double y) const { return costmap_.footprint().distance({x, y}); }
   py::tuple plan(const Pose& start, const Pose& goal, double now) {
@@ -64,7 +64,7 @@ class Navigation {
                         : path == "done"   ? State::kDone
                                            : State::kFailed;
     const NavigatorOutput out =
-        navigator_.step({now, problem, doubt_.remark(), "", planar_of(pose), {state, path}}, &costmap_);
+        navigator_.step({now, problem, consistency_.explanation(), "", planar_of(pose), {state, path}}, &costmap_);
     py::object way = py::none();
     if (out.path) way = py::cast(poses_of(*out.path));
     return py::make_tuple(name_of(out.state), out.reason, way, out.cancel);
@@ -73,18 +73,18 @@ class Navigation {
  private:
   Costmap costmap_;
   ScanWatch watch_;
-  Movers movers_;
-  std::vector<Mover> seen_;
-  Doubt doubt_;
+  MovingObjects objects_;
+  std::vector<MovingObject> seen_;
+  MapConsistency consistency_;
   Navigator navigator_;
 };
 
 }  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::navigation
 
 PYBIND11_MODULE(_navigation, module) {
-  using namespace robot_control;
-  check_numpy_version();
+  using namespace robot_control::navigation;
+  robot_control::check_numpy_version();
   module.def(
       "read_map", [](const std::string& path) { return numpy_of(read_map(path)); }, py::arg("path"));
   module.def(

@@ -16,7 +16,7 @@
 #include "navigation/mrpt/mrpt_grid.h"
 #include "navigation/mrpt/mrpt_scan.h"
 
-namespace robot_control {
+namespace robot_control::navigation {
 namespace {
 
 using mrpt::poses::CPose2D;
@@ -238,4 +238,4 @@ std::vector<PlanarPose> Localizer::particles() const {
   return result;
 }
 
-}  // namespace robot_control
+}  // namespace robot_control::navigation

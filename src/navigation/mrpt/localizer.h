@@ -20,7 +20,7 @@
 #include "navigation/grid.h"
 #include "navigation/scan.h"
 
-namespace robot_control {
+namespace robot_control::navigation {
 
 inline constexpr double kUpdateDistance = 0.1;  ///< m
 inline constexpr double kUpdateTurn = 0.1;      ///< rad
@@ -80,4 +80,4 @@ class Localizer {
   std::unique_ptr<Parts> parts_;
 };
 
-}  // namespace robot_control
+}  // namespace robot_control::navigation

@@ -9,7 +9,7 @@
 #include "navigation/mrpt/mrpt_grid.h"
 #include "navigation/mrpt/mrpt_scan.h"
 
-namespace robot_control {
+namespace robot_control::navigation {
 namespace {
 
 using mrpt::maps::COccupancyGridMap2D;
@@ -131,4 +131,4 @@ Grid Mapper::grid() const {
   return grid_of(parts_->grid);
 }
 
-}  // namespace robot_control
+}  // namespace robot_control::navigation

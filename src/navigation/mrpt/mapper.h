@@ -15,7 +15,7 @@
 #include "navigation/grid.h"
 #include "navigation/scan.h"
 
-namespace robot_control {
+namespace robot_control::navigation {
 
 class Mapper {
  public:
@@ -56,4 +56,4 @@ class Mapper {
   std::unique_ptr<Parts> parts_;
 };
 
-}  // namespace robot_control
+}  // namespace robot_control::navigation

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-namespace robot_control {
+namespace robot_control::navigation {
 
 PlanarPose align(Grid& grid) {
   const double x = grid.origin_x, y = grid.origin_y;
@@ -54,4 +54,4 @@ mrpt::maps::CSimplePointsMap wall_points(const Grid& grid) {
   return points;
 }
 
-}  // namespace robot_control
+}  // namespace robot_control::navigation

@@ -6,7 +6,7 @@
 
 #include "navigation/grid.h"
 
-namespace robot_control {
+namespace robot_control::navigation {
 
 /// Moves the grid by up to half a cell, so that it begins at a multiple of its resolution, as each grid of MRPT does.
 /// Returns where the frame of the moved grid lies in that of the given one.
@@ -21,4 +21,4 @@ Grid grid_of(const mrpt::maps::COccupancyGridMap2D& map);
 /// Returns the middles of all occupied cells.
 mrpt::maps::CSimplePointsMap wall_points(const Grid& grid);
 
-}  // namespace robot_control
+}  // namespace robot_control::navigation

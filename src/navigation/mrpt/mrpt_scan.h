@@ -10,7 +10,7 @@
 #include "navigation/grid.h"
 #include "navigation/scan.h"
 
-namespace robot_control {
+namespace robot_control::navigation {
 
 inline mrpt::poses::CPose2D mrpt_pose(const PlanarPose& pose) {
   return {pose.x, pose.y, pose.yaw};
@@ -49,4 +49,4 @@ inline mrpt::maps::CSimplePointsMap points_of(const mrpt::obs::CObservation2DRan
   return points;
 }
 
-}  // namespace robot_control
+}  // namespace robot_control::navigation

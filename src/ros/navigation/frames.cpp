@@ -4,7 +4,7 @@
 
 #include "ros/navigation/navigation_messages.h"
 
-namespace robot_control {
+namespace robot_control::navigation {
 
 Frames::Frames(ros::NodeHandle& handle) {
   const auto subscribe = [&](const char* topic, bool fixed) {
@@ -32,4 +32,4 @@ std::optional<FoundPose> Frames::lookup(const std::string& target, const std::st
   }
 }
 
-}  // namespace robot_control
+}  // namespace robot_control::navigation

@@ -10,7 +10,7 @@
 
 #include "navigation/grid.h"
 
-namespace robot_control {
+namespace robot_control::navigation {
 
 struct FoundPose {
   PlanarPose pose;
@@ -32,4 +32,4 @@ class Frames {
   ros::Subscriber moving_, fixed_;
 };
 
-}  // namespace robot_control
+}  // namespace robot_control::navigation

@@ -2,7 +2,7 @@
 
 #include "ros/navigation/navigation_messages.h"
 
-namespace robot_control {
+namespace robot_control::navigation {
 namespace {
 
 constexpr const char* kReplaced = "replaced by a newer goal";
@@ -88,4 +88,4 @@ void GoalServers::conclude(bool reached, bool cancelled, const std::string& reas
   finish(move_base_, move_base_msgs::MoveBaseResult(), reached, cancelled, reason);
 }
 
-}  // namespace robot_control
+}  // namespace robot_control::navigation

@@ -11,7 +11,7 @@
 
 #include "navigation/navigator.h"
 
-namespace robot_control {
+namespace robot_control::navigation {
 
 class GoalServers {
  public:
@@ -46,4 +46,4 @@ class GoalServers {
   ros::Subscriber simple_goal_;
 };
 
-}  // namespace robot_control
+}  // namespace robot_control::navigation

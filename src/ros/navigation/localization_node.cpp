@@ -16,7 +16,7 @@
 #include "ros/navigation/own_parameter.h"
 #include "ros/navigation/scan_input.h"
 
-namespace robot_control {
+namespace robot_control::navigation {
 namespace {
 
 constexpr std::uint32_t kSeed = 1;    // the same scans give the same particles
@@ -128,4 +128,4 @@ void spin_localization() {
   ros::spin();
 }
 
-}  // namespace robot_control
+}  // namespace robot_control::navigation

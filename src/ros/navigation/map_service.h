@@ -8,7 +8,7 @@
 #include <functional>
 #include <string>
 
-namespace robot_control {
+namespace robot_control::navigation {
 
 /// The text that `use` returns is the answer; what it throws is the reason of the refusal.
 inline ros::ServiceServer map_service(ros::NodeHandle& handle, const char* name,
@@ -28,4 +28,4 @@ inline ros::ServiceServer map_service(ros::NodeHandle& handle, const char* name,
   return handle.advertiseService(name, answer);
 }
 
-}  // namespace robot_control
+}  // namespace robot_control::navigation

@@ -4,7 +4,7 @@
 
 #include "ros/navigation/navigation_messages.h"
 
-namespace robot_control {
+namespace robot_control::navigation {
 
 MapTopics::MapTopics(ros::NodeHandle& handle)
     : map_(handle.advertise<nav_msgs::OccupancyGrid>("map", 1, true)),
@@ -52,4 +52,4 @@ bool MapTopics::answer(nav_msgs::GetMap::Request& /*request*/, nav_msgs::GetMap:
   return !newest_.data.empty();
 }
 
-}  // namespace robot_control
+}  // namespace robot_control::navigation

@@ -10,7 +10,7 @@
 
 #include "navigation/grid.h"
 
-namespace robot_control {
+namespace robot_control::navigation {
 
 class MapTopics {
  public:
@@ -34,4 +34,4 @@ class MapTopics {
   robot_control::LocalizationState last_;
 };
 
-}  // namespace robot_control
+}  // namespace robot_control::navigation

@@ -10,8 +10,8 @@
 #include <memory>
 #include <stdexcept>
 
-#include "navigation/doubt.h"
 #include "navigation/footprint.h"
+#include "navigation/map_consistency.h"
 #include "navigation/map_file.h"
 #include "navigation/text.h"
 #include "ros/navigation/goal_servers.h"
@@ -20,7 +20,7 @@
 #include "ros/navigation/path_client.h"
 #include "ros/navigation/scan_guard.h"
 
-namespace robot_control {
+namespace robot_control::navigation {
 namespace {
 
 constexpr double kPeriod = 0.1;      // s
@@ -82,7 +82,7 @@ class NavigateNode {
     costmap_.reset();  // before the new one: two of the largest maps would take 0.8 GB
     costmap_ = std::make_unique<Costmap>(Grid{columns, rows, info.resolution, origin.x, origin.y, data}, footprint_,
                                          unknown_is_free_);
-    doubt_ = Doubt();
+    consistency_ = MapConsistency();
   }
 
   /// Takes a scan into the costmap, and compares it with the map. A scan waits until tf knows the place at its stamp.
@@ -95,7 +95,7 @@ class NavigateNode {
     const auto base = frames_.lookup(map_frame_, guard_.input().base_frame(), seen.stamp, scan_problem_);
     if (!base) return;
     costmap_->foresee(placed(waiting_->ahead, base->pose));
-    doubt_.update(costmap_->insert(seen.scan, composed(base->pose, seen.laser), now()));
+    consistency_.update(costmap_->insert(seen.scan, composed(base->pose, seen.laser), now()));
     waiting_.reset();
     seen_at_ = time;
   }
@@ -116,7 +116,7 @@ class NavigateNode {
       return text("the robot is not localised: tf from %s is %.1f s old", map_frame_.c_str(), age);
     if ((time - seen_at_).toSec() > kOldPlace)
       return "tf does not give the place of the scans in the map: " + scan_problem_;
-    if (!doubt_.problem().empty()) return doubt_.problem();
+    if (!consistency_.problem().empty()) return consistency_.problem();
     return path_client_.connected() ? "" : "follow_path does not run: rosrun robot_control follow_path.py";
   }
 
@@ -156,8 +156,9 @@ class NavigateNode {
     process_scan(time);
     const std::string why = problem(time);
     if (navigator_.active()) {
-      const std::string held = path_client_.held().empty() ? guard_.held() : path_client_.held();
-      output_ = navigator_.step({now(), why, doubt_.remark(), held, pose_, path_client_.report()}, costmap_.get());
+      const std::string slowed_by = path_client_.reason().empty() ? guard_.reason() : path_client_.reason();
+      output_ = navigator_.step({now(), why, consistency_.explanation(), slowed_by, pose_, path_client_.report()},
+                                costmap_.get());
       if (output_.cancel) path_client_.cancel();
       if (output_.path)
         path_client_.send(*output_.path, map_frame_, goal_speed_ > 0 ? goal_speed_ : speed_, requested_);
@@ -190,10 +191,10 @@ class NavigateNode {
     for (int row = 0; row < grid.rows; ++row) {
       for (int column = 0; column < grid.columns; ++column) {
         const double air = costmap_->distance({column, row}) - footprint_.inscribed;
-        grid.cells[grid.index({column, row})] = air > 0
-                                                    ? static_cast<std::int8_t>(98 * std::max(0.0, 1 - air / kComfort))
-                                                : costmap_->occupied({column, row}) ? kOccupiedCell
-                                                                                    : 99;
+        grid.cells[grid.index({column, row})] =
+            air > 0                             ? static_cast<std::int8_t>(98 * std::max(0.0, 1 - air / kFullClearance))
+            : costmap_->occupied({column, row}) ? kOccupiedCell
+                                                : 99;
       }
     }
     costmap_topic_.publish(grid_message(grid, map_frame_));
@@ -224,7 +225,7 @@ class NavigateNode {
   std::optional<GuardedScan> waiting_;  // for tf
   ros::Time seen_at_, requested_;
   std::string scan_problem_, last_;
-  Doubt doubt_;
+  MapConsistency consistency_;
   PlanarPose pose_;
   NavigatorOutput output_;
 };
@@ -236,4 +237,4 @@ void spin_navigate() {
   ros::spin();
 }
 
-}  // namespace robot_control
+}  // namespace robot_control::navigation

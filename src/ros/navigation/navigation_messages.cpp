@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-namespace robot_control {
+namespace robot_control::navigation {
 namespace {
 
 constexpr std::size_t kOf[] = {0, 1, 5};  // x, y, yaw among x y z roll pitch yaw
@@ -82,4 +82,4 @@ Scan scan_of(const sensor_msgs::LaserScan& message) {
           message.range_max, message.ranges,          message.angle_max};
 }
 
-}  // namespace robot_control
+}  // namespace robot_control::navigation

@@ -10,7 +10,7 @@
 
 #include "navigation/mrpt/localizer.h"
 
-namespace robot_control {
+namespace robot_control::navigation {
 
 inline constexpr const char* kMapFrame = "map";
 
@@ -36,4 +36,4 @@ nav_msgs::OccupancyGrid grid_message(const Grid& grid, const std::string& frame)
 /// Returns the scan in the axes of its laser.
 Scan scan_of(const sensor_msgs::LaserScan& message);
 
-}  // namespace robot_control
+}  // namespace robot_control::navigation

@@ -6,7 +6,7 @@
 #include <stdexcept>
 #include <string>
 
-namespace robot_control {
+namespace robot_control::navigation {
 
 /// Returns the parameter ~name, or `otherwise` where it is not set. Throws std::runtime_error for one of another type,
 /// which ROS takes for one that is not set; `what` says what it must be.
@@ -17,4 +17,4 @@ T own_parameter(const std::string& name, T otherwise, const char* what) {
   return otherwise;
 }
 
-}  // namespace robot_control
+}  // namespace robot_control::navigation

@@ -9,7 +9,7 @@
 
 #include "ros/navigation/navigation_messages.h"
 
-namespace robot_control {
+namespace robot_control::navigation {
 
 PathClient::PathClient(ros::NodeHandle& handle)
     : goal_(handle.advertise<FollowPathActionGoal>("follow_path/goal", 10)),
@@ -39,7 +39,7 @@ void PathClient::send(const Plan& plan, const std::string& frame, double speed, 
   goal_.publish(message);
   poses_ = plan.poses;
   turning_ = false;
-  held_.clear();
+  reason_.clear();
   report_ = {PathReport::State::kActive, ""};
 }
 
@@ -64,7 +64,7 @@ void PathClient::receive_feedback(const FollowPathActionFeedback& message) {
   if (message.status.goal_id.id != id_) return;
   turning_ = message.feedback.state == "turning";
   heading_error_ = message.feedback.heading_error;
-  held_ = message.feedback.reason;
+  reason_ = message.feedback.reason;
 }
 
 void PathClient::receive_result(const FollowPathActionResult& message) {
@@ -73,4 +73,4 @@ void PathClient::receive_result(const FollowPathActionResult& message) {
   report_ = {done ? PathReport::State::kDone : PathReport::State::kFailed, message.result.reason};
 }
 
-}  // namespace robot_control
+}  // namespace robot_control::navigation

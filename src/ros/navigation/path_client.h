@@ -13,7 +13,7 @@
 #include "navigation/guard.h"
 #include "navigation/navigator.h"
 
-namespace robot_control {
+namespace robot_control::navigation {
 
 class PathClient {
  public:
@@ -27,7 +27,7 @@ class PathClient {
   const PathReport& report() const noexcept { return report_; }
 
   /// Returns why follow_path holds the robot, as it says; "" if it does not.
-  std::string held() const { return held_; }
+  std::string reason() const { return reason_; }
 
   /// Returns the motion that follow_path intends now, as far as its feedback says: the sign of a turn on the spot, or
   /// of the speed.
@@ -40,7 +40,7 @@ class PathClient {
 
   ros::Publisher goal_, cancel_;
   ros::Subscriber feedback_, result_;
-  std::string id_, held_;
+  std::string id_, reason_;
   PathReport report_;
   std::vector<PlanarPose> poses_;
   bool turning_ = false;
@@ -48,4 +48,4 @@ class PathClient {
   int sent_ = 0;
 };
 
-}  // namespace robot_control
+}  // namespace robot_control::navigation

@@ -7,7 +7,7 @@
 
 #include "navigation/text.h"
 
-namespace robot_control {
+namespace robot_control::navigation {
 namespace {
 
 constexpr double kTick = 0.1;       // s
@@ -45,7 +45,7 @@ std::optional<GuardedScan> ScanGuard::next_scan() {
   return std::exchange(newest_, std::nullopt);
 }
 
-std::string ScanGuard::held() {
+std::string ScanGuard::reason() {
   const std::lock_guard lock(mutex_);
   if (!guards_ || published_ > 0.3) return "";
   return text("the laser sees something %.2f m before the outline", published_ + kStopShort + kBeside);
@@ -54,11 +54,11 @@ std::string ScanGuard::held() {
 void ScanGuard::use(const PlacedScan& scan) {
   const std::lock_guard lock(mutex_);
   const PlanarPose& base = scan.odometry.mean;
-  const std::vector<Mover> movers =
-      movers_seen_from(movers_.update(scan.scan, composed(base, scan.laser), scan.stamp.toSec()), base);
-  newest_ = {scan, places_ahead(movers, footprint_)};
+  const std::vector<MovingObject> objects =
+      objects_seen_from(objects_.update(scan.scan, composed(base, scan.laser), scan.stamp.toSec()), base);
+  newest_ = {scan, places_ahead(objects, footprint_)};
   const bool moves = std::abs(measured_.linear) > kStanding || std::abs(measured_.angular) > 2 * kStanding;
-  const double free = free_way(footprint_, points_of(scan.scan, scan.laser), moves ? measured_ : intended_, movers);
+  const double free = free_way(footprint_, points_of(scan.scan, scan.laser), moves ? measured_ : intended_, objects);
   const double age = std::clamp((ros::Time::now() - scan.stamp).toSec(), 0.0, kSilence);
   if (guards_) publish(std::max(0.0, free - std::abs(measured_.linear) * age));
 }
@@ -82,4 +82,4 @@ void ScanGuard::publish(double clearance) {
   clearance_.publish(message);
 }
 
-}  // namespace robot_control
+}  // namespace robot_control::navigation

@@ -15,7 +15,7 @@
 #include "navigation/guard.h"
 #include "ros/navigation/scan_input.h"
 
-namespace robot_control {
+namespace robot_control::navigation {
 
 struct GuardedScan {
   PlacedScan seen;
@@ -36,7 +36,7 @@ class ScanGuard {
   std::optional<GuardedScan> next_scan();
 
   /// Returns what slows the robot, in words; "" if the way ahead is free.
-  std::string held();
+  std::string reason();
 
  private:
   void use(const PlacedScan& scan);
@@ -51,7 +51,7 @@ class ScanGuard {
   std::mutex mutex_;  // of all below but the input
   std::optional<GuardedScan> newest_;
   PlanarMotion measured_, intended_;
-  Movers movers_;
+  MovingObjects objects_;
   double published_ = 0;  // m
   bool active_ = false, guards_ = true;
   int stood_ = 0;  // ticks
@@ -61,4 +61,4 @@ class ScanGuard {
   ros::AsyncSpinner spinner_{1, &queue_};
 };
 
-}  // namespace robot_control
+}  // namespace robot_control::navigation

@@ -6,7 +6,7 @@
 
 #include "ros/navigation/navigation_messages.h"
 
-namespace robot_control {
+namespace robot_control::navigation {
 
 ScanInput::ScanInput(ros::NodeHandle& handle, std::function<void(const PlacedScan&)> use,
                      std::function<void(const nav_msgs::Odometry&)> odometry)
@@ -79,4 +79,4 @@ void ScanInput::use_pending() {
   use_({std::move(scan), laser->pose, {base->pose, uncertain_of(odometry_.pose).covariance}, stamp});
 }
 
-}  // namespace robot_control
+}  // namespace robot_control::navigation

@@ -17,7 +17,7 @@
 #include "navigation/scan_watch.h"
 #include "ros/navigation/frames.h"
 
-namespace robot_control {
+namespace robot_control::navigation {
 
 struct PlacedScan {
   Scan scan;               ///< its angles in axes whose z points upwards
@@ -60,4 +60,4 @@ class ScanInput {
   ros::Subscriber scan_, odom_;
 };
 
-}  // namespace robot_control
+}  // namespace robot_control::navigation

@@ -12,7 +12,7 @@
 #include "ros/navigation/own_parameter.h"
 #include "ros/navigation/scan_input.h"
 
-namespace robot_control {
+namespace robot_control::navigation {
 namespace {
 
 constexpr double kMapPeriod = 2;  // s between two messages of a map that grows
@@ -93,4 +93,4 @@ void spin_slam() {
   ros::spin();
 }
 
-}  // namespace robot_control
+}  // namespace robot_control::navigation

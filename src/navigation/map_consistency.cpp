@@ -1,22 +1,22 @@
-#include "navigation/doubt.h"
+#include "navigation/map_consistency.h"
 
 #include <algorithm>
 #include <cmath>
 
-namespace robot_control {
+namespace robot_control::navigation {
 namespace {
 
 constexpr double kShare = 0.2;  // of the newest scan in the mean
 
 }  // namespace
 
-void Doubt::update(const Agreement& seen) {
-  if (seen.rays < kFewRays) return;
+void MapConsistency::update(const Agreement& seen) {
+  if (seen.rays < kMinRays) return;
   const int agreeing = seen.rays - seen.contradicting - seen.unforeseen;
   agreeing_ += kShare * (static_cast<double>(agreeing) / seen.rays - agreeing_);
   const bool bad = seen.contradicting > kContradicting * seen.rays || seen.explained < kExplainedLeast * seen.rays;
-  bad_ = std::clamp(bad_ + (bad ? 1 : -1), 0, kDoubtful);
-  doubtful_ = bad_ == kDoubtful || (doubtful_ && bad_ > 0);
+  bad_ = std::clamp(bad_ + (bad ? 1 : -1), 0, kBadScans);
+  contradicts_ = bad_ == kBadScans || (contradicts_ && bad_ > 0);
   if (bad) {
     text_ = "the scan contradicts the map: of " + std::to_string(seen.rays) + " rays " +
             std::to_string(seen.contradicting) + " pass its walls and " + std::to_string(seen.explained) +
@@ -24,10 +24,10 @@ void Doubt::update(const Agreement& seen) {
   }
 }
 
-std::string Doubt::remark() const {
-  if (doubtful_ || agreeing_ >= kAgreeing) return "";
+std::string MapConsistency::explanation() const {
+  if (contradicts_ || agreeing_ >= kAgreeing) return "";
   return "; the scan contradicts the map in " + std::to_string(std::lround(100 * (1 - agreeing_))) +
          " % of its rays, which pass its walls or end where it is free";
 }
 
-}  // namespace robot_control
+}  // namespace robot_control::navigation

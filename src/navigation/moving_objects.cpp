@@ -1,9 +1,9 @@
-#include "navigation/movers.h"
+#include "navigation/moving_objects.h"
 
 #include <algorithm>
 #include <cmath>
 
-namespace robot_control {
+namespace robot_control::navigation {
 namespace {
 
 constexpr double kApart = 0.4;      // s between the two scans
@@ -11,7 +11,7 @@ constexpr double kGap = 0.25;       // m
 constexpr double kLargest = 1.2;    // m
 constexpr double kNew = 0.25;       // of the points
 constexpr double kThrough = 0.1;    // m by which a ray passed the place of a point
-constexpr double kFastest = 2.5;    // m/s; what is farther away is another thing
+constexpr double kFastest = 2.5;    // m/s; what is farther away is another cluster
 constexpr double kSlowest = 0.1;    // m/s
 constexpr double kTick = 0.1;       // s
 constexpr double kTouching = 0.02;  // m
@@ -32,55 +32,55 @@ bool seen_free(const Scan& scan, const PlanarPose& sensor, Point at) {
 
 }  // namespace
 
-std::vector<Movers::Thing> Movers::things_of(const Scan& scan, const PlanarPose& sensor) {
-  std::vector<Thing> things;
+std::vector<MovingObjects::Cluster> MovingObjects::clusters_of(const Scan& scan, const PlanarPose& sensor) {
+  std::vector<Cluster> clusters;
   for (const Point point : points_of(scan, sensor)) {
-    if (!things.empty()) {
-      const Point last = things.back().points.back();
+    if (!clusters.empty()) {
+      const Point last = clusters.back().points.back();
       if (std::hypot(point.x - last.x, point.y - last.y) < kGap) {
-        things.back().points.push_back(point);
+        clusters.back().points.push_back(point);
         continue;
       }
     }
-    things.push_back({{point}, {}});
+    clusters.push_back({{point}, {}});
   }
-  for (Thing& thing : things) {
-    Point low = thing.points[0], high = low;
-    for (const Point point : thing.points) {
+  for (Cluster& cluster : clusters) {
+    Point low = cluster.points[0], high = low;
+    for (const Point point : cluster.points) {
       low = {std::min(low.x, point.x), std::min(low.y, point.y)};
       high = {std::max(high.x, point.x), std::max(high.y, point.y)};
     }
-    thing.middle = {(low.x + high.x) / 2, (low.y + high.y) / 2};
-    if (std::hypot(high.x - low.x, high.y - low.y) > kLargest) thing.points.clear();
+    cluster.middle = {(low.x + high.x) / 2, (low.y + high.y) / 2};
+    if (std::hypot(high.x - low.x, high.y - low.y) > kLargest) cluster.points.clear();
   }
-  std::erase_if(things, [](const Thing& thing) { return thing.points.empty(); });
-  return things;
+  std::erase_if(clusters, [](const Cluster& cluster) { return cluster.points.empty(); });
+  return clusters;
 }
 
-std::vector<Mover> Movers::update(const Scan& scan, const PlanarPose& sensor, double now) {
-  if (!views_.empty() && now <= views_.back().at) views_.clear();
-  while (views_.size() > 1 && views_[1].at <= now - kApart) views_.pop_front();
-  std::vector<Mover> movers;
-  const std::vector<Thing> things = things_of(scan, sensor);
-  const View* before = views_.empty() || now - views_[0].at > 2 * kApart ? nullptr : &views_[0];
+std::vector<MovingObject> MovingObjects::update(const Scan& scan, const PlanarPose& sensor, double now) {
+  if (!records_.empty() && now <= records_.back().at) records_.clear();
+  while (records_.size() > 1 && records_[1].at <= now - kApart) records_.pop_front();
+  std::vector<MovingObject> objects;
+  const std::vector<Cluster> clusters = clusters_of(scan, sensor);
+  const ScanRecord* before = records_.empty() || now - records_[0].at > 2 * kApart ? nullptr : &records_[0];
   const double elapsed = before != nullptr ? now - before->at : 0;
-  for (std::size_t i = 0; before != nullptr && elapsed > kApart / 2 && i < things.size(); ++i) {
-    const Thing& thing = things[i];
-    const auto fresh = std::count_if(thing.points.begin(), thing.points.end(),
+  for (std::size_t i = 0; before != nullptr && elapsed > kApart / 2 && i < clusters.size(); ++i) {
+    const Cluster& cluster = clusters[i];
+    const auto fresh = std::count_if(cluster.points.begin(), cluster.points.end(),
                                      [&](Point point) { return seen_free(before->scan, before->sensor, point); });
-    if (static_cast<double>(fresh) < std::max(2.0, kNew * static_cast<double>(thing.points.size()))) continue;
+    if (static_cast<double>(fresh) < std::max(2.0, kNew * static_cast<double>(cluster.points.size()))) continue;
     double nearest = kFastest * elapsed;
     Point velocity;
-    for (const Thing& old : before->things) {
-      const double dx = thing.middle.x - old.middle.x, dy = thing.middle.y - old.middle.y;
+    for (const Cluster& old : before->clusters) {
+      const double dx = cluster.middle.x - old.middle.x, dy = cluster.middle.y - old.middle.y;
       if (std::hypot(dx, dy) >= nearest) continue;
       nearest = std::hypot(dx, dy);
       velocity = {dx / elapsed, dy / elapsed};
     }
-    if (std::hypot(velocity.x, velocity.y) > kSlowest) movers.push_back({thing.points, velocity});
+    if (std::hypot(velocity.x, velocity.y) > kSlowest) objects.push_back({cluster.points, velocity});
   }
-  views_.push_back({scan, sensor, now, things});
-  return movers;
+  records_.push_back({scan, sensor, now, clusters});
+  return objects;
 }
 
 std::vector<Point> placed(std::vector<Point> points, const PlanarPose& base) {
@@ -91,23 +91,23 @@ std::vector<Point> placed(std::vector<Point> points, const PlanarPose& base) {
   return points;
 }
 
-std::vector<Mover> movers_seen_from(std::vector<Mover> movers, const PlanarPose& base) {
+std::vector<MovingObject> objects_seen_from(std::vector<MovingObject> objects, const PlanarPose& base) {
   const double c = std::cos(base.yaw), s = std::sin(base.yaw);
   const auto turned = [&](double x, double y) { return Point{c * x + s * y, c * y - s * x}; };
-  for (Mover& mover : movers) {
-    for (Point& point : mover.points) point = turned(point.x - base.x, point.y - base.y);
-    mover.velocity = turned(mover.velocity.x, mover.velocity.y);
+  for (MovingObject& object : objects) {
+    for (Point& point : object.points) point = turned(point.x - base.x, point.y - base.y);
+    object.velocity = turned(object.velocity.x, object.velocity.y);
   }
-  return movers;
+  return objects;
 }
 
-std::vector<Point> places_ahead(const std::vector<Mover>& movers, const Footprint& footprint) {
+std::vector<Point> places_ahead(const std::vector<MovingObject>& objects, const Footprint& footprint) {
   std::vector<Point> places;
-  for (const Mover& mover : movers) {
+  for (const MovingObject& object : objects) {
     std::vector<Point> own;
     for (double time = 0; time <= kForesight; time += kTick) {
-      for (const Point point : mover.points)
-        own.push_back({point.x + mover.velocity.x * time, point.y + mover.velocity.y * time});
+      for (const Point point : object.points)
+        own.push_back({point.x + object.velocity.x * time, point.y + object.velocity.y * time});
     }
     if (std::ranges::any_of(own, [&](Point place) { return footprint.distance(place) < kTouching; })) continue;
     places.insert(places.end(), own.begin(), own.end());
@@ -115,4 +115,4 @@ std::vector<Point> places_ahead(const std::vector<Mover>& movers, const Footprin
   return places;
 }
 
-}  // namespace robot_control
+}  // namespace robot_control::navigation

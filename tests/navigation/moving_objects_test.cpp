@@ -1,11 +1,11 @@
-#include "navigation/movers.h"
+#include "navigation/moving_objects.h"
 
 #include <gtest/gtest.h>
 
 #include "navigation/guard.h"
 #include "navigation/house.h"
 
-namespace robot_control {
+namespace robot_control::navigation {
 namespace {
 
 using namespace testing_house;
@@ -29,22 +29,22 @@ class MoversTest : public testing::Test {
     return scan_of(world, sensor_);
   }
 
-  /// The movers after a second in which box and laser have these speeds, m/s, both in x.
-  std::vector<Mover> after_a_second(double box_speed, double own_speed = 0) {
-    std::vector<Mover> found;
+  /// The objects after a second in which box and laser have these speeds, m/s, both in x.
+  std::vector<MovingObject> after_a_second(double box_speed, double own_speed = 0) {
+    std::vector<MovingObject> found;
     for (int i = 0; i <= 10; ++i) {
       sensor_.x = 3 + own_speed * i * kScanPeriod;
-      found = movers_.update(seen({5 + box_speed * i * kScanPeriod, 7}), sensor_, i * kScanPeriod);
+      found = objects_.update(seen({5 + box_speed * i * kScanPeriod, 7}), sensor_, i * kScanPeriod);
     }
     return found;
   }
 
   PlanarPose sensor_{3, 5, 0};
-  Movers movers_;
+  MovingObjects objects_;
 };
 
 TEST_F(MoversTest, AThingThatMovesHasItsVelocity) {
-  const std::vector<Mover> found = after_a_second(0.8);
+  const std::vector<MovingObject> found = after_a_second(0.8);
   ASSERT_EQ(found.size(), 1U);
   EXPECT_NEAR(found[0].velocity.x, 0.8, 0.3);  // one cell of the world in 0.4 s
   EXPECT_NEAR(found[0].velocity.y, 0, 0.3);
@@ -63,43 +63,43 @@ TEST_F(MoversTest, APieceOfWallAlongWhichRaysGrazeStands) {
       const double angle = sensor_.yaw + scan.angle(ray), x = 0.7 / std::tan(angle);  // where y is 0.7 m
       if (std::sin(angle) > 0 && x > 2.6 && x < 3.4) scan.ranges[ray] = static_cast<float>(std::hypot(x, 0.7));
     }
-    EXPECT_TRUE(movers_.update(scan, sensor_, i * kScanPeriod).empty()) << "scan " << i;
+    EXPECT_TRUE(objects_.update(scan, sensor_, i * kScanPeriod).empty()) << "scan " << i;
   }
 }
 
 /// A thing of one point with its velocity, in base axes.
-std::vector<Mover> mover(Point point, Point velocity) {
+std::vector<MovingObject> object(Point point, Point velocity) {
   return {{{point}, velocity}};
 }
 
 TEST(PlacesAheadTest, TheyAreThoseOfWhatPassesAStandingRobot) {
-  EXPECT_TRUE(places_ahead(mover({1.12, 0}, {-0.5, 0}), diffbot()).empty());
-  const std::vector<Point> ahead = places_ahead(mover({1.12, 0.5}, {-0.5, 0}), diffbot());
+  EXPECT_TRUE(places_ahead(object({1.12, 0}, {-0.5, 0}), diffbot()).empty());
+  const std::vector<Point> ahead = places_ahead(object({1.12, 0.5}, {-0.5, 0}), diffbot());
   ASSERT_FALSE(ahead.empty());
   EXPECT_NEAR(ahead.back().x, 1.12 - 0.5 * kForesight, 0.051);
 }
 
 TEST(MoversSeenFromTest, TheyAreTurnedIntoTheAxesOfTheBase) {
-  const Mover seen = movers_seen_from(mover({2, 1}, {0.5, 0}), {2, 0, M_PI / 2})[0];
+  const MovingObject seen = objects_seen_from(object({2, 1}, {0.5, 0}), {2, 0, M_PI / 2})[0];
   EXPECT_NEAR(seen.points[0].x, 1, 1e-9);
   EXPECT_NEAR(seen.points[0].y, 0, 1e-9);
   EXPECT_NEAR(seen.velocity.y, -0.5, 1e-9);
 }
 
 TEST(FreeWayAmongMoversTest, ItEndsWhereOneCrosses) {
-  const std::vector<Mover> crossing = mover({1.12, -1.5}, {0, 0.8});
+  const std::vector<MovingObject> crossing = object({1.12, -1.5}, {0, 0.8});
   EXPECT_NEAR(free_way(diffbot(), {}, {0.5, 0}, crossing), 1.0 - kBeside - kStopShort, 0.021);
 }
 
 TEST(FreeWayAmongMoversTest, OneThatComesToTheRobotEndsItAtTheMeeting) {
-  const std::vector<Mover> oncoming = mover({1.12, 0}, {-0.5, 0});
+  const std::vector<MovingObject> oncoming = object({1.12, 0}, {-0.5, 0});
   EXPECT_NEAR(free_way(diffbot(), {}, {0.5, 0}, oncoming), 0.5 - kStopShort, 0.05);
 }
 
 TEST(FreeWayAmongMoversTest, TheRobotDrivesOnOutOfTheWayOfOneThatWouldTouchIt) {
-  const std::vector<Mover> from_the_side = mover({0, -1.27}, {0, 0.5});
+  const std::vector<MovingObject> from_the_side = object({0, -1.27}, {0, 0.5});
   EXPECT_TRUE(std::isinf(free_way(diffbot(), {}, {0.5, 0}, from_the_side)));
 }
 
 }  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::navigation
