@@ -1,7 +1,5 @@
 """Finds when the gate braked although the robot was to drive; the table and the picture of a run both use it."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The values of config/fleet.yaml."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path

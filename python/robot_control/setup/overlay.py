@@ -1,7 +1,5 @@
 """YAML that is laid over the parameters."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Iterator, Mapping
 from typing import Any
 

@@ -1,7 +1,5 @@
 """The command line of scripts/demo, judged before anything is built: nothing that is built is imported here."""
 
-from __future__ import annotations
-
 import argparse
 import tempfile
 from collections.abc import Sequence

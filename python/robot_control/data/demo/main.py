@@ -1,7 +1,5 @@
 """Launches the closed loop in wall-clock time, drives it, ends it, and judges what it did."""
 
-from __future__ import annotations
-
 import contextlib
 import os
 import re

@@ -1,7 +1,5 @@
 """Splits a recording by sensor, for the checks of an input."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The poses of a log at the times of its pictures."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from pathlib import Path

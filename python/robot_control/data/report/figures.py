@@ -1,7 +1,5 @@
 """Computes the figures of a log that budgets can bound."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 

@@ -1,7 +1,5 @@
 """The path, the time lines of states and reasons, the histograms."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Plots of values over time."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from typing import Any
 

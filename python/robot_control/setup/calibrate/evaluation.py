@@ -1,7 +1,5 @@
 """calibrate.py without ROS: its command line, what is plausible, the table and the YAML."""
 
-from __future__ import annotations
-
 import argparse
 import math
 from collections.abc import Mapping, Sequence

@@ -1,7 +1,5 @@
 """The ROS side of calibrate.py asks, drives, follows the wheels, and stops whenever something is not as planned."""
 
-from __future__ import annotations
-
 import math
 import sys
 import time

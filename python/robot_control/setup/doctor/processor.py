@@ -1,7 +1,5 @@
 """Checks of the core on which the loop runs."""
 
-from __future__ import annotations
-
 from robot_control.setup.doctor.finding import Check, Finding, fault, note, ok, warning
 from robot_control.setup.doctor.memory import GRANT, INSTALL
 from robot_control.setup.doctor.system import System, cores_of

@@ -1,7 +1,5 @@
 """identify.py without ROS: its command line, and the steps from a log to a table and a YAML."""
 
-from __future__ import annotations
-
 import argparse
 import math
 from dataclasses import dataclass

@@ -9,8 +9,6 @@ The delay from command to measured torque, beyond that of the bus, is the shift 
 measured torque to motion is the shift with the smallest residual.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 

@@ -1,7 +1,5 @@
 """identify.py's ROS side: reads the robot's parameters, drives the plan, stops whenever something is not as planned."""
 
-from __future__ import annotations
-
 import sys
 import time
 

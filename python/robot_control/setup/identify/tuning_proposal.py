@@ -13,8 +13,6 @@ delay with a gain margin of two, also on a lifted wheel. Otherwise the largest k
 proposed; s scales the bandwidth of the loop.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
