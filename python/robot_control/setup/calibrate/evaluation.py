@@ -3,7 +3,6 @@
 import argparse
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -13,7 +12,7 @@ from robot_control.files.files import given_path
 from robot_control.loop.roles import ESTIMATOR
 from robot_control.robot.send_plan import number_of_sends, positive
 from robot_control.setup.calibrate import law
-from robot_control.setup.overlay import to_yaml
+from robot_control.setup.overlay import Outcome, to_yaml
 from robot_control.ui.table import table
 
 RATIO = (0.95, 1.05)
@@ -28,24 +27,6 @@ FAR = 0.25
 """Share of a square's side; a robot that can be calibrated returns less far from its start."""
 WRONG = 0.15
 """Share of a distance; no wheel is so wrong, but a reading in feet, paces or centimetres is."""
-
-
-@dataclass(frozen=True)
-class Options:
-    """The command line."""
-
-    distance: float  # m, of a straight drive; 0: none
-    repeats: int  # straight drives
-    side: float  # m, of a square; 0: none
-    runs: int  # squares each way
-    speed: float  # m/s
-    turn_speed: float  # rad/s
-    manual: bool
-    truth: bool
-    yes: bool
-    measured: tuple[float, ...]  # m, answers for the straight drives
-    returned: tuple[tuple[float, float], ...]  # m, answers for the squares
-    out: Path
 
 
 def not_negative(text: str) -> float:
@@ -71,7 +52,7 @@ def place(text: str) -> tuple[float, float]:
     return x, y
 
 
-def parse_options(arguments: Sequence[str]) -> Options:
+def parse_options(arguments: Sequence[str]) -> argparse.Namespace:
     """Reads the command line (without the program's name); ends the program on a wrong one."""
     parser = argparse.ArgumentParser(
         prog="calibrate.py",
@@ -92,14 +73,13 @@ def parse_options(arguments: Sequence[str]) -> Options:
     add("--measured", type=positive, nargs="+", default=[], metavar="M", help="answers for the straight drives, m")
     add("--returned", type=place, nargs="+", default=[], metavar="X,Y", help="answers for the squares, m")
     add("--out", type=given_path, default=Path("calibrated.yaml"), help="(default %(default)s)")
-    given = vars(parser.parse_args(list(arguments)))
-    if given["distance"] == 0 and given["side"] == 0:
+    given = parser.parse_args(list(arguments))
+    if given.distance == 0 and given.side == 0:
         parser.error("--distance 0 and --side 0 leave nothing to do")
     for name in ("distance", "side"):
-        if 0 < given[name] < 0.5:
+        if 0 < getattr(given, name) < 0.5:
             parser.error(f"--{name}: below 0.5 m a tape's {1000 * law.TAPE:g} mm are more than the wheels' errors")
-    given["measured"], given["returned"] = tuple(given["measured"]), tuple(given["returned"])
-    return Options(**given)
+    return given
 
 
 def margin(length: float) -> float:
@@ -107,7 +87,7 @@ def margin(length: float) -> float:
     return 0.5 + length / 8
 
 
-def space(options: Options) -> str:
+def space(options: argparse.Namespace) -> str:
     """The space that must be free, as text."""
     if options.manual:
         return "Another sender or a person moves the robot; nothing is sent."
@@ -142,16 +122,6 @@ def implausible_return(returned: tuple[float, float], side: float) -> str:
         f"{math.hypot(*returned):.2f} m from the start after a square of {side:g} m: more than {FAR:.0%} of a side. Is "
         "it in metres, x ahead and y to the left of the first mark?"
     )
-
-
-@dataclass(frozen=True)
-class Outcome:
-    """The report to print and the parameters to write."""
-
-    truth: law.Truth
-    table: str
-    warnings: list[str]
-    yaml: str
 
 
 def wheels_of(robot: Mapping[str, Any]) -> law.Wheels:
@@ -189,14 +159,8 @@ def evaluate(
         )
     if squares:
         base = wheels.wheel_base
-        rows.append(
-            (
-                "effective wheel base",
-                f"{base:.6g} m",
-                _with(base, truth.base, truth.base_deviation),
-                _factor(truth.base),
-            )
-        )
+        measured = _with(base, truth.base, truth.base_deviation)
+        rows.append(("effective wheel base", f"{base:.6g} m", measured, _factor(truth.base)))
         rows.append(
             ("right over left radius", "1", _with(1, truth.ratio, truth.ratio_deviation, unit=""), _factor(truth.ratio))
         )
@@ -214,7 +178,7 @@ def evaluate(
         *lines,
         *(f"! {sentence}" for sentence in said),
     ]
-    return Outcome(truth, "\n".join(lines), said, to_yaml(head, overlay(robot, truth)))
+    return Outcome("\n".join(lines), said, to_yaml(head, overlay(robot, truth)))
 
 
 def overlay(robot: Mapping[str, Any], truth: law.Truth) -> dict[str, dict[str, float]]:

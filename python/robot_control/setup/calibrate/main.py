@@ -1,5 +1,6 @@
 """The ROS side of calibrate.py asks, drives, follows the wheels, and stops whenever something is not as planned."""
 
+import argparse
 import math
 import sys
 import time
@@ -11,7 +12,7 @@ import rospy
 
 from robot_control import ParameterError, RobotError
 from robot_control._robot_control import describe as describe_robot
-from robot_control.files.files import one_message, printable, write_text
+from robot_control.files.files import one_message
 from robot_control.files.output_files import check_outputs
 from robot_control.loop.roles import CONTROLLER, ESTIMATOR
 from robot_control.robot.pose import Pose
@@ -65,7 +66,7 @@ class Wizard:
     """One dialogue."""
 
     robot: CalibratedRobot
-    options: evaluation.Options
+    options: argparse.Namespace
     wheels: law.Wheels
     signals: Signals
     questions: Questions
@@ -222,19 +223,14 @@ def main() -> None:
             with ended_by_signals() as signals:
                 robot, straights, squares = _measured(settings, options, signals)
             outcome = evaluation.evaluate(robot, straights, squares, options.side)
-        print(outcome.table)
-        for sentence in outcome.warnings:
-            print(f"! {sentence}")
-        write_text(options.out, outcome.yaml)
-        name = printable(str(options.out))
-        print(f"wrote {name}: rosparam load it (in the robot's namespace), then restart every node")
+        outcome.deliver(options.out, "then restart every node")
 
 
 OTHERWISE = ("and let the robot stand where it may drive", "as a tape measure does")
 
 
 def _measured(
-    settings: Settings, options: evaluation.Options, signals: Signals
+    settings: Settings, options: argparse.Namespace, signals: Signals
 ) -> tuple[dict[str, object], list[law.Straight], list[law.Square]]:
     described = describe_robot(settings.path, settings.values)
     robot = CalibratedRobot(sends=not options.manual)
