@@ -21,11 +21,7 @@ def parse(arguments: Sequence[str] | None = None) -> argparse.Namespace:
         default="diffbot",
         help="on wheels or on legs (default %(default)s)",
     )
-    parser.add_argument(
-        "--drives",
-        choices=tuple(DRIVES),
-        help="the motors stand behind such simulated drives",
-    )
+    parser.add_argument("--drives", choices=tuple(DRIVES), help="the motors stand behind such simulated drives")
     parser.add_argument(
         "--wheel-command",
         choices=("torque", "velocity"),

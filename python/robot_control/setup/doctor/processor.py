@@ -72,9 +72,7 @@ def idle_states(system: System) -> Finding:
         return warning(f"robot.cpu_dma_latency is {wanted}, and /dev/cpu_dma_latency is absent", NO_DEVICE)
     if wanted is not None and not writable(system, "dev/cpu_dma_latency"):
         return warning(
-            f"robot.cpu_dma_latency is {wanted}, and this user may not open /dev/cpu_dma_latency",
-            GRANT,
-            INSTALL,
+            f"robot.cpu_dma_latency is {wanted}, and this user may not open /dev/cpu_dma_latency", GRANT, INSTALL
         )
     states = system.seen(
         [name.rsplit("/", 1)[0] for name in system.names(f"{CPU}/cpu{_core(system)}/cpuidle/state*/latency")] or None,
