@@ -3,8 +3,6 @@
 Joints are ordered front left, front right, rear left, rear right, each from the body outwards; feet likewise.
 """
 
-from __future__ import annotations
-
 from functools import lru_cache
 from os import PathLike
 from pathlib import Path

@@ -8,7 +8,7 @@ import yaml
 from robot_control import ClosedLoop
 from robot_control.robot.pose import Pose
 from robot_control.setup.calibrate.evaluation import evaluate, wheels_of
-from robot_control.setup.calibrate.law import Square, Straight, Truth, largest_mean_return_error
+from robot_control.setup.calibrate.law import Square, Straight, Truth, fit, largest_mean_return_error
 from robot_control.setup.calibrate.moves import Pilot, square, straight
 
 LEFT, RIGHT, BASE = 0.012, 0.004, 0.02
@@ -72,8 +72,9 @@ def outcome(before):
     return evaluate(loop.robot, straights, squares, SIDE)
 
 
-def test_finds_the_hidden_wheels(outcome):
-    truth = outcome.truth
+def test_finds_the_hidden_wheels(before):
+    loop, straights, squares, _ = before
+    truth = fit(straights, squares, wheels_of(loop.robot))
     assert truth.scale == pytest.approx(1 + (LEFT + RIGHT) / 2, rel=0.002)
     assert truth.ratio == pytest.approx((1 + RIGHT) / (1 + LEFT), rel=0.001)
     assert truth.base == pytest.approx(1 + BASE, rel=0.005)

@@ -8,7 +8,7 @@ from robot_control import ClosedLoop
 from robot_control._robot_control import wheel_loops
 from robot_control.installed_files import share_file
 from robot_control.settings.block import Settings
-from robot_control.setup.identify.evaluation import Options, evaluate, plan
+from robot_control.setup.identify.evaluation import evaluate, parse_options, plan
 from robot_control.setup.identify.fit import identify
 from robot_control.setup.identify.report import ground_friction
 from robot_control.setup.identify.tuning_proposal import base_of
@@ -21,7 +21,7 @@ ERRORS = {"sensor_errors": "data_sheet"}  # identification promises its accuracy
 TOLERANCE = 0.05  # what identification promises
 DELAYED = {"pid_kp": 1.0, "pid_ki": 5.0}  # stable with 10 cycles of delay on the ground (wheel_loop_gains.h)
 FRICTION_SHARE = 0.02  # share of the effort limit, dry, and as much viscous at 0.5 m/s, as in a good gear motor
-OPTIONS = Options(space=1.0, max_speed=0.5, repeats=2, mass=None, output=None, log=None, params=None, urdf=None)
+OPTIONS = parse_options([])
 CORPUS = [
     pytest.param(name, marks=[pytest.mark.nightly, pytest.mark.skipif(FOLDER is None, reason=ABSENT)])
     for name in ("kobuki", "p3dx_mario", "dingo_d")

@@ -1,7 +1,5 @@
 """The places of a robot's black boxes, and those that telemetry has saved."""
 
-from __future__ import annotations
-
 import os
 import re
 from pathlib import Path

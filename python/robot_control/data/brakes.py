@@ -1,11 +1,10 @@
 """Finds when the gate braked although the robot was to drive; the table and the picture of a run both use it."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np
 
+from robot_control.data.intervals import intervals
 from robot_control.data.run_log import Log
 from robot_control.loop.signal_names import bits, bits_in, number_of
 
@@ -41,12 +40,10 @@ def brakes_in_drive(log: Log) -> tuple[Brake, ...]:
     passed = passed[passed >= asked[0]] if asked.size else asked
     if not passed.size:
         return ()
-    edges = np.diff(np.concatenate([[0], braked.astype(int), [0]]))
     found = []
-    for begin, end in zip(np.flatnonzero(edges == 1), np.flatnonzero(edges == -1) - 1, strict=True):
+    for begin, end in intervals(braked):
         if passed[0] < begin <= asked[-1]:
-            reasons = int(np.bitwise_or.reduce(np.nan_to_num(log["gate_reasons"][begin : end + 1]).astype(np.int64)))
+            reasons = int(np.bitwise_or.reduce(np.nan_to_num(log["gate_reasons"][begin:end]).astype(np.int64)))
             names = tuple(reason.name for reason in bits_in("GateReason", reasons))
-            time = log["time"]
-            found.append(Brake(float(time[begin]), float(time[end]), int(end - begin + 1), names))
+            found.append(Brake(float(log["time"][begin]), float(log["time"][end - 1]), end - begin, names))
     return tuple(found)

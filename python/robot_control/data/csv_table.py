@@ -1,7 +1,5 @@
 """A log as the table run.csv: a header line, then one line per row of all runs."""
 
-from __future__ import annotations
-
 import csv
 import math
 from collections.abc import Mapping

@@ -1,7 +1,5 @@
 """When the feet of a robot on legs were asked to bear, and when they bore, from a log."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Finds the stretches in which a condition lasts."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from robot_control.data.run_log import BoolArray, FloatArray

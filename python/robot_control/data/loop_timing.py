@@ -1,7 +1,5 @@
 """Measures how punctual the loop was. It is reported, never judged: the machine may be shared."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """A run's log as arrays: reads the run.bag that the node `telemetry` writes."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path

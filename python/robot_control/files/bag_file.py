@@ -1,7 +1,5 @@
 """Messages of a ROS bag that another program wrote. A process of its own reads it with rosbag (read_bag.py)."""
 
-from __future__ import annotations
-
 import json
 import os
 import subprocess

@@ -1,7 +1,5 @@
 """Limits of a process that reads a file from outside with a library."""
 
-from __future__ import annotations
-
 import ctypes
 import resource
 import struct

@@ -1,7 +1,5 @@
 """Files that a user names, their errors, and text from them in a message: the same rules as src/files/."""
 
-from __future__ import annotations
-
 import contextlib
 import os
 import shutil

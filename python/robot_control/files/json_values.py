@@ -1,7 +1,5 @@
 """Values that JSON can hold."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterable
 from typing import Any

@@ -3,8 +3,6 @@
 The first line is the digest of the second one, so that nothing is taken from a file that was damaged or is another.
 """
 
-from __future__ import annotations
-
 import errno
 import hashlib
 import json

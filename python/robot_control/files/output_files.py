@@ -1,7 +1,5 @@
 """Checks the files that a program will write before its work, so that a typing error costs no minutes of driving."""
 
-from __future__ import annotations
-
 import os
 from collections.abc import Sequence
 from pathlib import Path

@@ -6,8 +6,6 @@ bag_file.py starts it. Each message is `FRAME` (number of its connection, time o
 The first one is HEAD, the last one END or ERROR.
 """
 
-from __future__ import annotations
-
 import contextlib
 import io
 import json

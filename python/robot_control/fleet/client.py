@@ -2,8 +2,6 @@
 neither ROS nor MQTT, whose parts it sees as `Robot` and as the list that `step` returns.
 """
 
-from __future__ import annotations
-
 import math
 import sys
 from collections import deque

@@ -1,7 +1,5 @@
 """Actions of a node or at once: those that YAML maps to a service or a topic, waitForTrigger and logReport."""
 
-from __future__ import annotations
-
 import math
 import queue
 import subprocess

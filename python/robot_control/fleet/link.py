@@ -5,8 +5,6 @@ Paho sends again those that were not acknowledged, and a broker that was restore
 therefore holds the digests of the last OWN of them. An empty message only ends a retained one.
 """
 
-from __future__ import annotations
-
 import math
 import queue
 import ssl

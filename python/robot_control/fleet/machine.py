@@ -1,7 +1,5 @@
 """Makes the factsheet of the running robot from robot_description, its limits in force and the settings."""
 
-from __future__ import annotations
-
 import time
 import xml.etree.ElementTree as ET
 

@@ -1,7 +1,5 @@
 """vda5050.py's main loop: the broker's messages in, the client's out, what was accepted in a file."""
 
-from __future__ import annotations
-
 import argparse
 import math
 import sys

@@ -1,7 +1,5 @@
 """fleet_master.py: a small master. It sends a square with updates and prints what the robot answers."""
 
-from __future__ import annotations
-
 import argparse
 import json
 import math

@@ -1,7 +1,5 @@
 """Keeps over a restart: the order with its actions, the position, and the headerId of each topic."""
 
-from __future__ import annotations
-
 import threading
 from pathlib import Path
 from typing import Any

@@ -1,7 +1,5 @@
 """The robot behind its topics: facts from messages, legs as goals of follow_path, map → odom."""
 
-from __future__ import annotations
-
 import math
 import time
 from typing import Any

@@ -1,7 +1,5 @@
 """The values of config/fleet.yaml."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -12,15 +10,7 @@ from robot_control.files.files import given_path, printable, problems_of
 from robot_control.fleet.v2.capability import STANDARD, ActionKind
 from robot_control.fleet.v2.messages import VERSIONS
 from robot_control.settings.addresses import is_loopback
-from robot_control.settings.files import (
-    SettingsError,
-    list_of,
-    matching,
-    number,
-    overlaid,
-    rules_of,
-    wrong_values,
-)
+from robot_control.settings.files import SettingsError, list_of, matching, number, overlaid, rules_of, wrong_values
 
 
 @dataclass(frozen=True)

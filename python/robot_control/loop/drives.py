@@ -1,7 +1,5 @@
 """The drives of src/drivers/drive_table.def."""
 
-from __future__ import annotations
-
 import re
 from dataclasses import dataclass
 from pathlib import Path

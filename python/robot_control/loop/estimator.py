@@ -5,8 +5,6 @@ out = est.process(time, left_position, right_position, gyro, accel)
 out["x"], out["y"], out["yaw"], out["pose_covariance"]  # numpy, a row per sample
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from os import PathLike
 from typing import Any
@@ -106,11 +104,7 @@ class Estimator:
         values += leaves({"robot": {name: value for name, value in given.items() if value is not None}})
         if period is not None and not (np.isfinite(period) and period > 0):
             raise ValueError(f"period is {period}; it must be above 0 s")
-        self._estimator = OfflineEstimator(
-            path,
-            values,
-            two_wheels=urdf is None and wheel_radius is not None,
-        )
+        self._estimator = OfflineEstimator(path, values, two_wheels=urdf is None and wheel_radius is not None)
         self._period = None if period is None else float(period)
         self._begun = False
         self._pose: list[float] | None = None  # of the next row

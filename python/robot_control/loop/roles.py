@@ -4,8 +4,6 @@ The controller is a program of the robot's kind. Tools that work with any robot 
 one of robots on wheels.
 """
 
-from __future__ import annotations
-
 import re
 from dataclasses import dataclass
 

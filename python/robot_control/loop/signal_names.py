@@ -1,7 +1,5 @@
 """The words of signals/names.h."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Any
 

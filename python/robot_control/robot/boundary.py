@@ -7,8 +7,6 @@ and named in the log; the program goes on. An exception that the checks did not 
 registered. Such an input may have left the program half way through a motion.
 """
 
-from __future__ import annotations
-
 import contextlib
 import math
 import threading

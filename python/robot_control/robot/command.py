@@ -1,7 +1,5 @@
 """A velocity that a program commands, and the pace at which it is sent. Pure."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
 

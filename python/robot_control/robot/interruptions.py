@@ -15,8 +15,6 @@ started was requested when the program began, not at its first pass. Times are s
 The clock has to run on while a program is suspended.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterable
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """Parameters of the running controller that set_parameters changes, as it publishes them."""
 
-from __future__ import annotations
-
 import rospy
 from dynamic_reconfigure.msg import Config
 

@@ -1,7 +1,5 @@
 """The kind of the running robot, as its driver publishes it on the latched topic robot_kind (msg/RobotKind.msg)."""
 
-from __future__ import annotations
-
 from functools import cache
 
 from robot_control.loop.roles import Kind, refuse_legs

@@ -1,7 +1,5 @@
 """A tool that drives a running robot first needs its parameters, the other senders, and whether all nodes run."""
 
-from __future__ import annotations
-
 import tempfile
 import time
 from collections.abc import Callable, Iterator, Sequence

@@ -1,7 +1,5 @@
 """Receives safety_status for a program: every message, not the newest alone."""
 
-from __future__ import annotations
-
 import math
 import threading
 import time

@@ -1,7 +1,5 @@
 """Values of the ROS parameter server, which any node can set to any type."""
 
-from __future__ import annotations
-
 import contextlib
 import tempfile
 from collections.abc import Iterator

@@ -5,8 +5,6 @@ it is repeated on the topic e_stop, whose connections outlive a restart of the m
 or that nothing confirms, is reported as that.
 """
 
-from __future__ import annotations
-
 import queue
 import threading
 import time

@@ -7,8 +7,6 @@
 Hence a signal is only noted here. The main thread ends the node after the last message was written.
 """
 
-from __future__ import annotations
-
 import contextlib
 import math
 import signal

@@ -1,7 +1,5 @@
 """The robot as a program sees it: the newest message of each topic, when it came, and whether the topic is silent."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import rospy

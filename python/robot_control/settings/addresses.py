@@ -1,7 +1,5 @@
 """The address on which the console listens, and the origins from which it takes requests. Pure."""
 
-from __future__ import annotations
-
 import ipaddress
 from dataclasses import dataclass
 from urllib.parse import urlsplit

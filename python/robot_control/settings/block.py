@@ -1,7 +1,5 @@
 """The parameters that a robot runs with."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 

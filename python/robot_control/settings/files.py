@@ -1,7 +1,5 @@
 """The settings of a program in YAML files, each laid over the one before."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import fields

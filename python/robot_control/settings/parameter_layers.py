@@ -1,7 +1,5 @@
 """A parameter file and the values laid over it, as the compiled part takes them: (dotted path, YAML text) each."""
 
-from __future__ import annotations
-
 import json
 from collections.abc import Iterator, Mapping
 from os import PathLike

@@ -1,7 +1,5 @@
 """A robot as the C++ reader understood it: plain values, SI units, base axes (x forward, y left, z up)."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from os import PathLike
 from typing import Any

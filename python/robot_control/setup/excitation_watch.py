@@ -1,7 +1,5 @@
 """Decides before every command whether a robot that is being identified may go on; no ROS in here."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """identify.py's view of a running robot: its reports and its commands."""
 
-from __future__ import annotations
-
 import math
 import time
 

@@ -1,7 +1,5 @@
 """The log of every cycle of a running robot, written by its telemetry, else by one that is started here."""
 
-from __future__ import annotations
-
 import contextlib
 import os
 import shutil

@@ -1,7 +1,5 @@
 """The shapes of a robot as triangles, and the floor it stands on."""
 
-from __future__ import annotations
-
 from itertools import pairwise
 from typing import Any
 

@@ -1,7 +1,5 @@
 """The file of a picture that a user names."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """How the project's pictures look: matplotlib's parameters."""
 
-from __future__ import annotations
-
 from typing import Any
 
 STYLE: dict[str, Any] = {

@@ -1,7 +1,5 @@
 """The outermost call of a program writes each line at once, and reports an output that fails without a traceback."""
 
-from __future__ import annotations
-
 import contextlib
 import io
 import os

@@ -1,7 +1,5 @@
 """Optional packages of PyPI, in environments of their own beside Debian's."""
 
-from __future__ import annotations
-
 import sys
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """A table of texts."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 

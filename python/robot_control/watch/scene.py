@@ -1,7 +1,5 @@
 """Texts, wheel forces and the path driven, as RViz shows them."""
 
-from __future__ import annotations
-
 import math
 import textwrap
 from collections.abc import Sequence

@@ -1,7 +1,5 @@
 """The command line of blackbox.py."""
 
-from __future__ import annotations
-
 import argparse
 import sys
 from pathlib import Path

@@ -3,8 +3,6 @@
 A name from outside is a component of a path: none of them leads out of the folder in which the files are put together.
 """
 
-from __future__ import annotations
-
 import os
 import stat
 import tempfile

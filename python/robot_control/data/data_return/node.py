@@ -1,7 +1,5 @@
 """data_return.py run: the sender beside the robot, with the lowest priority, and what it says."""
 
-from __future__ import annotations
-
 import os
 import subprocess
 import time

@@ -1,7 +1,5 @@
 """A file as parts and a manifest, and back. `zcat -f` over the parts in order of their names gives the file, too."""
 
-from __future__ import annotations
-
 import ctypes
 import errno
 import gzip

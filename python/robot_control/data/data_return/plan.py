@@ -1,7 +1,5 @@
 """Decides what is sent next, when, and what may be deleted. Pure: no clock, no file, no link."""
 
-from __future__ import annotations
-
 import fnmatch
 import os
 import re

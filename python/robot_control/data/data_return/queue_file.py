@@ -1,7 +1,5 @@
 """The files of the logs and how far each is, kept in a file that outlives a loss of power at any moment."""
 
-from __future__ import annotations
-
 import contextlib
 import fcntl
 import os

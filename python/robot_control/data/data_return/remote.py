@@ -1,7 +1,5 @@
 """The remote through rclone, which neither resumes nor writes atomically: every call says what it has left there."""
 
-from __future__ import annotations
-
 import contextlib
 import hashlib
 import json

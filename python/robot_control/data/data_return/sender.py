@@ -1,7 +1,5 @@
 """One step of the return: scan, delete beyond the quota, send some parts or a manifest. Its clock is an argument."""
 
-from __future__ import annotations
-
 import os
 import shutil
 from collections.abc import Callable, Iterable, Iterator, Mapping

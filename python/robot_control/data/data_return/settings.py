@@ -1,7 +1,5 @@
 """The values of config/data_return.yaml."""
 
-from __future__ import annotations
-
 import re
 import socket
 from collections.abc import Iterator

@@ -1,7 +1,5 @@
 """The command line of scripts/demo, judged before anything is built: nothing that is built is imported here."""
 
-from __future__ import annotations
-
 import argparse
 import tempfile
 from collections.abc import Sequence
@@ -23,11 +21,7 @@ def parse(arguments: Sequence[str] | None = None) -> argparse.Namespace:
         default="diffbot",
         help="on wheels or on legs (default %(default)s)",
     )
-    parser.add_argument(
-        "--drives",
-        choices=tuple(DRIVES),
-        help="the motors stand behind such simulated drives",
-    )
+    parser.add_argument("--drives", choices=tuple(DRIVES), help="the motors stand behind such simulated drives")
     parser.add_argument(
         "--wheel-command",
         choices=("torque", "velocity"),

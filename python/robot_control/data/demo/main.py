@@ -1,7 +1,5 @@
 """Launches the closed loop in wall-clock time, drives it, ends it, and judges what it did."""
 
-from __future__ import annotations
-
 import contextlib
 import os
 import re
@@ -169,14 +167,7 @@ def _drive(seconds: float, out: Path, robot: str, drives: Path | None, parameter
             [
                 *("roslaunch", "-p", port, "robot_control", "sim.launch", f"robot:={robot}"),
                 *("telemetry:=true", "black_box:=false", f"out:={out}", f"bus:={BUS}", f"params:={parameters}"),
-                *(
-                    []
-                    if drives is None
-                    else [
-                        f"drives:={drives}",
-                        f"driver:={DRIVES[drives.stem].driver}",
-                    ]
-                ),
+                *([] if drives is None else [f"drives:={drives}", f"driver:={DRIVES[drives.stem].driver}"]),
             ],
             out / "launch.log",
         )

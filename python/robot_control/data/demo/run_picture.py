@@ -125,12 +125,7 @@ def _draw_torques(axes: Axes, log: Log) -> None:
     for joint, color in zip(joint_names(log), JOINTS, strict=False):
         name = joint.removesuffix("_joint").replace("_", " ")
         axes.plot(
-            log["time"],
-            log[f"{joint}_effort_command"],
-            color=color,
-            linewidth=5,
-            alpha=0.3,
-            label=f"{name}, commanded",
+            log["time"], log[f"{joint}_effort_command"], color=color, linewidth=5, alpha=0.3, label=f"{name}, commanded"
         )
         measured = log[f"{joint}_effort"]
         if np.isfinite(measured).any():  # some drives measure no torque

@@ -1,7 +1,5 @@
 """A run in numbers: tracking, timing and safety; as a value, as JSON and as a table."""
 
-from __future__ import annotations
-
 import dataclasses
 import json
 import math

@@ -15,8 +15,6 @@ for the linear and the angular component each; mean, cycle and pose are the tole
 legs sways within each step. A stop by the safety monitor excuses nothing.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 

@@ -1,7 +1,5 @@
 """Samples out of a rosbag: joint_states or wheel odometry, and an IMU topic. Needs no running ROS."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path

@@ -10,8 +10,6 @@ The best of
 a grid of τ, then Gauss–Newton steps with ∂ΔW/∂τ = B · Δω.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Measures how fine the wheel angles of a recording are."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from robot_control.data.estimate.samples import FloatArray, Samples

@@ -1,7 +1,5 @@
 """Finds what is wrong with a recording before anything is estimated from it, in sentences that name the remedy."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass, field
 

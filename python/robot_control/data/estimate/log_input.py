@@ -1,7 +1,5 @@
 """Samples out of a run.bag of this package's telemetry, or of ClosedLoop."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import numpy as np

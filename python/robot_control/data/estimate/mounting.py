@@ -7,8 +7,6 @@ their correlation; of the four mountings on the axes with gravity upwards the be
 best with its y axis mirrored.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 

@@ -1,7 +1,5 @@
 """The estimate as files: CSV and rosbag, written row by row."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any, Protocol

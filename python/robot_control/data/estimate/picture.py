@@ -12,6 +12,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.patches import Ellipse
 
+from robot_control.data.intervals import intervals
 from robot_control.loop.estimator import FLAGS, SENSORS, Estimate
 from robot_control.ui.picture_style import STYLE
 
@@ -19,6 +20,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
     from robot_control.data.estimate.samples import FloatArray, IntArray
+    from robot_control.data.run_log import BoolArray
 
 WHEELS, OURS, SLIP, ANGULAR = "#c4c4c4", "#1f5fa8", "#c0392b", "#e07b00"
 AXES = (("x", "#c0392b"), ("y", "#2e8b57"), ("z", "#1f5fa8"))
@@ -42,7 +44,7 @@ class Picture:
         self._every = max(1, rows // POINTS)
         self._count = 0
         self._parts: list[Estimate] = []
-        self._slip: list[tuple[FloatArray, FloatArray]] = []
+        self._slip: list[tuple[FloatArray, BoolArray]] = []
 
     def add(self, time_ns: IntArray, estimate: Estimate) -> None:
         """Adds rows."""
@@ -86,9 +88,7 @@ class Picture:
         """Begin and end [s] of every stretch of slip."""
         time = np.concatenate([part[0] for part in self._slip])
         slip = np.concatenate([part[1] for part in self._slip])
-        edges = np.diff(np.concatenate([[0], slip.astype(int), [0]]))
-        begins, ends = np.flatnonzero(edges == 1), np.flatnonzero(edges == -1) - 1
-        return [(float(time[first]), float(time[last])) for first, last in zip(begins, ends, strict=True)]
+        return [(float(time[begin]), float(time[end - 1])) for begin, end in intervals(slip)]
 
 
 def _mean_of_neighbours(values: FloatArray, time_ns: IntArray) -> FloatArray:

@@ -1,7 +1,5 @@
 """Summarises the end of an estimate in a few lines."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Splits a recording by sensor, for the checks of an input."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np
@@ -55,19 +53,9 @@ def streams_of(samples: Samples, robot: Robot) -> Streams:
     seconds = samples.seconds
     left, right = (_travel(table, robot, side) for table, side in ((samples.left, "left"), (samples.right, "right")))
     read = ~(np.isnan(left) | np.isnan(right))
-    gyro_time, gyro = _axes(seconds, samples.gyro)
-    accel_time, accel = _axes(seconds, samples.accel)
-    return Streams(
-        seconds[read],
-        left[read],
-        right[read],
-        gyro_time,
-        gyro,
-        accel_time,
-        accel,
-        rotation(robot["imu"]["orientation"]),
-        float(robot["effective_wheel_base"]),
-    )
+    wheels = (seconds[read], left[read], right[read])
+    imu = (*_axes(seconds, samples.gyro), *_axes(seconds, samples.accel))
+    return Streams(*wheels, *imu, rotation(robot["imu"]["orientation"]), float(robot["effective_wheel_base"]))
 
 
 def _travel(table: FloatArray, robot: Robot, side: str) -> FloatArray:

@@ -1,7 +1,5 @@
 """Judges whether an estimate can be relied on, and which sensors it did not use."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Converts another program's odometry into wheel angles."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from robot_control.data.estimate.samples import FloatArray, Robot, Stream

@@ -1,7 +1,5 @@
 """The command line of export.py."""
 
-from __future__ import annotations
-
 import argparse
 import sys
 

@@ -1,7 +1,5 @@
 """A ROS 1 bag as MCAP: the same messages, their definitions beside them (mcap.dev/spec/registry, ros1)."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 from robot_control.files.bag_file import BagFile

@@ -1,7 +1,5 @@
 """A log as the topics that a robot publishes: odom, tf, joint_states, cmd_vel."""
 
-from __future__ import annotations
-
 import math
 import xml.etree.ElementTree as ET
 from collections.abc import Iterator, Mapping

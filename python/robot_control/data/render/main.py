@@ -1,7 +1,5 @@
 """scripts/render: PNGs, and where ffmpeg is installed an MP4, of a log."""
 
-from __future__ import annotations
-
 import argparse
 import shutil
 import subprocess

@@ -3,8 +3,6 @@
 The poses to be drawn are keyframes of the model, so that none of MuJoCo's large structures has to be described here.
 """
 
-from __future__ import annotations
-
 import ctypes
 import os
 import tempfile

@@ -1,7 +1,5 @@
 """The model that is simulated, made to be looked at: colours, light, the path driven, a keyframe per picture. Pure."""
 
-from __future__ import annotations
-
 import math
 import xml.etree.ElementTree as ET
 from collections.abc import Sequence

@@ -1,7 +1,5 @@
 """Draws the recorded results of the laws and those of the replay in one picture."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from pathlib import Path
 

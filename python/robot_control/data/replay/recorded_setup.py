@@ -1,7 +1,5 @@
 """The robot and the parameters of a log, as files from which laws can be made."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path

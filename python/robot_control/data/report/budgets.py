@@ -1,7 +1,5 @@
 """Figures against budgets."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """Reduces many rows to few pixels: the least and the largest value of every stretch stay at their times."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from robot_control.data.run_log import FloatArray

@@ -1,7 +1,5 @@
 """A log as the report reads it: columns that may be absent, counters, durations."""
 
-from __future__ import annotations
-
 import xml.etree.ElementTree as ET
 from dataclasses import dataclass, field
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Computes the figures of a log that budgets can bound."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
@@ -163,10 +161,7 @@ def true_path(drive: Drive) -> tuple[FloatArray, FloatArray]:
     first = known[0]
     turn = own_yaw[first] - yaw[first]
     dx, dy = x - x[first], y - y[first]
-    return (
-        own_x[first] + dx * np.cos(turn) - dy * np.sin(turn),
-        own_y[first] + dx * np.sin(turn) + dy * np.cos(turn),
-    )
+    return (own_x[first] + dx * np.cos(turn) - dy * np.sin(turn), own_y[first] + dx * np.sin(turn) + dy * np.cos(turn))
 
 
 def _torque(drive: Drive) -> Iterator[Figure]:

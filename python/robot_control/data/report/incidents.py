@@ -1,7 +1,5 @@
 """Finds stops, brakes, slip, warnings and lost rows in a log, each with its evidence."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
 

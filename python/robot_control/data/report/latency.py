@@ -1,7 +1,5 @@
 """Computes how long each step of a cycle took; only runs in wall-clock time have these columns."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -1,7 +1,5 @@
 """report.py: one page and a verdict of a log, or of two."""
 
-from __future__ import annotations
-
 import argparse
 import math
 import sys

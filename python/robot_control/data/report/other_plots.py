@@ -1,36 +1,17 @@
 """The path, the time lines of states and reasons, the histograms."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np
 from bokeh.models import ColumnDataSource, FactorRange
 
 from robot_control.data.intervals import intervals, joined, runs_of
+from robot_control.data.report import style
 from robot_control.data.report.decimate import BINS
 from robot_control.data.report.drive import Drive
 from robot_control.data.report.figures import true_path
 from robot_control.data.report.incidents import Incident
 from robot_control.data.report.latency import LATENCIES, durations_ns
-from robot_control.data.report.style import (
-    BLUE,
-    FONT,
-    GREEN,
-    GREY,
-    INK,
-    OF_DRIVES,
-    ORANGE,
-    PURPLE,
-    RED,
-    SKY,
-    STATES,
-    Line,
-    TimeAxis,
-    framed,
-    with_legend,
-    with_values,
-)  # fmt: skip
 from robot_control.data.report.walking import BEARS, MISSING, UNASKED, footfalls
 from robot_control.data.run_log import FloatArray
 from robot_control.loop import signal_names as names
@@ -43,13 +24,13 @@ CHI_SQUARE_95 = 5.991
 HISTOGRAM_BINS = 80
 
 ROWS = (
-    ("permit_causes", "StopCause", "stopped by", RED),
-    ("permit_warnings", "StopCause", "warning", ORANGE),
-    ("faults", "DriverFault", "driver fault", RED),
-    ("gate_reasons", "GateReason", "gate", PURPLE),
-    ("command_reasons", "CommandReason", "command", BLUE),
-    ("estimate_slip", "SlipReason", "slip", ORANGE),
-    ("estimate_flags", "StateFlag", "estimate", SKY),
+    ("permit_causes", "StopCause", "stopped by", style.RED),
+    ("permit_warnings", "StopCause", "warning", style.ORANGE),
+    ("faults", "DriverFault", "driver fault", style.RED),
+    ("gate_reasons", "GateReason", "gate", style.PURPLE),
+    ("command_reasons", "CommandReason", "command", style.BLUE),
+    ("estimate_slip", "SlipReason", "slip", style.ORANGE),
+    ("estimate_flags", "StateFlag", "estimate", style.SKY),
 )
 """columns of bits: kind of name, word before it, colour"""
 STATE_ROWS = ("state", "permit", "gate verdict", "posture")
@@ -57,35 +38,44 @@ WORD_WIDTH = 0.07
 """share of the run; a shorter bar has no word in it"""
 ORDINARY = {"valid"}
 """bits that are set in normal operation"""
-ACTIONS = {"brake": RED, "ramp": ORANGE, "drive": GREEN}
-FEET = {BEARS: BLUE, UNASKED: ORANGE, MISSING: GREY}
-POSTURES = {"lying": GREY, "standing": SKY, "walking": GREEN}
-VERDICTS = {"brake": RED, "passed": GREEN, "held": ORANGE, "clamped": PURPLE, "ramp": ORANGE}
+ACTIONS = {"brake": style.RED, "ramp": style.ORANGE, "drive": style.GREEN}
+FEET = {BEARS: style.BLUE, UNASKED: style.ORANGE, MISSING: style.GREY}
+POSTURES = {"lying": style.GREY, "standing": style.SKY, "walking": style.GREEN}
+VERDICTS = {
+    "brake": style.RED,
+    "passed": style.GREEN,
+    "held": style.ORANGE,
+    "clamped": style.PURPLE,
+    "ramp": style.ORANGE,
+}
 
 
 def path_plot(drives: list[Drive], found: list[Incident]) -> Any:  # noqa: ANN401 (Bokeh's)
     """Seen from above: paths, covariance ellipses, places of stops and brakes."""
-    plot = framed(
+    plot = style.framed(
         height=460, match_aspect=True, tools="pan,box_zoom,wheel_zoom,reset,save", x_axis_label="x [m]",
         y_axis_label="y [m]",
     )  # fmt: skip
     legend = []
     for i, drive in enumerate(drives):
         prefix = f"{drive.name}: " if len(drives) > 1 else ""
-        colour = OF_DRIVES[i]
+        colour = style.OF_DRIVES[i]
         x, y = drive.column("estimate_x"), drive.column("estimate_y")
         if len(drives) == 1 and not drive.kind.legged:
             wheels = _path(
-                plot, drive.column("wheel_odom_x"), drive.column("wheel_odom_y"), Line("", GREY, 1.0, "dotted")
+                plot,
+                drive.column("wheel_odom_x"),
+                drive.column("wheel_odom_y"),
+                style.Line("", style.GREY, 1.0, "dotted"),
             )
             legend.append(("wheels alone", wheels))
         if len(drives) == 1:
-            legend.append(("true", _path(plot, *true_path(drive), Line("", INK, 1.2, "dashed"))))
-        legend.append((f"{prefix}estimated", _path(plot, x, y, Line("", colour, 2.0))))
+            legend.append(("true", _path(plot, *true_path(drive), style.Line("", style.INK, 1.2, "dashed"))))
+        legend.append((f"{prefix}estimated", _path(plot, x, y, style.Line("", colour, 2.0))))
         legend.append((f"{prefix}95 % of the estimate", _ellipses(plot, drive, colour)))
     drive = drives[0]
     if len(drives) == 1:
-        legend.append(("begin", [plot.scatter(*_first(drive), size=11, marker="circle", color=GREEN)]))
+        legend.append(("begin", [plot.scatter(*_first(drive), size=11, marker="circle", color=style.GREEN)]))
         marks = [one for one in found if one.severity <= 1]
         rows = np.searchsorted(drive.time, [one.begin for one in marks]).clip(0, drive.time.size - 1)
         if marks:
@@ -93,10 +83,10 @@ def path_plot(drives: list[Drive], found: list[Incident]) -> Any:  # noqa: ANN40
                 "x": drive.column("estimate_x")[rows], "y": drive.column("estimate_y")[rows],
                 "what": [f"{one.kind}: {one.title}" for one in marks], "at": [one.begin for one in marks],
             })  # fmt: skip
-            shown = plot.scatter("x", "y", source=source, size=13, marker="inverted_triangle", color=RED)
-            with_values(plot, [shown], [("", "@what"), ("time", "@at{0.00} s")])
+            shown = plot.scatter("x", "y", source=source, size=13, marker="inverted_triangle", color=style.RED)
+            style.with_values(plot, [shown], [("", "@what"), ("time", "@at{0.00} s")])
             legend.append(("stops and brakes", [shown]))
-    return with_legend(plot, [(label, drawn) for label, drawn in legend if drawn])
+    return style.with_legend(plot, [(label, drawn) for label, drawn in legend if drawn])
 
 
 def _first(drive: Drive) -> tuple[list[float], list[float]]:
@@ -104,7 +94,7 @@ def _first(drive: Drive) -> tuple[list[float], list[float]]:
     return drive.column("estimate_x")[known].tolist(), drive.column("estimate_y")[known].tolist()
 
 
-def _path(plot: Any, x: FloatArray, y: FloatArray, look: Line) -> list[Any]:  # noqa: ANN401 (Bokeh's)
+def _path(plot: Any, x: FloatArray, y: FloatArray, look: style.Line) -> list[Any]:  # noqa: ANN401 (Bokeh's)
     if np.all(np.isnan(x)):
         return []
     distance = np.concatenate([[0.0], np.cumsum(np.hypot(np.nan_to_num(np.diff(x)), np.nan_to_num(np.diff(y))))])
@@ -138,12 +128,12 @@ def _ellipses(plot: Any, drive: Drive, colour: str) -> list[Any]:  # noqa: ANN40
                          line_alpha=0.5)]  # fmt: skip
 
 
-def time_lines(axis: TimeAxis, drive: Drive) -> Any:  # noqa: ANN401 (Bokeh's)
+def time_lines(axis: style.TimeAxis, drive: Drive) -> Any:  # noqa: ANN401 (Bokeh's)
     """Draws a bar per state and per reason, as long as it lasted."""
     bars: list[tuple[str, int, int, str, str]] = []  # row of the plot, first row of the log, end, colour, words
     order: list[str] = []
     for column, kind, label, colours in (
-        ("supervisor_state", "SupervisorState", STATE_ROWS[0], STATES),
+        ("supervisor_state", "SupervisorState", STATE_ROWS[0], style.STATES),
         ("permit_action", "PermitAction", STATE_ROWS[1], ACTIONS),
         ("gate_verdict", "GateVerdict", STATE_ROWS[2], VERDICTS),
         *([("legged_phase", "LegPhase", STATE_ROWS[3], POSTURES)] if drive.kind.legged else []),
@@ -154,7 +144,7 @@ def time_lines(axis: TimeAxis, drive: Drive) -> Any:  # noqa: ANN401 (Bokeh's)
             order.append(label)
         for begin, end, code in _thinned(found, drive.time.size):
             word = known[code] if code < len(known) else f"{code}"
-            bars.append((label, begin, end, colours.get(word, GREY), word))
+            bars.append((label, begin, end, colours.get(word, style.GREY), word))
     gap = max(1, drive.time.size // BINS)
     for column, kind, label, colour in ROWS:
         values = drive.bits(column)
@@ -173,7 +163,7 @@ def time_lines(axis: TimeAxis, drive: Drive) -> Any:  # noqa: ANN401 (Bokeh's)
     return _bars(axis, drive, order, bars)
 
 
-def foot_lines(axis: TimeAxis, drive: Drive) -> Any:  # noqa: ANN401 (Bokeh's)
+def foot_lines(axis: style.TimeAxis, drive: Drive) -> Any:  # noqa: ANN401 (Bokeh's)
     """Draws a bar for each time that a foot bore, or was asked to; None on wheels."""
     found = footfalls(drive)
     bars = [(foot, begin, end, FEET[words], words) for foot, begin, end, words in found]
@@ -192,7 +182,7 @@ def _thinned(found: list[tuple[int, int, int]], rows: int) -> list[tuple[int, in
     return list(kept.values())
 
 
-def _bars(axis: TimeAxis, drive: Drive, order: list[str], bars: list[tuple[str, int, int, str, str]]) -> Any:  # noqa: ANN401
+def _bars(axis: style.TimeAxis, drive: Drive, order: list[str], bars: list[tuple[str, int, int, str, str]]) -> Any:  # noqa: ANN401
     plot = axis.plot("", height=70 + 22 * len(order), y_range=FactorRange(*reversed(order)))
     plot.ygrid.grid_line_color = None
     last = drive.time.size - 1
@@ -207,10 +197,10 @@ def _bars(axis: TimeAxis, drive: Drive, order: list[str], bars: list[tuple[str, 
                           & [bar[0] in STATE_ROWS for bar in bars])  # fmt: skip
     plot.text(
         x=(left[wide] + right[wide]) / 2, y=[bars[i][0] for i in wide], text=[bars[i][4] for i in wide],
-        text_color="white", text_font={"value": FONT}, text_font_size="11px",
+        text_color="white", text_font={"value": style.FONT}, text_font_size="11px",
         text_align="center", text_baseline="middle",
     )  # fmt: skip
-    with_values(plot, [drawn], [("@row", "@words"), ("from", "@left{0.000} s"), ("for", "@lasts{0.000} s")])
+    style.with_values(plot, [drawn], [("@row", "@words"), ("from", "@left{0.000} s"), ("for", "@lasts{0.000} s")])
     return plot
 
 
@@ -231,7 +221,7 @@ def _histogram(name: str, found: list[FloatArray]) -> Any:  # noqa: ANN401 (Boke
     edges = np.linspace(low, high if high > low else low + 1, HISTOGRAM_BINS + 1)
     shares = [np.percentile(values, [50, 99, 100]) for values in found]
     words = "  ·  ".join(f"p50 {p50:.0f}  p99 {p99:.0f}  max {top:.0f} µs" for p50, p99, top in shares)
-    plot = framed(
+    plot = style.framed(
         height=200, tools="xpan,xbox_zoom,reset,save", y_axis_type="log", x_axis_label="µs", y_axis_label="cycles",
         title=f"{name}:  {words}", name="half",
     )  # fmt: skip
@@ -244,7 +234,7 @@ def _histogram(name: str, found: list[FloatArray]) -> Any:  # noqa: ANN401 (Boke
         })  # fmt: skip
         drawn = plot.quad(
             left="left", right="right", bottom=0.5, top="top", source=source, alpha=0.75 / len(found) ** 0.5,
-            color=OF_DRIVES[i], line_color="white", line_width=0.3,
+            color=style.OF_DRIVES[i], line_color="white", line_width=0.3,
         )  # fmt: skip
-        with_values(plot, [drawn], [("from", "@left{0.0} µs"), ("cycles", "@count")])
+        style.with_values(plot, [drawn], [("from", "@left{0.0} µs"), ("cycles", "@count")])
     return plot

@@ -1,7 +1,5 @@
 """The page: verdicts, incidents and plots in one file that needs no network."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from html import escape
 from typing import Any

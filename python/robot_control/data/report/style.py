@@ -1,7 +1,5 @@
 """Colours (Okabe and Ito's, which all eyes tell apart) and the frame of a plot."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any

@@ -1,43 +1,27 @@
 """Plots of values over time."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from typing import Any
 
 import numpy as np
 
+from robot_control.data.report import style
 from robot_control.data.report.decimate import decimated
 from robot_control.data.report.drive import Drive
 from robot_control.data.report.figures import position_error
 from robot_control.data.report.latency import LATENCIES, durations_ns
-from robot_control.data.report.style import (
-    BLUE,
-    GREEN,
-    GREY,
-    INK,
-    OF_DRIVES,
-    ORANGE,
-    PURPLE,
-    RED,
-    SKY,
-    Line,
-    TimeAxis,
-    with_legend,
-    with_values,
-)  # fmt: skip
 from robot_control.data.run_log import FloatArray
 from robot_control.files.files import printable
 from robot_control.loop.estimator import SENSORS
 
-Series = tuple[Line, FloatArray, FloatArray]
+Series = tuple[style.Line, FloatArray, FloatArray]
 """how it is drawn, time [s], values"""
 BEFORE, AFTER = 0.5, 1.5
 """s around an incident"""
-OF_SENSORS = (BLUE, SKY, ORANGE, GREEN, PURPLE, GREY)
+OF_SENSORS = (style.BLUE, style.SKY, style.ORANGE, style.GREEN, style.PURPLE, style.GREY)
 
 
-def line_plot(axis: TimeAxis, unit: str, series: Iterable[Series], **options: Any) -> Any:  # noqa: ANN401 (Bokeh's)
+def line_plot(axis: style.TimeAxis, unit: str, series: Iterable[Series], **options: Any) -> Any:  # noqa: ANN401 (Bokeh's)
     """One plot of several series; None if there is nothing to draw."""
     known = [one for one in series if not np.all(np.isnan(one[2]))]
     if not known:
@@ -49,9 +33,9 @@ def line_plot(axis: TimeAxis, unit: str, series: Iterable[Series], **options: An
         drawn = plot.line(
             x, y.astype(np.float32), color=line.colour, line_width=line.width, line_dash=line.dash, alpha=line.alpha
         )
-        with_values(plot, [drawn], [(line.label, "@y{0.0000}"), ("time", "@x{0.000} s")])
+        style.with_values(plot, [drawn], [(line.label, "@y{0.0000}"), ("time", "@x{0.000} s")])
         legend.append((line.label, [drawn]))
-    return with_legend(plot, legend)
+    return style.with_legend(plot, legend)
 
 
 def band(plot: Any, time: FloatArray, low: FloatArray, high: FloatArray, colour: str) -> None:  # noqa: ANN401
@@ -64,25 +48,25 @@ def band(plot: Any, time: FloatArray, low: FloatArray, high: FloatArray, colour:
     plot.varea(x, lower.astype(np.float32), upper.astype(np.float32), fill_color=colour, fill_alpha=0.15)
 
 
-def _of(drive: Drive, number: int, count: int, lines: list[tuple[str, Line]]) -> list[Series]:
+def _of(drive: Drive, number: int, count: int, lines: list[tuple[str, style.Line]]) -> list[Series]:
     """Columns of one of `count` drives; two drives show only the first and last of the lines, in the drive's colour."""
     if count == 1:
         return [(line, drive.time, drive.column(name)) for name, line in lines]
-    colour = OF_DRIVES[number]
+    colour = style.OF_DRIVES[number]
     looks = {lines[0]: (1.0, "dashed"), lines[-1]: (1.4, "solid")}
     return [
-        (Line(f"{drive.name}: {line.label}", colour, width, dash), drive.time, drive.column(name))
+        (style.Line(f"{drive.name}: {line.label}", colour, width, dash), drive.time, drive.column(name))
         for (name, line), (width, dash) in looks.items()
     ]
 
 
-def speeds(axis: TimeAxis, drives: list[Drive], which: str, unit: str) -> Any:  # noqa: ANN401 (Bokeh's)
+def speeds(axis: style.TimeAxis, drives: list[Drive], which: str, unit: str) -> Any:  # noqa: ANN401 (Bokeh's)
     """Requested, after limits, true, estimated; the limits themselves."""
     lines = [
-        (f"limited_{which}", Line("after limits", ORANGE, 1.6)),
-        (f"requested_{which}", Line("requested", GREY, 1.2, "dashed")),
-        (f"truth_{which}", Line("true", INK, 1.0)),
-        (f"estimate_{which}", Line("estimated", BLUE, 1.2)),
+        (f"limited_{which}", style.Line("after limits", style.ORANGE, 1.6)),
+        (f"requested_{which}", style.Line("requested", style.GREY, 1.2, "dashed")),
+        (f"truth_{which}", style.Line("true", style.INK, 1.0)),
+        (f"estimate_{which}", style.Line("estimated", style.BLUE, 1.2)),
     ]
     series = [one for i, drive in enumerate(drives) for one in _of(drive, i, len(drives), lines)]
     if len(drives) == 1:
@@ -90,11 +74,11 @@ def speeds(axis: TimeAxis, drives: list[Drive], which: str, unit: str) -> Any:  
         limit = drive.column(f"max_{which}_speed")
         low = drive.column("min_linear_speed") if which == "linear" else -limit
         series += [
-            (Line("limits", RED, 1.0, "dotted"), drive.time, limit),
-            (Line("limits", RED, 1.0, "dotted"), drive.time, low),
+            (style.Line("limits", style.RED, 1.0, "dotted"), drive.time, limit),
+            (style.Line("limits", style.RED, 1.0, "dotted"), drive.time, low),
         ]
         if which == "linear" and not drive.kind.legged:
-            series.append((Line("monitor's limit", PURPLE, 1.2), drive.time, drive.column("speed_limit")))
+            series.append((style.Line("monitor's limit", style.PURPLE, 1.2), drive.time, drive.column("speed_limit")))
     return _merged_legend(line_plot(axis, unit, series, height=240))
 
 
@@ -114,10 +98,10 @@ def _merged_legend(plot: Any) -> Any:  # noqa: ANN401 (Bokeh's)
     return plot
 
 
-def tracking_error(axis: TimeAxis, drives: list[Drive], which: str, unit: str) -> Any:  # noqa: ANN401 (Bokeh's)
+def tracking_error(axis: style.TimeAxis, drives: list[Drive], which: str, unit: str) -> Any:  # noqa: ANN401 (Bokeh's)
     """Draws commanded minus estimated speed; with a single drive the band shows the estimate's standard deviation."""
     series = [
-        (Line(drive.name if len(drives) > 1 else "after limits − estimated", OF_DRIVES[i]), drive.time,
+        (style.Line(drive.name if len(drives) > 1 else "after limits − estimated", style.OF_DRIVES[i]), drive.time,
          drive.column(f"limited_{which}") - drive.column(f"estimate_{which}"))
         for i, drive in enumerate(drives)
     ]  # fmt: skip
@@ -129,44 +113,46 @@ def tracking_error(axis: TimeAxis, drives: list[Drive], which: str, unit: str) -
     plot = line_plot(axis, unit, series, height=180, y_range=(low - margin, high + margin))
     if plot is not None and len(drives) == 1:
         twice = 2 * np.sqrt(np.maximum(drives[0].column(f"estimate_{which}_variance"), 0))
-        band(plot, drives[0].time, np.maximum(-twice, low - margin), np.minimum(twice, high + margin), BLUE)
+        band(plot, drives[0].time, np.maximum(-twice, low - margin), np.minimum(twice, high + margin), style.BLUE)
     return plot
 
 
-def joint_plots(axis: TimeAxis, drives: list[Drive], columns: tuple[str, str], unit: str) -> list[Any]:
+def joint_plots(axis: style.TimeAxis, drives: list[Drive], columns: tuple[str, str], unit: str) -> list[Any]:
     """A plot per joint: commanded and measured."""
     plots = []
     for joint in drives[0].joints:
         lines = [
-            (f"{joint}_{columns[0]}", Line("commanded", ORANGE, 1.6)),
-            (f"{joint}_{columns[1]}", Line("measured", BLUE, 1.0)),
+            (f"{joint}_{columns[0]}", style.Line("commanded", style.ORANGE, 1.6)),
+            (f"{joint}_{columns[1]}", style.Line("measured", style.BLUE, 1.0)),
         ]
         series = [one for i, drive in enumerate(drives) for one in _of(drive, i, len(drives), lines)]
         plots.append(line_plot(axis, unit, series, height=200, title=printable(joint, 40)))
     return [plot for plot in plots if plot is not None]
 
 
-def position_plot(axis: TimeAxis, drives: list[Drive]) -> Any:  # noqa: ANN401 (Bokeh's)
+def position_plot(axis: style.TimeAxis, drives: list[Drive]) -> Any:  # noqa: ANN401 (Bokeh's)
     """Standard deviation of the position, and the true error where there is a truth."""
     series: list[Series] = []
     for i, drive in enumerate(drives):
         error, deviation = position_error(drive)
         prefix = f"{drive.name}: " if len(drives) > 1 else ""
-        colour = OF_DRIVES[i]
-        series.append((Line(f"{prefix}2 σ of the estimate", colour, 1.4, "dashed"), drive.time, 2 * deviation))
-        series.append((Line(f"{prefix}true error", INK if len(drives) == 1 else colour, 1.2), drive.time, error))
+        colour = style.OF_DRIVES[i]
+        series.append((style.Line(f"{prefix}2 σ of the estimate", colour, 1.4, "dashed"), drive.time, 2 * deviation))
+        series.append(
+            (style.Line(f"{prefix}true error", style.INK if len(drives) == 1 else colour, 1.2), drive.time, error)
+        )
     return line_plot(axis, "position [m]", series, height=200)
 
 
-def innovations(axis: TimeAxis, drive: Drive) -> list[Any]:
+def innovations(axis: style.TimeAxis, drive: Drive) -> list[Any]:
     """Normalised innovation squared and confidence of each sensor that the estimator uses."""
     sensors = [(sensor, colour) for sensor, colour in zip(SENSORS, OF_SENSORS, strict=True) if drive.uses(sensor)]
     nis = [
-        (Line(sensor.replace("_", " "), colour, 1.0), drive.time, np.maximum(drive.column(f"nis_{sensor}"), 1e-3))
+        (style.Line(sensor.replace("_", " "), colour, 1.0), drive.time, np.maximum(drive.column(f"nis_{sensor}"), 1e-3))
         for sensor, colour in sensors
     ]
     confidence = [
-        (Line(sensor.replace("_", " "), colour, 1.2), drive.time, drive.column(f"confidence_{sensor}"))
+        (style.Line(sensor.replace("_", " "), colour, 1.2), drive.time, drive.column(f"confidence_{sensor}"))
         for sensor, colour in sensors
     ]
     plots = [
@@ -182,21 +168,21 @@ def close_up(drive: Drive, begin: float, title: str) -> Any:  # noqa: ANN401 (Bo
     if drive.time[rows].size < 2:
         return None
     part = Drive(drive.name, {name: values[rows] for name, values in drive.log.items()})
-    axis = TimeAxis(float(part.time[0]), float(part.time[-1]), [begin])
+    axis = style.TimeAxis(float(part.time[0]), float(part.time[-1]), [begin])
     series: list[Series] = []
     for which, unit, dash in (("linear", "m/s", "solid"), ("angular", "rad/s", "dashed")):
-        for name, colour in (("limited", ORANGE), ("truth", INK), ("estimate", BLUE)):
+        for name, colour in (("limited", style.ORANGE), ("truth", style.INK), ("estimate", style.BLUE)):
             words = {"limited": "after limits", "truth": "true", "estimate": "estimated"}[name]
-            line = Line(f"{which} [{unit}] {words}", colour, 1.4, dash)
+            line = style.Line(f"{which} [{unit}] {words}", colour, 1.4, dash)
             series.append((line, part.time, part.column(f"{name}_{which}")))
     return line_plot(axis, "speed", series, height=210, title=title)
 
 
-def latency_plot(axis: TimeAxis, drives: list[Drive]) -> Any:  # noqa: ANN401 (Bokeh's)
+def latency_plot(axis: style.TimeAxis, drives: list[Drive]) -> Any:  # noqa: ANN401 (Bokeh's)
     """Sensors to command, cycle by cycle."""
     latency = next(one for one in LATENCIES if one.name == "sensors_to_command")
     series = [
-        (Line(drive.name if len(drives) > 1 else "sensors to command", OF_DRIVES[i], 1.0), drive.time,
+        (style.Line(drive.name if len(drives) > 1 else "sensors to command", style.OF_DRIVES[i], 1.0), drive.time,
          durations_ns(drive, latency) / 1000)
         for i, drive in enumerate(drives)
     ]  # fmt: skip

@@ -1,7 +1,5 @@
 """A walk in figures: when the feet bore, and what the way cost."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from robot_control.data.footfalls import footfalls_of

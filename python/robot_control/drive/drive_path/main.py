@@ -1,7 +1,5 @@
 """drive_path.py's ROS side: odometry in, commands out."""
 
-from __future__ import annotations
-
 import argparse
 import sys
 import time

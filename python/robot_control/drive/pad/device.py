@@ -4,8 +4,6 @@ Axes and buttons are numbered as the kernel's joystick interface numbers them, i
 found with another joystick tool therefore fit. Forward and left are positive, as in ROS's joy.
 """
 
-from __future__ import annotations
-
 from typing import Any, Protocol
 
 EV_KEY, EV_ABS = 1, 3

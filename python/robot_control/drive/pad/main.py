@@ -1,7 +1,5 @@
 """pad.py's ROS side: a device or the topic joy in, commands out."""
 
-from __future__ import annotations
-
 import argparse
 import math
 import sys

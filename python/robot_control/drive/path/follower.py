@@ -23,8 +23,6 @@ Three things end a path of any form:
                 to wait did not move
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from enum import Enum, auto

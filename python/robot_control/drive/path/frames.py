@@ -1,7 +1,5 @@
 """Locates a path's frame relative to odometry's by tf; for a planar robot that is x, y and yaw."""
 
-from __future__ import annotations
-
 import math
 import threading
 import time

@@ -1,7 +1,5 @@
 """Cuts a path at corners and reversals into pieces that are driven without a stop."""
 
-from __future__ import annotations
-
 import math
 from bisect import bisect_right
 from collections.abc import Sequence

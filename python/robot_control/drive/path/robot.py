@@ -1,7 +1,5 @@
 """The robot as a path's program sees it: odometry, permit, and whether its commands reach the joints."""
 
-from __future__ import annotations
-
 import math
 import time
 from collections.abc import Callable

@@ -1,7 +1,5 @@
 """Drives one path, from odometry to commands, until its end. drive_path.py and follow_path.py share it."""
 
-from __future__ import annotations
-
 import math
 import threading
 import time

@@ -1,7 +1,5 @@
 """teleop.py's ROS side: keys in, commands and heartbeat out, one screen."""
 
-from __future__ import annotations
-
 import argparse
 import sys
 import time

@@ -7,8 +7,6 @@ An ordinary end restores the terminal here. A process in a group of its own (`_g
 and restores the rest. After SIGKILL or a crash that is everything, and on a stalled terminal the screen.
 """
 
-from __future__ import annotations
-
 import os
 import select
 import shutil

@@ -1,7 +1,5 @@
 """Says what this robot can do of an order, as the factsheet does."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 

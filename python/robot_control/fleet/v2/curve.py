@@ -5,8 +5,6 @@
 by de Boor's algorithm in homogeneous coordinates: L. Piegl, W. Tiller, The NURBS Book (1997), sections 3.1 and 4.1.
 """
 
-from __future__ import annotations
-
 import math
 from itertools import pairwise
 

@@ -1,7 +1,5 @@
 """Bytes → messages that the standard's schemas allow, and back. What is malformed is refused with its place."""
 
-from __future__ import annotations
-
 import json
 import math
 import re

@@ -1,7 +1,5 @@
 """Messages of the robot as the schemas want them: state, visualization and factsheet (6.10, 6.13, 6.15)."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 

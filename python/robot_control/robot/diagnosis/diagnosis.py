@@ -43,13 +43,17 @@ def senders_in_words(facts: Facts) -> str:
 
 
 def _launch(facts: Facts) -> str:
-    namespace = f" __ns:={facts.namespace}" if facts.namespace != "/" else ""
-    return f"roslaunch robot_control sim.launch{namespace}"
+    return f"roslaunch robot_control sim.launch{_namespace(facts)}"
 
 
 def _run(facts: Facts, node: str) -> str:
-    namespace = f" __ns:={facts.namespace}" if facts.namespace != "/" else ""
-    return f"rosrun robot_control {node}{namespace}"
+    return f"rosrun robot_control {node}{_namespace(facts)}"
+
+
+def _to_start(facts: Facts, headline: str, *nodes: str) -> Answer:
+    """Nodes are missing."""
+    actions = tuple(("integrator", f"start {node}") for node in nodes)
+    return Answer(Verdict.STOPPED, headline, actions, tuple(_run(facts, node) for node in nodes))
 
 
 def _no_nodes(facts: Facts) -> Answer | None:
@@ -72,12 +76,7 @@ def _no_nodes(facts: Facts) -> Answer | None:
     if safety is None:
         monitor = facts.kind.monitor
         state = "hangs" if monitor in facts.registered and facts.there(monitor) else "does not run"
-        return Answer(
-            Verdict.STOPPED,
-            f"{monitor} {state}: without its permit the gate brakes.",
-            (("integrator", f"start {monitor}"),),
-            (_run(facts, monitor),),
-        )
+        return _to_start(facts, f"{monitor} {state}: without its permit the gate brakes.", monitor)
     return None
 
 
@@ -115,12 +114,7 @@ def _stopped(facts: Facts) -> Answer | None:
         )
     if safety.state == "INIT" or not safety.causes:
         awaited = ", ".join(safety.missing) or "the first cycles"
-        return Answer(
-            Verdict.STOPPED,
-            f"Not ready: the monitor waits: {awaited}.",
-            tuple(("integrator", f"start {node}") for node in absent),
-            tuple(_run(facts, node) for node in absent),
-        )
+        return _to_start(facts, f"Not ready: the monitor waits: {awaited}.", *absent)
     causes = sorted(safety.causes, key=lambda cause: not cause.first)
     doing = "Stopping" if safety.state == "STOPPING" else "Stopped"
     measured = f" ({causes[0].detail})" if causes[0].detail else ""
@@ -210,12 +204,7 @@ def _locked(facts: Facts) -> Answer | None:
 def _controller(facts: Facts) -> Answer | None:
     absent = [node for node in (facts.kind.estimator, facts.controller) if node in missing_nodes(facts)]
     if absent:
-        return Answer(
-            Verdict.STOPPED,
-            f"{' and '.join(absent)} {'do' if len(absent) > 1 else 'does'} not run.",
-            tuple(("integrator", f"start {node}") for node in absent),
-            tuple(_run(facts, node) for node in absent),
-        )
+        return _to_start(facts, f"{' and '.join(absent)} {'do' if len(absent) > 1 else 'does'} not run.", *absent)
     reasons, remedies = facts.reasons(facts.controller, "command"), facts.remedies(facts.controller, "command")
     for name in ("bad_sensors", "no_state", "no_permit"):
         if name in reasons:
@@ -248,7 +237,7 @@ def _without_motion(facts: Facts) -> Answer | None:
             Verdict.IDLE,
             f"It may move, but no velocity command is being received: {text}.",
             (("operator", remedy),),
-            () if facts.senders else (f"rosrun robot_control send_cmd.py{_namespace(facts)}",),
+            () if facts.senders else (_run(facts, "send_cmd.py"),),
         )
     if "holding" in reasons and not _motion_commanded(facts):
         return Answer(

@@ -1,7 +1,5 @@
 """The newest report of each node on /diagnostics, of those that are recent; what a sender can fill is bounded."""
 
-from __future__ import annotations
-
 import threading
 import time
 

@@ -1,11 +1,8 @@
 """calibrate.py without ROS: its command line, what is plausible, the table and the YAML."""
 
-from __future__ import annotations
-
 import argparse
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -14,20 +11,8 @@ import numpy as np
 from robot_control.files.files import given_path
 from robot_control.loop.roles import ESTIMATOR
 from robot_control.robot.send_plan import number_of_sends, positive
-from robot_control.setup.calibrate.law import (
-    TAPE,
-    NotCalibratedError,
-    Square,
-    Straight,
-    Truth,
-    Wheels,
-    fit,
-    largest_mean_return_error,
-    replay,
-    return_errors,
-    umbmark,
-)
-from robot_control.setup.overlay import to_yaml
+from robot_control.setup.calibrate import law
+from robot_control.setup.overlay import Outcome, to_yaml
 from robot_control.ui.table import table
 
 RATIO = (0.95, 1.05)
@@ -42,24 +27,6 @@ FAR = 0.25
 """Share of a square's side; a robot that can be calibrated returns less far from its start."""
 WRONG = 0.15
 """Share of a distance; no wheel is so wrong, but a reading in feet, paces or centimetres is."""
-
-
-@dataclass(frozen=True)
-class Options:
-    """The command line."""
-
-    distance: float  # m, of a straight drive; 0: none
-    repeats: int  # straight drives
-    side: float  # m, of a square; 0: none
-    runs: int  # squares each way
-    speed: float  # m/s
-    turn_speed: float  # rad/s
-    manual: bool
-    truth: bool
-    yes: bool
-    measured: tuple[float, ...]  # m, answers for the straight drives
-    returned: tuple[tuple[float, float], ...]  # m, answers for the squares
-    out: Path
 
 
 def not_negative(text: str) -> float:
@@ -85,7 +52,7 @@ def place(text: str) -> tuple[float, float]:
     return x, y
 
 
-def parse_options(arguments: Sequence[str]) -> Options:
+def parse_options(arguments: Sequence[str]) -> argparse.Namespace:
     """Reads the command line (without the program's name); ends the program on a wrong one."""
     parser = argparse.ArgumentParser(
         prog="calibrate.py",
@@ -106,14 +73,13 @@ def parse_options(arguments: Sequence[str]) -> Options:
     add("--measured", type=positive, nargs="+", default=[], metavar="M", help="answers for the straight drives, m")
     add("--returned", type=place, nargs="+", default=[], metavar="X,Y", help="answers for the squares, m")
     add("--out", type=given_path, default=Path("calibrated.yaml"), help="(default %(default)s)")
-    given = vars(parser.parse_args(list(arguments)))
-    if given["distance"] == 0 and given["side"] == 0:
+    given = parser.parse_args(list(arguments))
+    if given.distance == 0 and given.side == 0:
         parser.error("--distance 0 and --side 0 leave nothing to do")
     for name in ("distance", "side"):
-        if 0 < given[name] < 0.5:
-            parser.error(f"--{name}: below 0.5 m a tape's {1000 * TAPE:g} mm are more than the wheels' errors")
-    given["measured"], given["returned"] = tuple(given["measured"]), tuple(given["returned"])
-    return Options(**given)
+        if 0 < getattr(given, name) < 0.5:
+            parser.error(f"--{name}: below 0.5 m a tape's {1000 * law.TAPE:g} mm are more than the wheels' errors")
+    return given
 
 
 def margin(length: float) -> float:
@@ -121,7 +87,7 @@ def margin(length: float) -> float:
     return 0.5 + length / 8
 
 
-def space(options: Options) -> str:
+def space(options: argparse.Namespace) -> str:
     """The space that must be free, as text."""
     if options.manual:
         return "Another sender or a person moves the robot; nothing is sent."
@@ -158,25 +124,15 @@ def implausible_return(returned: tuple[float, float], side: float) -> str:
     )
 
 
-@dataclass(frozen=True)
-class Outcome:
-    """The report to print and the parameters to write."""
-
-    truth: Truth
-    table: str
-    warnings: list[str]
-    yaml: str
-
-
-def wheels_of(robot: Mapping[str, Any]) -> Wheels:
+def wheels_of(robot: Mapping[str, Any]) -> law.Wheels:
     """The nominal wheels of wheel odometry, from `ClosedLoop.robot`."""
     centres = np.array([wheel["centre"] for wheel in robot["wheels"]])
     x, y = centres[:, :2].mean(axis=0)
-    return Wheels(robot["effective_wheel_base"], (float(x), float(y)))
+    return law.Wheels(robot["effective_wheel_base"], (float(x), float(y)))
 
 
 def evaluate(
-    robot: Mapping[str, Any], straights: Sequence[Straight], squares: Sequence[Square], side: float
+    robot: Mapping[str, Any], straights: Sequence[law.Straight], squares: Sequence[law.Square], side: float
 ) -> Outcome:
     """Fits the wheels to the measurements, checks the result and reports it.
 
@@ -184,14 +140,14 @@ def evaluate(
         NotCalibratedError: the measurements fit no robot.
     """
     wheels = wheels_of(robot)
-    truth = fit(straights, squares, wheels)
+    truth = law.fit(straights, squares, wheels)
     for name, value, (low, high) in (
         ("common radius", truth.scale, SCALE),
         ("ratio of the radii", truth.ratio, RATIO),
         ("wheel base", truth.base, BASE),
     ):
         if not low <= value <= high:
-            raise NotCalibratedError(
+            raise law.NotCalibratedError(
                 f"the {name} would be {value:.4f} times its nominal value, beyond {low:g} … {high:g}: look at the "
                 "measurements (m; x ahead, y left) and at the description (rosrun robot_control inspect_robot.py)"
             )
@@ -203,14 +159,8 @@ def evaluate(
         )
     if squares:
         base = wheels.wheel_base
-        rows.append(
-            (
-                "effective wheel base",
-                f"{base:.6g} m",
-                _with(base, truth.base, truth.base_deviation),
-                _factor(truth.base),
-            )
-        )
+        measured = _with(base, truth.base, truth.base_deviation)
+        rows.append(("effective wheel base", f"{base:.6g} m", measured, _factor(truth.base)))
         rows.append(
             ("right over left radius", "1", _with(1, truth.ratio, truth.ratio_deviation, unit=""), _factor(truth.ratio))
         )
@@ -218,7 +168,7 @@ def evaluate(
     if squares:
         lines += ["", *_square_lines(squares, wheels, truth, side)]
     lines += [
-        f"drive {number + 1}: {drive.measured:.3f} m by tape, {_driven(drive, wheels, Truth()):.3f} m by wheels "
+        f"drive {number + 1}: {drive.measured:.3f} m by tape, {_driven(drive, wheels, law.Truth()):.3f} m by wheels "
         f"before, {_driven(drive, wheels, truth):.3f} m after"
         for number, drive in enumerate(straights)
     ]
@@ -228,10 +178,10 @@ def evaluate(
         *lines,
         *(f"! {sentence}" for sentence in said),
     ]
-    return Outcome(truth, "\n".join(lines), said, to_yaml(head, overlay(robot, truth)))
+    return Outcome("\n".join(lines), said, to_yaml(head, overlay(robot, truth)))
 
 
-def overlay(robot: Mapping[str, Any], truth: Truth) -> dict[str, dict[str, float]]:
+def overlay(robot: Mapping[str, Any], truth: law.Truth) -> dict[str, dict[str, float]]:
     """The parameters that express `truth`, relative to those of `robot` when it was measured."""
     own: dict[str, float] = {}
     estimator: dict[str, float] = {}
@@ -255,16 +205,16 @@ def _radius(robot: Mapping[str, Any]) -> float:
     return float(np.mean([wheel["radius"] for wheel in robot["wheels"]]))
 
 
-def _driven(drive: Straight, wheels: Wheels, truth: Truth) -> float:
-    return float(np.linalg.norm(replay(drive.path, wheels, truth)[-1, :2]))
+def _driven(drive: law.Straight, wheels: law.Wheels, truth: law.Truth) -> float:
+    return float(np.linalg.norm(law.replay(drive.path, wheels, truth)[-1, :2]))
 
 
-def _square_lines(squares: Sequence[Square], wheels: Wheels, truth: Truth, side: float) -> list[str]:
-    errors = return_errors(squares, wheels, Truth())
+def _square_lines(squares: Sequence[law.Square], wheels: law.Wheels, truth: law.Truth, side: float) -> list[str]:
+    errors = law.return_errors(squares, wheels, law.Truth())
     clockwise = np.array([square.clockwise for square in squares])
-    classic = umbmark(errors[clockwise], errors[~clockwise], side, wheels.wheel_base)
-    before = largest_mean_return_error(squares, wheels, Truth())
-    after = largest_mean_return_error(squares, wheels, truth)
+    classic = law.umbmark(errors[clockwise], errors[~clockwise], side, wheels.wheel_base)
+    before = law.largest_mean_return_error(squares, wheels, law.Truth())
+    after = law.largest_mean_return_error(squares, wheels, truth)
     return [
         f"UMBmark, {len(squares)} squares of {side:g} m: largest mean return error {1000 * before:.0f} mm before, "
         f"{1000 * after:.1f} mm after",
@@ -272,7 +222,9 @@ def _square_lines(squares: Sequence[Square], wheels: Wheels, truth: Truth, side:
     ]
 
 
-def _warnings(straights: Sequence[Straight], squares: Sequence[Square], wheels: Wheels, truth: Truth) -> list[str]:
+def _warnings(
+    straights: Sequence[law.Straight], squares: Sequence[law.Square], wheels: law.Wheels, truth: law.Truth
+) -> list[str]:
     said = []
     if squares and not straights:
         said.append("no straight drive: the common radius stays nominal, and the wheel base is right for it alone")
@@ -281,13 +233,13 @@ def _warnings(straights: Sequence[Straight], squares: Sequence[Square], wheels: 
             "no squares: ratio of the radii and wheel base stay nominal; the estimator learns them from its gyro"
         )
     if squares:
-        errors = return_errors(squares, wheels, truth)
+        errors = law.return_errors(squares, wheels, truth)
         clockwise = np.array([square.clockwise for square in squares])
         spread = max(
             float(np.linalg.norm(errors[direction] - errors[direction].mean(axis=0), axis=1).max())
             for direction in (clockwise, ~clockwise)
         )
-        before = largest_mean_return_error(squares, wheels, Truth())
+        before = law.largest_mean_return_error(squares, wheels, law.Truth())
         if spread > max(0.03, before):
             said.append(
                 f"one square lies {1000 * spread:.0f} mm from the mean of its direction: slip, bumps or a slip of the "

@@ -31,8 +31,6 @@ side, of radius ρ, and from the quarter turn:
     ρ = (L/2)/sin(β/2)      E_d = (ρ + b/2)/(ρ − b/2)      E_b = 90°/(90° − α)
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass

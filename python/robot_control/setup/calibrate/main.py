@@ -1,7 +1,6 @@
 """The ROS side of calibrate.py asks, drives, follows the wheels, and stops whenever something is not as planned."""
 
-from __future__ import annotations
-
+import argparse
 import math
 import sys
 import time
@@ -13,34 +12,14 @@ import rospy
 
 from robot_control import ParameterError, RobotError
 from robot_control._robot_control import describe as describe_robot
-from robot_control.files.files import one_message, printable, write_text
+from robot_control.files.files import one_message
 from robot_control.files.output_files import check_outputs
 from robot_control.loop.roles import CONTROLLER, ESTIMATOR
 from robot_control.robot.pose import Pose
 from robot_control.robot.running_robot import RefusedError, await_all, master_state, other_senders, running_settings
 from robot_control.robot.topic_sender import Signals, ended_by_signals
 from robot_control.settings.block import Settings
-from robot_control.setup.calibrate.evaluation import (
-    Options,
-    evaluate,
-    implausible_distance,
-    implausible_return,
-    margin,
-    parse_options,
-    place,
-    space,
-    wheels_of,
-)
-from robot_control.setup.calibrate.law import (
-    FloatArray,
-    NotCalibratedError,
-    Square,
-    Straight,
-    Truth,
-    Wheels,
-    of_axle,
-    replay,
-)
+from robot_control.setup.calibrate import evaluation, law
 from robot_control.setup.calibrate.moves import Move, Pilot, square, straight
 from robot_control.setup.calibrate.robot import CalibratedRobot
 from robot_control.setup.calibrate.terminal_dialog import NoAnswerError, Questions
@@ -60,7 +39,7 @@ MARKS = (
     "Mark on the floor where the middle between the wheels stands, and which way the robot points (a string along the "
     "axle, and one ahead). Each run begins where the robot stands: set it back whenever the path is no longer free."
 )
-REFUSALS = (RefusedError, NotCalibratedError, NoAnswerError, ParameterError, RobotError, OSError, ValueError)
+REFUSALS = (RefusedError, law.NotCalibratedError, NoAnswerError, ParameterError, RobotError, OSError, ValueError)
 
 
 @dataclass
@@ -76,7 +55,7 @@ class Drive:
     def astray(self, start: Pose, here: Pose) -> str:
         """Why the robot may not be here; empty if it may."""
         ahead, left = here.seen_from(start)
-        beside = margin(self.ahead)
+        beside = evaluation.margin(self.ahead)
         if -beside <= ahead <= self.ahead + beside and -self.right - beside <= left <= self.left + beside:
             return ""
         return f"the robot is {ahead:.2f} m ahead and {left:.2f} m to the left of its start, off its path"
@@ -87,22 +66,22 @@ class Wizard:
     """One dialogue."""
 
     robot: CalibratedRobot
-    options: Options
-    wheels: Wheels
+    options: argparse.Namespace
+    wheels: law.Wheels
     signals: Signals
     questions: Questions
     senders: tuple[str, ...] = ()
     lengths: list[float] = field(default_factory=list)
     places: list[tuple[float, float]] = field(default_factory=list)
 
-    def run(self) -> tuple[list[Straight], list[Square]]:
+    def run(self) -> tuple[list[law.Straight], list[law.Square]]:
         """All measurements."""
         options = self.options
         self.lengths, self.places = list(options.measured), list(options.returned)
-        print(space(options))
+        print(evaluation.space(options))
         self._permission("Is the path free, and a hand at the emergency stop?")
-        straights: list[Straight] = []
-        squares: list[Square] = []
+        straights: list[law.Straight] = []
+        squares: list[law.Square] = []
         if options.distance > 0:
             drive = Drive("straight drive", straight(options.distance), options.distance, 0.0, 0.0)
             straights = [self._straight(drive, number) for number in range(options.repeats)]
@@ -111,9 +90,9 @@ class Wizard:
                 squares += [self._square(number, clockwise=clockwise) for number in range(options.runs)]
         return straights, squares
 
-    def _straight(self, drive: Drive, number: int) -> Straight:
+    def _straight(self, drive: Drive, number: int) -> law.Straight:
         path, truth = self._driven(drive, f"straight drive {number + 1} of {self.options.repeats}")
-        by_wheels = float(np.linalg.norm(replay(path, self.wheels, Truth())[-1, :2]))
+        by_wheels = float(np.linalg.norm(law.replay(path, self.wheels, law.Truth())[-1, :2]))
         if self.options.truth:
             measured = math.hypot(*truth)
         elif self.lengths:
@@ -122,12 +101,12 @@ class Wizard:
             measured = self.questions.value(
                 f"m between the two marks, by tape (the wheels say {by_wheels:.3f}):",
                 float,
-                lambda value: implausible_distance(value, by_wheels),
+                lambda value: evaluation.implausible_distance(value, by_wheels),
             )
-        self._refuse(implausible_distance(measured, by_wheels) if self.options.truth else "")
-        return Straight(path, measured)
+        self._refuse(evaluation.implausible_distance(measured, by_wheels) if self.options.truth else "")
+        return law.Straight(path, measured)
 
-    def _square(self, number: int, *, clockwise: bool) -> Square:
+    def _square(self, number: int, *, clockwise: bool) -> law.Square:
         side = self.options.side
         left, right = (0.0, side) if clockwise else (side, 0.0)
         direction = "clockwise" if clockwise else "counter-clockwise"
@@ -140,13 +119,13 @@ class Wizard:
         else:
             measured = self.questions.value(
                 "x,y: m of the second mark ahead of and to the left of the first:",
-                place,
-                lambda value: implausible_return(value, side),
+                evaluation.place,
+                lambda value: evaluation.implausible_return(value, side),
             )
-        self._refuse(implausible_return(measured, side) if self.options.truth else "")
-        return Square(path, measured, clockwise)
+        self._refuse(evaluation.implausible_return(measured, side) if self.options.truth else "")
+        return law.Square(path, measured, clockwise)
 
-    def _driven(self, drive: Drive, title: str) -> tuple[FloatArray, tuple[float, float]]:
+    def _driven(self, drive: Drive, title: str) -> tuple[law.FloatArray, tuple[float, float]]:
         """The path by wheel odometry, and the true end of the middle of the wheels (in simulation; else zero)."""
         if not self.options.truth:
             print(MARKS)
@@ -171,7 +150,7 @@ class Wizard:
         if begin is None:
             return path, (0.0, 0.0)
         end = self._truth() or begin
-        poses = of_axle(np.array([[begin.x, begin.y, begin.yaw], [end.x, end.y, end.yaw]]), self.wheels.axle)
+        poses = law.of_axle(np.array([[begin.x, begin.y, begin.yaw], [end.x, end.y, end.yaw]]), self.wheels.axle)
         return path, Pose(*poses[1]).seen_from(Pose(*poses[0]))
 
     def _truth(self) -> Pose | None:
@@ -237,27 +216,22 @@ class Wizard:
 
 def main() -> None:
     """Entry point of scripts/calibrate.py: exit code 0 with a YAML written, else 1 with one message."""
-    options = parse_options(rospy.myargv(sys.argv)[1:])
+    options = evaluation.parse_options(rospy.myargv(sys.argv)[1:])
     with one_message("calibrate.py", *REFUSALS):
         check_outputs([options.out])
         with running_settings("calibrate", ESTIMATOR, *OTHERWISE) as settings:
             with ended_by_signals() as signals:
                 robot, straights, squares = _measured(settings, options, signals)
-            outcome = evaluate(robot, straights, squares, options.side)
-        print(outcome.table)
-        for sentence in outcome.warnings:
-            print(f"! {sentence}")
-        write_text(options.out, outcome.yaml)
-        name = printable(str(options.out))
-        print(f"wrote {name}: rosparam load it (in the robot's namespace), then restart every node")
+            outcome = evaluation.evaluate(robot, straights, squares, options.side)
+        outcome.deliver(options.out, "then restart every node")
 
 
 OTHERWISE = ("and let the robot stand where it may drive", "as a tape measure does")
 
 
 def _measured(
-    settings: Settings, options: Options, signals: Signals
-) -> tuple[dict[str, object], list[Straight], list[Square]]:
+    settings: Settings, options: argparse.Namespace, signals: Signals
+) -> tuple[dict[str, object], list[law.Straight], list[law.Square]]:
     described = describe_robot(settings.path, settings.values)
     robot = CalibratedRobot(sends=not options.manual)
     all_running: Callable[[], bool] = lambda: (  # noqa: E731
@@ -270,6 +244,6 @@ def _measured(
     if not options.manual and not robot.has_receiver():
         raise RefusedError(f"no node subscribes to {rospy.resolve_name('cmd_vel')}: does {CONTROLLER} run?")
     questions = Questions(signals.going_on)
-    wizard = Wizard(robot, options, wheels_of(described), signals, questions, senders)
+    wizard = Wizard(robot, options, evaluation.wheels_of(described), signals, questions, senders)
     straights, squares = wizard.run()
     return described, straights, squares

@@ -7,8 +7,6 @@ driven, not what was planned. A proportional law with the cruise speed as a ceil
     corner     ω = ±clip(creep_ω + k·|rest of the turn|),  v = 0
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass

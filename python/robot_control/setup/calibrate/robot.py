@@ -1,7 +1,5 @@
 """calibrate.py sees a running robot as identify.py does, and adds the wheels' path and the simulated truth."""
 
-from __future__ import annotations
-
 import numpy as np
 from nav_msgs.msg import Odometry
 

@@ -1,7 +1,5 @@
 """Questions on a terminal that a signal can interrupt; input() would go on waiting after Ctrl-C was only noted."""
 
-from __future__ import annotations
-
 import os
 import select
 import sys

@@ -1,7 +1,5 @@
 """Checks of the clocks."""
 
-from __future__ import annotations
-
 import re
 
 from robot_control.setup.doctor.finding import Check, Finding, fault, note, ok, unseen, warning

@@ -1,7 +1,5 @@
 """Checks of the disk, of quotas, and of shared memory that was left behind."""
 
-from __future__ import annotations
-
 import os
 import shlex
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Checks of the interfaces to motor drives: CAN, serial ports, USB."""
 
-from __future__ import annotations
-
 import dataclasses
 import json
 import stat

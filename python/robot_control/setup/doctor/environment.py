@@ -1,7 +1,5 @@
 """Checks of this terminal: the package, Python, names and addresses of the network."""
 
-from __future__ import annotations
-
 import importlib.util
 import ipaddress
 import re

@@ -1,7 +1,5 @@
 """Checks of the ROS graph, by the master's own interface; it needs no rospy."""
 
-from __future__ import annotations
-
 import functools
 import http.client
 import shlex

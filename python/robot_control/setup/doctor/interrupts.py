@@ -1,7 +1,5 @@
 """Checks of interrupts and timers."""
 
-from __future__ import annotations
-
 import re
 
 from robot_control.setup.doctor.finding import Check, Finding, note, ok, warning

@@ -1,7 +1,5 @@
 """Checks of what else runs: on the loop's core, above its priority, in other virtual machines."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 from robot_control.setup.doctor.finding import Check, Finding, note, ok, warning

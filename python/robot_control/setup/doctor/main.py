@@ -1,7 +1,5 @@
 """doctor.py: examines this machine and terminal; runs also where ROS is not sourced."""
 
-from __future__ import annotations
-
 import argparse
 import contextlib
 import sys

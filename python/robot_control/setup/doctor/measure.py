@@ -4,8 +4,6 @@ A pair is one run of the simulated robot and one of cyclictest, equal in length,
 idle states. Pairs follow each other in alternating order, so that a slow change of the machine meets both.
 """
 
-from __future__ import annotations
-
 import contextlib
 import os
 import re

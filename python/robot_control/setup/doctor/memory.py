@@ -1,7 +1,5 @@
 """Checks of the privileges and limits of this terminal, and of memory."""
 
-from __future__ import annotations
-
 import re
 
 from robot_control.setup.doctor.finding import Check, Finding, fault, note, ok, warning

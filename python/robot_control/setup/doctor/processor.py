@@ -1,7 +1,5 @@
 """Checks of the core on which the loop runs."""
 
-from __future__ import annotations
-
 from robot_control.setup.doctor.finding import Check, Finding, fault, note, ok, warning
 from robot_control.setup.doctor.memory import GRANT, INSTALL
 from robot_control.setup.doctor.system import System, cores_of
@@ -74,9 +72,7 @@ def idle_states(system: System) -> Finding:
         return warning(f"robot.cpu_dma_latency is {wanted}, and /dev/cpu_dma_latency is absent", NO_DEVICE)
     if wanted is not None and not writable(system, "dev/cpu_dma_latency"):
         return warning(
-            f"robot.cpu_dma_latency is {wanted}, and this user may not open /dev/cpu_dma_latency",
-            GRANT,
-            INSTALL,
+            f"robot.cpu_dma_latency is {wanted}, and this user may not open /dev/cpu_dma_latency", GRANT, INSTALL
         )
     states = system.seen(
         [name.rsplit("/", 1)[0] for name in system.names(f"{CPU}/cpu{_core(system)}/cpuidle/state*/latency")] or None,

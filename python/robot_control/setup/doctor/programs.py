@@ -1,7 +1,5 @@
 """Names in the launch files. The compiled part names the nodes, too, but it may not be built yet."""
 
-from __future__ import annotations
-
 import re
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """The address of the ROS master in this terminal."""
 
-from __future__ import annotations
-
 import urllib.parse
 
 from robot_control.setup.doctor.system import System

@@ -1,7 +1,5 @@
 """The findings as lines, as JSON, and as commands."""
 
-from __future__ import annotations
-
 import json
 from collections.abc import Sequence
 from dataclasses import dataclass

@@ -4,8 +4,6 @@ A root other than / is a folder recorded from a machine. Its environment is the 
 output of a program is the file commands/PROGRAM_ARGUMENTS…, with `_` for blanks and slashes.
 """
 
-from __future__ import annotations
-
 import os
 import re
 import shutil

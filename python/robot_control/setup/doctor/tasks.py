@@ -1,7 +1,5 @@
 """Threads and processor times from /proc: two samples, or one since the start of the machine."""
 
-from __future__ import annotations
-
 import functools
 import time
 from collections.abc import Iterator

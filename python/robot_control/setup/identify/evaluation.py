@@ -1,10 +1,7 @@
 """identify.py without ROS: its command line, and the steps from a log to a table and a YAML."""
 
-from __future__ import annotations
-
 import argparse
 import math
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -19,36 +16,13 @@ from robot_control.setup.identify.excitation import AxisLimits, Excitation, plan
 from robot_control.setup.identify.fit import identify
 from robot_control.setup.identify.report import to_table, warnings
 from robot_control.setup.identify.tuning_proposal import base_of, feed_forward, propose
-from robot_control.setup.overlay import to_yaml
+from robot_control.setup.overlay import Outcome, to_yaml
 
 RIM_RESERVE = 0.9
 """Share of a joint's velocity limit; nearer to it the gate reduces the torque."""
 
 
-@dataclass(frozen=True)
-class Options:
-    """The command line."""
-
-    space: float  # m ahead of the robot
-    max_speed: float  # m/s
-    repeats: int
-    mass: float | None  # kg, weighed
-    output: Path
-    log: Path | None  # log to fit instead of driving
-    params: Path | None  # parameter file of the log; None: the installed one
-    urdf: Path | None  # robot of the log; None: that of the parameters
-
-
-@dataclass(frozen=True)
-class Outcome:
-    """The report to print and the parameters to write."""
-
-    table: str
-    warnings: list[str]
-    yaml: str
-
-
-def parse_options(arguments: list[str]) -> Options:
+def parse_options(arguments: list[str]) -> argparse.Namespace:
     """Reads the command line (without the program's name); ends the program on a wrong one."""
     parser = argparse.ArgumentParser(
         prog="identify.py",
@@ -67,10 +41,10 @@ def parse_options(arguments: list[str]) -> Options:
     for name in ("params", "urdf"):
         if getattr(given, name) is not None and given.log is None:
             parser.error(f"--{name} belongs to --log: a running robot says itself what it is")
-    return Options(**vars(given))
+    return given
 
 
-def plan(settings: Settings, options: Options) -> Excitation:
+def plan(settings: Settings, options: argparse.Namespace) -> Excitation:
     """The moves for the robot and limits of `settings`.
 
     Raises:

@@ -10,8 +10,6 @@ A ramp to v lasts v/a + a/j and covers half of v times that (src/control/limits/
 the largest for which the move fits into REACH times the space.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass

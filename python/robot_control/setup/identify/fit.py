@@ -9,8 +9,6 @@ The delay from command to measured torque, beyond that of the bus, is the shift 
 measured torque to motion is the shift with the smallest residual.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -253,13 +251,5 @@ def _fit_side(base: Base, side: int, parts: Sequence[Regression], period: float)
             f"{named}: the friction is known to {friction:.2g} N·m, {FRICTION_ERROR:.0%} of the RMS torque "
             f"{effort:.2g} N·m are needed: drive at several speeds, both ways, longer"
         )
-    return SideFit(
-        joints,
-        found["straight"],
-        found["turning"],
-        found["damping"],
-        found["friction"],
-        found["scrub"],
-        left_over,
-        effort,
-    )
+    shown = {name: found[name] for name in ("straight", "turning", "damping", "friction", "scrub")}
+    return SideFit(joints, **shown, residual=left_over, effort=effort)

@@ -1,7 +1,6 @@
 """identify.py's ROS side: reads the robot's parameters, drives the plan, stops whenever something is not as planned."""
 
-from __future__ import annotations
-
+import argparse
 import sys
 import time
 
@@ -9,7 +8,7 @@ import rospy
 
 from robot_control import ParameterError, RobotError
 from robot_control.data.run_log import FloatArray, LogError, kind_in, read_run
-from robot_control.files.files import escaped, one_message, write_text
+from robot_control.files.files import one_message
 from robot_control.files.output_files import check_outputs
 from robot_control.loop.roles import CONTROLLER, refuse_legs
 from robot_control.robot.diagnosis.facts import nodes_of
@@ -19,7 +18,7 @@ from robot_control.robot.topic_sender import Signals, ended_by_signals
 from robot_control.settings.block import Settings
 from robot_control.settings.parameter_layers import layered
 from robot_control.setup.excitation_watch import hindrance, interruption, moves
-from robot_control.setup.identify.evaluation import Options, evaluate, parse_options, plan
+from robot_control.setup.identify.evaluation import evaluate, parse_options, plan
 from robot_control.setup.identify.excitation import Excitation, NoRoomError
 from robot_control.setup.identify.rows import UnfitError
 from robot_control.setup.identify.tuning_proposal import NoGainsError
@@ -62,24 +61,19 @@ def main() -> None:
                 _fit(log, settings, options, "driven")
 
 
-def _fit(log: dict[str, FloatArray], settings: Settings, options: Options, source: str) -> None:
-    outcome = evaluate(log, settings, options.mass, source)
-    print(outcome.table)
-    for sentence in outcome.warnings:
-        print(escaped(f"! {sentence}"))
-    write_text(options.output, outcome.yaml)
-    print(
-        escaped(f"wrote {options.output}: rosparam load it (in the robot's namespace), start {CONTROLLER} again, then ")
-        + "rosservice call e_stop_reset: a restart beside the running robot is a stop"
+def _fit(log: dict[str, FloatArray], settings: Settings, options: argparse.Namespace, source: str) -> None:
+    restart = (
+        f"start {CONTROLLER} again, then rosservice call e_stop_reset: a restart beside the running robot is a stop"
     )
+    evaluate(log, settings, options.mass, source).deliver(options.output, restart)
 
 
-def _settings_of_files(options: Options) -> Settings:
+def _settings_of_files(options: argparse.Namespace) -> Settings:
     path, values = layered(options.params, None if options.urdf is None else options.urdf.absolute())
     return Settings(path, tuple(values))
 
 
-def _drive(settings: Settings, options: Options, signals: Signals) -> dict[str, FloatArray]:
+def _drive(settings: Settings, options: argparse.Namespace, signals: Signals) -> dict[str, FloatArray]:
     excitation = plan(settings, options)
     robot = RunningRobot()
     senders, telemetry = _others(robot, signals)

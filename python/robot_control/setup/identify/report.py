@@ -1,7 +1,5 @@
 """Reports the identified wheels and the proposal: as a table, and as the YAML that is laid over the parameters."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any

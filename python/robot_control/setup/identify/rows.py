@@ -1,7 +1,5 @@
 """Selects the cycles of a log that describe the machine: driven ones, by the wheels' own torque, with grip."""
 
-from __future__ import annotations
-
 import itertools
 from collections.abc import Sequence
 

@@ -13,8 +13,6 @@ delay with a gain margin of two, also on a lifted wheel. Otherwise the largest k
 proposed; s scales the bandwidth of the loop.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -101,12 +99,7 @@ def loop_of(loops: Sequence[Mapping[str, Any]], found: Identification, lifted: f
     quickest = max(loops, key=lambda loop: loop["kp"] / loop["model_inertia"])
     straight, turning = found.mean("straight").value, found.mean("turning").value
     return Loop(
-        kp=quickest["kp"],
-        ki=quickest["ki"],
-        kd=quickest["kd"],
-        model_inertia=quickest["model_inertia"],
-        bandwidth=quickest["bandwidth"],
-        period=quickest["period"],
+        **{name: quickest[name] for name in ("kp", "ki", "kd", "model_inertia", "bandwidth", "period")},
         inertias=(lifted, turning, straight, 2 * straight - lifted),
         damping=max(0.0, found.mean("damping").value),
     )

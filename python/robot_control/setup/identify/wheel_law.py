@@ -17,8 +17,6 @@ the torque does from cycle to cycle. The torque of sample k acted over [t_k−1,
 k and k+1.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 import numpy as np

@@ -1,7 +1,5 @@
 """inspect_robot.py reports how a robot description is understood."""
 
-from __future__ import annotations
-
 import argparse
 import json
 import sys

@@ -1,7 +1,5 @@
 """A robot as it was understood, in words: one screen."""
 
-from __future__ import annotations
-
 import math
 import textwrap
 from typing import Any

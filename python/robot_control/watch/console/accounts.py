@@ -1,7 +1,5 @@
 """console_users.py: adds, lists and removes the users of console.py."""
 
-from __future__ import annotations
-
 import argparse
 import sys
 import time

@@ -10,8 +10,6 @@ end. A page of the role `maintain` may take it away. Every change ends the motio
 The same factor holds for all axes, so the curve stays. On wheels the lateral speed is zero.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from enum import IntEnum

@@ -1,7 +1,5 @@
 """The ROS side of the console: commands out, reports in. Used by one thread; calls are made in others."""
 
-from __future__ import annotations
-
 import asyncio
 import math
 import time

@@ -1,7 +1,5 @@
 """The calls of a page: services, paths and the simulation. CALLS lists what each call needs."""
 
-from __future__ import annotations
-
 import io
 import secrets
 import time

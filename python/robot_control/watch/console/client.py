@@ -1,7 +1,5 @@
 """One page's WebSocket: what it sends, and what it is sent. A page that reads slowly is skipped, not buffered."""
 
-from __future__ import annotations
-
 import asyncio
 import json
 import logging

@@ -10,8 +10,6 @@ Motion counts while it is held, was seen released before, and no stop or pause l
     link_gap      stamp older than that: all ends, until a release that comes SETTLING after the gap
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass, replace
 

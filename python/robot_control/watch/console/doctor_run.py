@@ -4,8 +4,6 @@ Its process has the usual priority. On a loaded machine, where the findings are 
 get the 0.2 s of a processor that it needs.
 """
 
-from __future__ import annotations
-
 import json
 import subprocess
 import sys

@@ -1,7 +1,5 @@
 """The files that make the page, by the path of their address, and the headers with which everything is served."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 from aiohttp import web

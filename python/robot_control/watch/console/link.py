@@ -8,8 +8,6 @@
 RTT95 is the 95th percentile over ROUND_TRIPS pings.
 """
 
-from __future__ import annotations
-
 import math
 from collections import deque
 

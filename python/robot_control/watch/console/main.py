@@ -1,7 +1,5 @@
 """console.py: its command line, and the loop that HTTP and ROS share."""
 
-from __future__ import annotations
-
 import argparse
 import asyncio
 import contextlib

@@ -4,8 +4,6 @@ A message is a JSON object of at most MAX_SIZE bytes with exactly the fields of 
 text bounded. All else is refused, and the refusal names the field.
 """
 
-from __future__ import annotations
-
 import json
 import re
 from collections.abc import Mapping

@@ -3,8 +3,6 @@
 A mesh has an id, made of its name; the page asks for the id, and only files of this list are served.
 """
 
-from __future__ import annotations
-
 import hashlib
 import xml.etree.ElementTree as ET
 from pathlib import Path

@@ -1,7 +1,5 @@
 """The view of navigation for the page: the grids of map and costmap, and where map, scan and particles are in odom."""
 
-from __future__ import annotations
-
 import base64
 import math
 import threading

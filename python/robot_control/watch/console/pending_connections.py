@@ -4,8 +4,6 @@ If there are more than MAX_PENDING of them, the oldest are closed. So connection
 user out.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 from aiohttp import web

@@ -1,7 +1,5 @@
 """Which page gives way to a new one where there is no room: a user's pages cost that user's own first. Pure."""
 
-from __future__ import annotations
-
 from collections import Counter
 from collections.abc import Sequence
 

@@ -1,7 +1,5 @@
 """Recorded runs and incidents: their list, files and reports. A file is named by an id of the list, never by a path."""
 
-from __future__ import annotations
-
 import contextlib
 import hashlib
 import os

@@ -1,7 +1,5 @@
 """The HTTP side: origins, logins and limits of all requests, and their answers."""
 
-from __future__ import annotations
-
 import asyncio
 import contextlib
 import hmac

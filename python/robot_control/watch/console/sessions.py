@@ -1,7 +1,5 @@
 """Logins, and the limits of their tries. It reads no clock: time is an argument, s of the time of day."""
 
-from __future__ import annotations
-
 import contextlib
 import hashlib
 import secrets

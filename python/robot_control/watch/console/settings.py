@@ -1,7 +1,5 @@
 """The values of config/console.yaml, and those that follow from them."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from pathlib import Path
 

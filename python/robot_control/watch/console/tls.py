@@ -1,7 +1,5 @@
 """The certificate of the console: one that is given, or one that it makes itself."""
 
-from __future__ import annotations
-
 import hashlib
 import ssl
 import subprocess

@@ -4,8 +4,6 @@ The file has mode 0600. A file that others may read, or that belongs to another 
 within a day. No file holds the text of a link or a password.
 """
 
-from __future__ import annotations
-
 import hashlib
 import hmac
 import json

@@ -1,7 +1,5 @@
 """Messages of the robot → what the page shows; plain values for JSON, in which a number that is not finite is null."""
 
-from __future__ import annotations
-
 import dataclasses
 import math
 import time

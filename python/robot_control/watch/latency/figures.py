@@ -1,7 +1,5 @@
 """Reads the figures that nodes report on /diagnostics; no ROS in here."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass

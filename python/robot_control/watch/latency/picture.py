@@ -1,7 +1,5 @@
 """Draws how the latencies changed while latency.py listened."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """robot_status.py's ROS side: listens to the nodes of its namespace, publishes robot_status."""
 
-from __future__ import annotations
-
 import argparse
 import math
 import sys

@@ -1,7 +1,5 @@
 """What the robot's nodes said lately → RobotStatus. Pure but for the message types."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field

@@ -1,7 +1,5 @@
 """The feet of the robot that is shown: the force of each one that bears, the way of each one that swings."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from typing import Any

@@ -1,7 +1,5 @@
 """view_markers.py's ROS side."""
 
-from __future__ import annotations
-
 import argparse
 import sys
 

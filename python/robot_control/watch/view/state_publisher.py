@@ -5,8 +5,6 @@ inertia, which moves no transform. A robot that is free to move it fixes to its 
 without either, as a parameter of its own.
 """
 
-from __future__ import annotations
-
 import os
 import sys
 import time

@@ -1,7 +1,5 @@
 """The wheels or legs of the robot that is shown."""
 
-from __future__ import annotations
-
 from typing import Any
 
 from robot_control import _robot_control
