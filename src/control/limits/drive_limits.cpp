@@ -4,15 +4,6 @@
 #include <limits>
 
 namespace robot_control {
-namespace {
-
-constexpr double kBuildUpTime = 0.1;  // s
-
-double derived_jerk(double acceleration, double emergency) noexcept {
-  return std::max(acceleration, emergency / 2) / kBuildUpTime;
-}
-
-}  // namespace
 
 double jerk_limit(double jerk) noexcept {
   return jerk > 0 ? jerk : std::numeric_limits<double>::infinity();
@@ -28,7 +19,7 @@ SpeedLimits speed_limits(const DriveControllerParameters& parameters) noexcept {
       std::min(-parameters.min_linear_speed.value_or(-parameters.max_linear_speed), parameters.max_linear_speed);
   const double angular = parameters.max_angular_deceleration.value_or(parameters.max_angular_acceleration);
   const double linear_emergency =
-      parameters.max_linear_emergency_deceleration.value_or(std::max(strongest, std::min(2 * strongest, kHalfGrip)));
+      parameters.max_linear_emergency_deceleration.value_or(derived_emergency_deceleration(strongest));
   const double angular_emergency =
       parameters.max_angular_emergency_deceleration.value_or(angular * std::max(1.0, linear_emergency / strongest));
   const double linear_jerk = parameters.max_linear_jerk.value_or(

@@ -22,36 +22,12 @@
 /// returns at `deceleration`.
 
 #include <cstdint>
-#include <limits>
-#include <optional>
 
 #include "control/limits/axis_limiter.h"
+#include "control/limits/motion_limits.h"
 #include "control/planar_twist.h"
 
 namespace robot_control {
-
-/// Holds the limits of one axis in m/s or rad/s and their derivatives, all > 0.
-struct MotionLimits {
-  double speed = 1.0;
-  double acceleration = 1.0;
-  double deceleration = 1.0;
-  double emergency_deceleration = 1.0;                    ///< ≥ deceleration
-  double jerk = std::numeric_limits<double>::infinity();  ///< infinity: none
-  std::optional<double> reverse_speed = {};               ///< ≥ 0, limit of speeds below 0; absent: as forwards
-  std::optional<double> reverse_acceleration = {};
-  std::optional<double> reverse_deceleration = {};
-
-  /// Returns the limits in a direction; 0 counts as forwards.
-  double speed_towards(double direction) const noexcept {
-    return direction < 0 ? reverse_speed.value_or(speed) : speed;
-  }
-  double acceleration_towards(double direction) const noexcept {
-    return direction < 0 ? reverse_acceleration.value_or(acceleration) : acceleration;
-  }
-  double deceleration_from(double direction) const noexcept {
-    return direction < 0 ? reverse_deceleration.value_or(deceleration) : deceleration;
-  }
-};
 
 struct SpeedLimits {
   MotionLimits linear;

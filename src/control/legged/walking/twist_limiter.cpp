@@ -5,7 +5,6 @@
 #include <limits>
 
 #include "control/legged/gait.h"
-#include "control/limits/drive_limits.h"
 #include "control/limits/stop_distance.h"
 #include "signals/command_frame.h"
 #include "signals/legged/legged_command.h"
@@ -13,12 +12,13 @@
 namespace robot_control {
 namespace {
 
-/// Returns the linear axis of a drive with this speed and acceleration.
 MotionLimits axis(double speed, double acceleration) noexcept {
-  DriveControllerParameters drive;
-  drive.max_linear_speed = speed;
-  drive.max_linear_acceleration = acceleration;
-  return speed_limits(drive).linear;
+  const double emergency = derived_emergency_deceleration(acceleration);
+  return {.speed = speed,
+          .acceleration = acceleration,
+          .deceleration = acceleration,
+          .emergency_deceleration = emergency,
+          .jerk = derived_jerk(acceleration, emergency)};
 }
 
 }  // namespace
