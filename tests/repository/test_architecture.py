@@ -455,7 +455,7 @@ MAX_FUNCTION_IN = {SRC / "estimation": 40}
 MAX_LINES = {SRC / "estimation": 3670, SRC / "estimation/legged": 950}
 """lines of a whole folder, comments included; a folder below that is listed counts by itself"""
 MAX_TUNED_CONSTANTS = 12
-"""in src/estimation/tuning.h, before the conventions of statistics"""
+"""in src/estimation/common/tuning.h, before the conventions of statistics"""
 NO_CODE = re.compile(r'//[^\n]*|/\*.*?\*/|R"\w*\(.*?\)\w*"|"(?:\\.|[^"\\\n])*"|\'(?:\\.|[^\'\\\n])\'', re.DOTALL)
 FUNCTION_HEAD = re.compile(r"\)\s*(?:const\b|noexcept\b|override\b|final\b|->|:[^:]|$)")
 NO_FUNCTION = re.compile(r"^\s*(?:if|for|while|switch|do|else|try|return|namespace|struct|class|enum|union)\b")
@@ -532,7 +532,7 @@ def test_a_folder_with_a_bound_of_its_own_stays_small():
 
 
 def test_the_estimator_has_few_tuned_constants():
-    tuned = (SRC / "estimation/tuning.h").read_text().split("conventions of statistics")[0]
+    tuned = (SRC / "estimation/common/tuning.h").read_text().split("conventions of statistics")[0]
     assert tuned.count("static constexpr") <= MAX_TUNED_CONSTANTS
 
 

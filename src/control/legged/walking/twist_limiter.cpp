@@ -4,8 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "control/common/limits/stop_distance.h"
 #include "control/legged/gait.h"
-#include "control/limits/stop_distance.h"
 #include "signals/command_frame.h"
 #include "signals/legged/legged_command.h"
 

@@ -9,9 +9,9 @@
 #include <array>
 #include <cstdint>
 
+#include "control/common/limits/axis_limiter.h"
+#include "control/common/limits/motion_limits.h"
 #include "control/legged/leg_controller_parameters.h"
-#include "control/limits/axis_limiter.h"
-#include "control/limits/motion_limits.h"
 
 namespace robot_control {
 
