@@ -1,11 +1,11 @@
-/// bench_limiter FIRST RUNS: random command sequences over the limiter (tests/control/limiter_properties.h), on all
-/// cores.
+/// bench_limiter FIRST RUNS: random command sequences over the limiter
+/// (tests/control/wheeled/limits/limiter_properties.h), on all cores.
 
 #include <cstdlib>
 
 #include "bench/programs/rows.h"
 #include "bench/programs/seed_trials.h"
-#include "control/limiter_properties.h"
+#include "control/wheeled/limits/limiter_properties.h"
 #include "rt/clock.h"
 
 namespace robot_control::bench {

@@ -12,10 +12,10 @@
 
 #include "configuration/loop_parameters.h"
 #include "configuration/report_parameters.h"
-#include "control/drive_controller_parameters.h"
 #include "control/legged/leg_controller_parameters.h"
+#include "control/wheeled/drive_controller_parameters.h"
 #include "drivers/mujoco/mujoco_plant_parameters.h"
-#include "estimation/estimator_parameters.h"
+#include "estimation/wheeled/estimator_parameters.h"
 #include "log/log_parameters.h"
 #include "machine/legs/leg_parameters.h"
 #include "machine/wheeled/drive_train_parameters.h"

@@ -1,7 +1,7 @@
 #include "robots/differential_drive.h"
 
-#include "control/drive_controller.h"
-#include "estimation/estimator.h"
+#include "control/wheeled/drive_controller.h"
+#include "estimation/wheeled/estimator.h"
 #include "gate/wheeled/wheel_stop.h"
 #include "robots/wheeled/retuning.h"
 #include "robots/wheeled/safety_limits.h"

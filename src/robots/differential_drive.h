@@ -2,7 +2,7 @@
 /// The differential drive: a robot on wheels, skid steers among them, composed of the wheeled laws.
 ///
 ///   recognised by   drive wheels on both sides (machine/wheeled/drive_train.h)
-///   laws            estimation/estimator.h, control/drive_controller.h, safety/monitor.h
+///   laws            estimation/wheeled/estimator.h, control/wheeled/drive_controller.h, safety/monitor.h
 ///   stop actions    of its drive wheels robot.fail_action; every other joint brakes
 
 #include "configuration/parameters.h"

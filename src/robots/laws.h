@@ -7,7 +7,7 @@
 
 #include <utility>
 
-#include "control/control_input.h"
+#include "control/common/control_input.h"
 #include "safety/monitor_input.h"
 #include "signals/command_frame.h"
 #include "signals/law_snapshot.h"

@@ -3,8 +3,8 @@
 /// stay.
 ///
 /// ω = commanded_wheel_speed: the largest speed that the controller's speed limits command to any wheel, at most the
-/// velocity limit ω_m of the slowest wheel, of which the controller uses kUsableWheelSpeed (control/kinematics.h; terms
-/// with ω_m are omitted if the robot has no velocity limit). τ: a wheel's effort limit, J: its inertia, T = max(20 ms,
+/// velocity limit ω_m of the slowest wheel, of which the controller uses kUsableWheelSpeed (kinematics.h). Terms with
+/// ω_m are omitted if the robot has no velocity limit. τ: a wheel's effort limit, J: its inertia, T = max(20 ms,
 /// 2 periods): the window over which wheel speeds are measured.
 ///
 ///   wheel_speed         Ω = max(1.1 ω, ω + kSpeedMargin, min(1.25 ω, ω_m))

@@ -10,7 +10,7 @@
 #include <string>
 
 #include "configuration/parameters.h"
-#include "control/command_watch.h"
+#include "control/common/command_watch.h"
 #include "robots/robot.h"
 #include "safety/monitor.h"
 

@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "control/drive_controller.h"
+#include "control/wheeled/drive_controller.h"
 #include "drivers/driver.h"
-#include "estimation/estimator.h"
+#include "estimation/wheeled/estimator.h"
 #include "loop/cycles/controller_cycle.h"
 #include "loop/cycles/driver_cycle.h"
 #include "loop/cycles/estimator_cycle.h"

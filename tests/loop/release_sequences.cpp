@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-#include "control/derived_tuning.h"
+#include "control/wheeled/derived_tuning.h"
 #include "cycle_fixture.h"
 #include "drivers/mujoco/mujoco_plant.h"
 #include "machine/legs/leg_model.h"

@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "control/limits/drive_limits.h"
+#include "control/wheeled/limits/drive_limits.h"
 #include "parameter_file.h"
 #include "parameters/suggestion.h"
 #include "support/message_of.h"

@@ -3,6 +3,7 @@
 import ast
 import re
 import xml.etree.ElementTree as ET
+from collections import Counter
 from pathlib import Path
 
 import pytest
@@ -214,8 +215,6 @@ def test_what_is_configured_sees_only_the_declaration_of_a_block():
     assert violations(rule) == []
 
 
-WHEELED = {"machine/wheeled", "gate/wheeled", "estimation", "control", "safety"}
-"""The rooms of the wheeled kind's laws."""
 COMPOSED = re.compile(
     r"src/robots/(differential_drive\.|robot_kind\.cpp)"  # the kind itself, and the choice of a kind
     r"|src/configuration/parameters\.h"  # blocks of all kinds, in one file of the user
@@ -229,7 +228,7 @@ def test_only_the_wheeled_kind_sees_the_drive_train():
     seen = {
         str(path.relative_to(ROOT))
         for path in FILES
-        if folder(path) not in WHEELED
+        if folder(path) != "safety"  # measurements and limits of wheels; its common conditions see no kind
         if "wheeled" not in path.parts and not COMPOSED.match(str(path.relative_to(ROOT)))
         if path.parent.name != "main"
         if any(re.match(r"(machine|gate|configuration|ros|bindings)/wheeled/", name) for name in includes(path))
@@ -267,6 +266,44 @@ def test_no_kind_knows_another():
     def rule(path):
         own = kinds_in(path)
         yield from (name for name in includes(path) if own and kinds_in(name) not in ([], own))
+
+    assert violations(rule) == []
+
+
+WINGS = ("control", "estimation", "safety/conditions")
+"""Folders of three: what every kind may use, and one for each kind."""
+BESIDE_KINDS = ("gate", "machine", "signals")
+"""In these, what every kind may use lies beside the folders of the kinds."""
+NAMES_A_KIND = ALL_KINDS | {"src/signals/gate_report.h"}
+"""The last one: FootStances of the command that the tick executed."""
+
+
+def test_laws_lie_in_the_wing_of_a_kind_or_in_common():
+    for name in WINGS:
+        assert {path.name for path in (SRC / name).iterdir()} - {"CMakeLists.txt"} == {"common", "wheeled", "legged"}
+
+
+def test_tests_mirror_the_wings():
+    folders = {
+        path.parent.relative_to(SRC)
+        for path in FILES
+        for name in ("control", "estimation")
+        if SRC / name in path.parents
+    }
+    assert len(folders) > 10
+    assert [str(name) for name in folders if not any((ROOT / "tests" / name).rglob("*_test.cpp"))] == []
+    listed = [path for name in ("control", "estimation") for path in (ROOT / "tests" / name).rglob("*.*")]
+    counts = Counter(str(path.parent.relative_to(ROOT)) for path in listed)
+    assert {name: count for name, count in counts.items() if count > 25} == {}
+
+
+def test_what_every_kind_may_use_knows_no_kind():
+    def rule(path):
+        own = str(path.relative_to(ROOT))
+        common = own.startswith(tuple(f"src/{name}/common/" for name in WINGS))
+        beside = own.startswith(tuple(f"src/{name}/" for name in BESIDE_KINDS)) and not kinds_in(own)
+        if (common or beside) and own not in NAMES_A_KIND:
+            yield from filter(kinds_in, includes(path))
 
     assert violations(rule) == []
 
@@ -455,7 +492,7 @@ MAX_FUNCTION_IN = {SRC / "estimation": 40}
 MAX_LINES = {SRC / "estimation": 3670, SRC / "estimation/legged": 950}
 """lines of a whole folder, comments included; a folder below that is listed counts by itself"""
 MAX_TUNED_CONSTANTS = 12
-"""in src/estimation/tuning.h, before the conventions of statistics"""
+"""in src/estimation/common/tuning.h, before the conventions of statistics"""
 NO_CODE = re.compile(r'//[^\n]*|/\*.*?\*/|R"\w*\(.*?\)\w*"|"(?:\\.|[^"\\\n])*"|\'(?:\\.|[^\'\\\n])\'', re.DOTALL)
 FUNCTION_HEAD = re.compile(r"\)\s*(?:const\b|noexcept\b|override\b|final\b|->|:[^:]|$)")
 NO_FUNCTION = re.compile(r"^\s*(?:if|for|while|switch|do|else|try|return|namespace|struct|class|enum|union)\b")
@@ -532,7 +569,7 @@ def test_a_folder_with_a_bound_of_its_own_stays_small():
 
 
 def test_the_estimator_has_few_tuned_constants():
-    tuned = (SRC / "estimation/tuning.h").read_text().split("conventions of statistics")[0]
+    tuned = (SRC / "estimation/common/tuning.h").read_text().split("conventions of statistics")[0]
     assert tuned.count("static constexpr") <= MAX_TUNED_CONSTANTS
 
 

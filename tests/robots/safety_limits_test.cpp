@@ -4,7 +4,7 @@
 
 #include <utility>
 
-#include "control/wheel_loops/wheel_loop_gains.h"
+#include "control/wheeled/wheel_loops/wheel_loop_gains.h"
 #include "loop/cycle_fixture.h"
 #include "safety/derived_limits.h"
 
@@ -46,7 +46,7 @@ TEST(SafetyLimits, KeepWhatIsGivenAndDeriveTheRest) {
   EXPECT_GT(*filled.wheel_speed.limit, commanded_wheel_speed(parameters.controller, two_wheels()));
 }
 
-// 20 Hz, and the gain of control/wheel_loops/wheel_loop_gains.h: 0.5·2·2π·20 Hz per N·m·s/rad.
+// 20 Hz, and the gain of control/wheeled/wheel_loops/wheel_loop_gains.h: 0.5·2·2π·20 Hz per N·m·s/rad.
 TEST(SafetyLimits, KnowWhatTheDerivedGainsMakeOfACount) {
   const DriveTrain robot = two_wheels();
   const double kp = wheel_loop_gains(DriveControllerParameters{}, robot, robot.wheels[0], 1e-3).kp;

@@ -2,7 +2,7 @@
 
 #include <gmock/gmock.h>
 
-#include "control/wheel_loops/feed_forward.h"
+#include "control/wheeled/wheel_loops/feed_forward.h"
 #include "gate/wheeled/wheel_stop.h"
 #include "support/diffbot_urdf.h"
 

@@ -7,7 +7,7 @@
 #include <numbers>
 #include <sstream>
 
-#include "control/smooth_speed.h"
+#include "control/wheeled/smooth_speed.h"
 #include "loop/cycle_fixture.h"
 #include "loop/machine_identity.h"
 

@@ -8,7 +8,7 @@
 #include <limits>
 #include <string>
 
-#include "control/command_watch.h"
+#include "control/common/command_watch.h"
 #include "ros/nanoseconds.h"
 
 namespace robot_control {

@@ -1,5 +1,5 @@
 #pragma once
-/// robot_control.Estimator runs the node's law (estimation/estimator.h) over recorded samples, row by row.
+/// robot_control.Estimator runs the node's law (estimation/wheeled/estimator.h) over recorded samples, row by row.
 ///
 /// A row is a time and the samples taken at that time. These samples are absent:
 ///   a wheel              if its angle is NaN
@@ -19,7 +19,7 @@
 #include <utility>
 #include <vector>
 
-#include "estimation/estimator.h"
+#include "estimation/wheeled/estimator.h"
 #include "machine/wheeled/drive_train.h"
 
 namespace robot_control {

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 
-#include "control/measured_robot.h"
-#include "control/wheel_loops/feed_forward.h"
-#include "control/wheel_loops/wheel_loop_gains.h"
+#include "control/wheeled/measured_robot.h"
+#include "control/wheeled/wheel_loops/feed_forward.h"
+#include "control/wheeled/wheel_loops/wheel_loop_gains.h"
 #include "machine/wheeled/scrub.h"
 
 namespace py = pybind11;

@@ -316,15 +316,15 @@ class ClosedLoop:
 
     def stop_distance(self, speed: float, *, emergency: bool = False) -> float:
         """Distance [m] to rest that the limits predict, straight on from a steady `speed` [m/s]. It counts from the
-        cycle that takes the command and includes the delay until its torque acts (control/limits/stop_distance.h). With
-        `emergency` the deceleration is that after a timeout.
+        cycle that takes the command and includes the delay until its torque acts
+        (control/common/limits/stop_distance.h). With `emergency` the deceleration is that after a timeout.
         """
         return self._loop.stop_distance(speed, emergency)
 
     @property
     def smooth_speed(self) -> float:
         """Speed [m/s] of a rim below which wheels may start with a jerk, behind encoders of
-        `state_estimator.encoder_noise` (control/smooth_speed.h).
+        `state_estimator.encoder_noise` (control/wheeled/smooth_speed.h).
         """
         return self._loop.smooth_speed
 

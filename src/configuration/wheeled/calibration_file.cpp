@@ -9,7 +9,7 @@
 #include <filesystem>
 
 #include "configuration/peer_file.h"
-#include "estimation/calibration_bounds.h"
+#include "estimation/wheeled/calibration_bounds.h"
 #include "files/output_file.h"
 #include "parameters/parameter_tree.h"
 #include "parameters/parameters_text.h"

@@ -18,7 +18,7 @@
 #include <optional>
 #include <string>
 
-#include "estimation/estimator_parameters.h"
+#include "estimation/wheeled/estimator_parameters.h"
 #include "machine/wheeled/drive_train.h"
 #include "signals/state_frame.h"
 

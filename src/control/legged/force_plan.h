@@ -24,7 +24,7 @@
 #include <Eigen/Core>
 #include <array>
 
-#include "control/qp/dual_active_set.h"
+#include "control/legged/qp/dual_active_set.h"
 #include "machine/legs/leg_model.h"
 
 namespace robot_control {

@@ -59,8 +59,8 @@
 #include <array>
 #include <cstdint>
 
-#include "control/command_watch.h"
-#include "control/control_input.h"
+#include "control/common/command_watch.h"
+#include "control/common/control_input.h"
 #include "control/legged/joint_motion.h"
 #include "control/legged/leg_controller_parameters.h"
 #include "control/legged/leg_tuning.h"

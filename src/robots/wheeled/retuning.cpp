@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <sstream>
 
-#include "control/control_problems.h"
-#include "control/derived_tuning.h"
+#include "control/wheeled/control_problems.h"
+#include "control/wheeled/derived_tuning.h"
 #include "parameters/problem_list.h"
 #include "robots/wheeled/safety_limits.h"
 #include "safety/derived_limits.h"

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <numbers>
 
-#include "control/wheel_loops/wheel_loop_gains.h"
+#include "control/wheeled/wheel_loops/wheel_loop_gains.h"
 #include "drivers/table/drive_table.h"
 #include "safety/derived_limits.h"
 

@@ -5,8 +5,8 @@
 #include <cstdio>
 
 #include "configuration/rate_notes.h"
-#include "control/wheel_loops/feed_forward.h"
-#include "control/wheel_loops/wheel_loop_gains.h"
+#include "control/wheeled/wheel_loops/feed_forward.h"
+#include "control/wheeled/wheel_loops/wheel_loop_gains.h"
 #include "gate/wheeled/wheel_stop.h"
 #include "robots/wheeled/safety_limits.h"
 

@@ -6,8 +6,8 @@
 #include <numbers>
 #include <string>
 
-#include "control/control_problems.h"
-#include "control/smooth_speed.h"
+#include "control/wheeled/control_problems.h"
+#include "control/wheeled/smooth_speed.h"
 #include "signals/roles.h"
 
 namespace robot_control {

@@ -9,7 +9,7 @@
 #include "configuration/parameters.h"
 #include "drivers/external_imu.h"
 #include "drivers/laser_scan.h"
-#include "estimation/estimator_parameters.h"
+#include "estimation/wheeled/estimator_parameters.h"
 #include "machine/machine_model.h"
 #include "ros/messages/messages.h"
 #include "signals/command_frame.h"

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "control/limits/drive_limits.h"
+#include "control/wheeled/limits/drive_limits.h"
 #include "signals/names.h"
 
 namespace robot_control {

@@ -16,9 +16,9 @@
 #include <string>
 #include <vector>
 
-#include "control/drive_controller.h"
-#include "control/kinematics.h"
-#include "control/limits/speed_limiter.h"
+#include "control/wheeled/drive_controller.h"
+#include "control/wheeled/kinematics.h"
+#include "control/wheeled/limits/speed_limiter.h"
 #include "machine/wheeled/drive_train.h"
 #include "ros/reports/report_line.h"
 #include "signals/command_frame.h"

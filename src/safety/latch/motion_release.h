@@ -2,7 +2,7 @@
 /// Two independent rules decide whether motion may begin; missing evidence never releases motion.
 ///
 /// A *current command frame* in cycle k is the command of cycle k−1, computed from the state of cycle k−1. Its counters
-/// of requests (control/command_watch.h) began in its first_cycle.
+/// of requests (control/common/command_watch.h) began in its first_cycle.
 ///
 /// **Zero first.** A start is one of
 ///   the first cycle of a run that this monitor sees: the driver was started or reset, or the monitor was

@@ -26,7 +26,7 @@ struct WheelTuning {
   double kp = 0;             ///< N·m·s/rad
   double ki = 0;             ///< N·m/rad
   double kd = 0;             ///< N·m·s²/rad
-  double model_inertia = 0;  ///< kg·m², in the tracking loop (control/wheel_loops/wheel_loop.h)
+  double model_inertia = 0;  ///< kg·m², in the tracking loop (control/wheeled/wheel_loops/wheel_loop.h)
   double inertia = 0;        ///< kg·m², about its axle
   double damping = 0;        ///< N·m·s/rad
   double friction = 0;       ///< N·m

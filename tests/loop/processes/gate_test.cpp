@@ -5,7 +5,7 @@
 #include <functional>
 #include <iterator>
 
-#include "control/kinematics.h"
+#include "control/wheeled/kinematics.h"
 #include "gate/joint_clamp.h"
 #include "simulation/closed_loop.h"
 

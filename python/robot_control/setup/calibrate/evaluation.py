@@ -18,8 +18,8 @@ from robot_control.ui.table import table
 RATIO = (0.95, 1.05)
 BASE = (0.7, 1.3)
 SCALE = (0.8, 1.2)
-"""The parameters accept these factors (src/estimation/calibration_bounds.h). A radius that is a quarter larger belongs
-to another wheel."""
+"""The parameters accept these factors (src/estimation/wheeled/calibration_bounds.h). A radius that is a quarter
+larger belongs to another wheel."""
 MIN_RATIO, MIN_BASE = 0.0005, 0.003
 """Smaller standard deviations are never written: another load and another floor change the wheels by so much
 (calibration_file.h)."""

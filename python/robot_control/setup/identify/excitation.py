@@ -6,8 +6,8 @@ undoes it. So the plan ends at its begin, and never leaves `space` m ahead of it
 
     v·(cruise + v/(2a) + v/(2d) + (a + d)/(2j))
 
-A ramp to v lasts v/a + a/j and covers half of v times that (src/control/limits/axis_limiter.h). The fastest speed is
-the largest for which the move fits into REACH times the space.
+A ramp to v lasts v/a + a/j and covers half of v times that (src/control/common/limits/axis_limiter.h). The fastest
+speed is the largest for which the move fits into REACH times the space.
 """
 
 import math

@@ -1,7 +1,7 @@
 """What was identified → feed-forward and gains of the `diff_drive_controller` block, with the margins they have.
 
 The feed-forward follows from the inertias that the wheels show, J_straight and J_turning. They determine mass and yaw
-inertia once the wheel's own inertia J is known (src/control/wheel_loops/feed_forward.h, with its symbols):
+inertia once the wheel's own inertia J is known (src/control/wheeled/wheel_loops/feed_forward.h, with its symbols):
 
     mass = 2h·(J_straight − J)/r²      yaw_inertia = (J_turning − J)·h·b·b'/(2r²)
 

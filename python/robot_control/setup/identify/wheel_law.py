@@ -2,8 +2,8 @@
 
 τ and q are torque and angle of a wheel, forward positive; v and ω are the robot's speeds by its wheels. The wheel's
 radius is r, and side is −1 left, +1 right. There are h wheels a side; b is the wheel base, b' the effective one. The
-law is that of src/control/wheel_loops/feed_forward.h. Wheels behind each other are fitted as one, their mean: the
-ground moves torque between them, and the share of each is chance.
+law is that of src/control/wheeled/wheel_loops/feed_forward.h. Wheels behind each other are fitted as one, their mean:
+the ground moves torque between them, and the share of each is chance.
 
     τ = J_straight·v̇/r + J_turning·side·ω̇·b'/(2r) + d·q̇ + f·sign(q̇) + side·(s·sign(ω) + e·ω)
         + p·r/h·(side·v·ω/b − ω²/2) + c

@@ -1,5 +1,5 @@
 """Computes how much more gain and delay a wheel loop bears, by eigenvalues as in
-src/control/wheel_loops/wheel_loop_stability.h.
+src/control/wheeled/wheel_loops/wheel_loop_stability.h.
 """
 
 from __future__ import annotations

@@ -4,21 +4,21 @@
 #include <cmath>
 #include <limits>
 
+#include "control/common/limits/stop_distance.h"
 #include "control/legged/gait.h"
-#include "control/limits/drive_limits.h"
-#include "control/limits/stop_distance.h"
 #include "signals/command_frame.h"
 #include "signals/legged/legged_command.h"
 
 namespace robot_control {
 namespace {
 
-/// Returns the linear axis of a drive with this speed and acceleration.
 MotionLimits axis(double speed, double acceleration) noexcept {
-  DriveControllerParameters drive;
-  drive.max_linear_speed = speed;
-  drive.max_linear_acceleration = acceleration;
-  return speed_limits(drive).linear;
+  const double emergency = derived_emergency_deceleration(acceleration);
+  return {.speed = speed,
+          .acceleration = acceleration,
+          .deceleration = acceleration,
+          .emergency_deceleration = emergency,
+          .jerk = derived_jerk(acceleration, emergency)};
 }
 
 }  // namespace

@@ -1,0 +1,88 @@
+#include "control/wheeled/feed_forward_problems.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <sstream>
+
+#include "control/wheeled/kinematics.h"
+#include "signals/roles.h"
+
+namespace robot_control {
+
+namespace {
+
+/// Holds one value of feed_forward and the value of the URDF.
+struct MeasuredValue {
+  const char* key;
+  const char* unit;
+  std::optional<double> given;
+  double described;
+  double max_factor;  ///< allowed factor between both
+};
+
+void check_plausible(const MeasuredValue& value, std::vector<std::string>& problems) {
+  if (!value.given ||
+      (*value.given <= value.max_factor * value.described && value.described <= value.max_factor * *value.given)) {
+    return;
+  }
+  std::ostringstream text;
+  text.precision(4);
+  text << program_of(Role::kController) << ".feed_forward." << value.key << " = " << *value.given << " " << value.unit
+       << ": "
+       << "the description says " << value.described << " " << value.unit << "; more than " << value.max_factor
+       << " times either way is taken for a typing error. Correct the one or the other.";
+  problems.push_back(text.str());
+}
+
+/// Checks the torque that the joints take at full speed against the motors' torque and the description.
+void check_joint_losses(const DriveControllerParameters& parameters, const DriveTrain& robot,
+                        std::vector<std::string>& problems) {
+  constexpr double kPart = 0.25;  // of the effort limit: half of what a worm gear loses at full load
+  constexpr double kTimes = 2;    // of the described value
+  const DriveKinematics kinematics(robot);
+  const double linear = parameters.max_linear_speed;
+  const double angular = parameters.max_angular_speed;
+  const PlanarTwist fastest{linear, angular};
+  const WheelValues speeds = kinematics.joint_speeds(
+      {kinematics.wheel_speed_scale(fastest) * linear, kinematics.wheel_speed_scale(fastest) * angular});
+  double max_damping = std::numeric_limits<double>::infinity();
+  double max_friction = max_damping;
+  for (const WheelModel& wheel : robot.wheels) {
+    const JointModel& joint = robot.joints[wheel.joint];
+    const double speed = std::ranges::max(speeds, {}, [](double value) { return std::abs(value); });
+    max_damping = std::min(max_damping, std::max(kTimes * joint.damping, kPart * joint.effort_limit / std::abs(speed)));
+    max_friction = std::min(max_friction, std::max(kTimes * joint.friction, kPart * joint.effort_limit));
+  }
+  const auto check = [&](const char* key, const char* unit, const std::optional<double>& given, double limit,
+                         const char* why) {
+    if (!given || *given <= limit) return;
+    std::ostringstream text;
+    text.precision(4);
+    text << program_of(Role::kController) << ".feed_forward." << key << " = " << *given << " " << unit
+         << ": plausible for this robot are 0 … " << limit << " " << unit << ", " << why
+         << ", or twice what the description says. Where it really is more, say so in the URDF (<dynamics>).";
+    problems.push_back(text.str());
+  };
+  check("wheel_damping", "N·m·s/rad", parameters.feed_forward.wheel_damping, max_damping,
+        "a quarter of the wheel's torque limit at the fastest wheel speed of these limits");
+  check("wheel_friction", "N·m", parameters.feed_forward.wheel_friction, max_friction,
+        "a quarter of the wheel's torque limit");
+}
+
+}  // namespace
+
+std::vector<std::string> feed_forward_problems(const DriveControllerParameters& parameters, const DriveTrain& robot) {
+  std::vector<std::string> problems;
+  const FeedForwardParameters& given = parameters.feed_forward;
+  check_plausible({"mass", "kg", given.mass, robot.mass, 3}, problems);
+  check_plausible({"yaw_inertia", "kg·m²", given.yaw_inertia, robot.yaw_inertia, 3}, problems);
+  if (robot.wheels.empty()) return problems;
+  const double wheel = robot.wheels.front().inertia;
+  check_plausible({"wheel_inertia", "kg·m²", given.wheel_inertia, wheel, 30}, problems);
+  check_joint_losses(parameters, robot, problems);
+  return problems;
+}
+
+}  // namespace robot_control
