@@ -2,9 +2,9 @@
 #include "ros/nodes/service_program.h"
 
 int main(int argc, char** argv) {
-  using namespace robot_control::navigation;
-  return robot_control::run_service(argc, argv,
+  using namespace robot_control;
+  return run_service(argc, argv,
                                     {.name = "localization",
                                      .purpose = "Finds the robot in a saved map from scan and odom.",
-                                     .spin = spin_localization});
+                                     .spin = navigation::spin_localization});
 }
