@@ -4,7 +4,7 @@
 int main(int argc, char** argv) {
   using namespace robot_control;
   return run_service(argc, argv,
-                                    {.name = "localization",
-                                     .purpose = "Finds the robot in a saved map from scan and odom.",
-                                     .spin = navigation::spin_localization});
+                     {.name = "localization",
+                      .purpose = "Finds the robot in a saved map from scan and odom.",
+                      .spin = navigation::spin_localization});
 }
