@@ -53,9 +53,19 @@ def streams_of(samples: Samples, robot: Robot) -> Streams:
     seconds = samples.seconds
     left, right = (_travel(table, robot, side) for table, side in ((samples.left, "left"), (samples.right, "right")))
     read = ~(np.isnan(left) | np.isnan(right))
-    wheels = (seconds[read], left[read], right[read])
-    imu = (*_axes(seconds, samples.gyro), *_axes(seconds, samples.accel))
-    return Streams(*wheels, *imu, rotation(robot["imu"]["orientation"]), float(robot["effective_wheel_base"]))
+    gyro_time, gyro = _axes(seconds, samples.gyro)
+    accel_time, accel = _axes(seconds, samples.accel)
+    return Streams(
+        seconds[read],
+        left[read],
+        right[read],
+        gyro_time,
+        gyro,
+        accel_time,
+        accel,
+        rotation(robot["imu"]["orientation"]),
+        float(robot["effective_wheel_base"]),
+    )
 
 
 def _travel(table: FloatArray, robot: Robot, side: str) -> FloatArray:

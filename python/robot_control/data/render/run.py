@@ -77,5 +77,13 @@ def _moment(row: dict[str, float], first: dict[str, float], pose: str, height: s
         for name, value in row.items()
         if name.endswith("_position") and math.isfinite(value)
     }
-    x, y, yaw = (row[f"{pose}_{name}"] for name in ("x", "y", "yaw"))
-    return Moment(row["time"], x, y, since(height), since("estimate_roll"), since("estimate_pitch"), yaw, joints)
+    return Moment(
+        row["time"],
+        row[f"{pose}_x"],
+        row[f"{pose}_y"],
+        since(height),
+        since("estimate_roll"),
+        since("estimate_pitch"),
+        row[f"{pose}_yaw"],
+        joints,
+    )

@@ -251,5 +251,13 @@ def _fit_side(base: Base, side: int, parts: Sequence[Regression], period: float)
             f"{named}: the friction is known to {friction:.2g} N·m, {FRICTION_ERROR:.0%} of the RMS torque "
             f"{effort:.2g} N·m are needed: drive at several speeds, both ways, longer"
         )
-    shown = {name: found[name] for name in ("straight", "turning", "damping", "friction", "scrub")}
-    return SideFit(joints, **shown, residual=left_over, effort=effort)
+    return SideFit(
+        joints,
+        found["straight"],
+        found["turning"],
+        found["damping"],
+        found["friction"],
+        found["scrub"],
+        left_over,
+        effort,
+    )

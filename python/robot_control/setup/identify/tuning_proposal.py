@@ -99,7 +99,12 @@ def loop_of(loops: Sequence[Mapping[str, Any]], found: Identification, lifted: f
     quickest = max(loops, key=lambda loop: loop["kp"] / loop["model_inertia"])
     straight, turning = found.mean("straight").value, found.mean("turning").value
     return Loop(
-        **{name: quickest[name] for name in ("kp", "ki", "kd", "model_inertia", "bandwidth", "period")},
+        kp=quickest["kp"],
+        ki=quickest["ki"],
+        kd=quickest["kd"],
+        model_inertia=quickest["model_inertia"],
+        bandwidth=quickest["bandwidth"],
+        period=quickest["period"],
         inertias=(lifted, turning, straight, 2 * straight - lifted),
         damping=max(0.0, found.mean("damping").value),
     )

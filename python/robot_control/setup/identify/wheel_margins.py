@@ -32,8 +32,21 @@ class Loop:
 
     def radius(self, delay: int) -> float:
         """The largest spectral radius over all inertias, `delay` cycles beyond the bus' one."""
-        law = {name: value for name, value in vars(self).items() if name != "inertias"}
-        return max(spectral_radius(**law, inertia=inertia, delay=delay) for inertia in self.inertias)
+        worst: float = max(
+            spectral_radius(
+                kp=self.kp,
+                ki=self.ki,
+                kd=self.kd,
+                model_inertia=self.model_inertia,
+                inertia=inertia,
+                damping=self.damping,
+                period=self.period,
+                bandwidth=self.bandwidth,
+                delay=delay,
+            )
+            for inertia in self.inertias
+        )
+        return worst
 
     def scaled(self, kp: float, ki: float) -> Loop:
         """The loop with kp and kd times `kp`, ki times `ki`."""
