@@ -59,7 +59,7 @@ NavigatorOutput Navigator::step(const NavigatorInput& input, Costmap* costmap) {
       fail((reason_.empty() ? "the robot does not move" : reason_) + text(" (for %.0f s)", waited), out);
   }
   out.state = state_;
-  if (state_ == NavigatorState::kFailed) reason_ += input.remark;
+  if (state_ == NavigatorState::kFailed) reason_ += input.explanation;
   if (state_ != NavigatorState::kReached) out.reason = reason_;
   if (state_ == NavigatorState::kDriving) out.remaining = remaining(input.pose);
   return out;

@@ -34,11 +34,11 @@ struct PathReport {
 };
 
 struct NavigatorInput {
-  double now = 0;         ///< s of a clock that does not turn back
-  std::string problem;    ///< why map, scan or place cannot be trusted now; then `pose` may be old
-  std::string remark;     ///< what the reason of a failure ends with
-  std::string slowed_by;  ///< what slows the robot, if something does: why it may not come nearer
-  PlanarPose pose;        ///< of the base in the map
+  double now = 0;           ///< s of a clock that does not turn back
+  std::string problem;      ///< why map, scan or place cannot be trusted now; then `pose` may be old
+  std::string explanation;  ///< what the reason of a failure ends with
+  std::string slowed_by;    ///< what slows the robot, if something does: why it may not come nearer
+  PlanarPose pose;          ///< of the base in the map
   PathReport path;
 };
 

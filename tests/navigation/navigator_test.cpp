@@ -27,7 +27,7 @@ class NavigatorTest : public testing::Test {
   void step() {
     now_ += kPeriod;
     costmap_.insert(scan_of(world_, pose_, 180), pose_, now_);
-    out_ = navigator_.step({now_, problem_, remark_, "", pose_, report_}, &costmap_);
+    out_ = navigator_.step({now_, problem_, explanation_, "", pose_, report_}, &costmap_);
     if (out_.cancel) report_.state = PathReport::State::kNone;
     if (out_.path) path_ = *out_.path, along_ = 0, report_ = {PathReport::State::kActive, ""}, ++paths_;
     if (report_.state == PathReport::State::kActive && !failing_.empty())
@@ -59,7 +59,7 @@ class NavigatorTest : public testing::Test {
   Plan path_;
   std::size_t along_ = 0;
   PathReport report_;
-  std::string problem_, remark_, failing_;
+  std::string problem_, explanation_, failing_;
   PlanarPose pose_{1.6, 1.6, 0};
   double now_ = 100, least_air_ = 1e9;
   int paths_ = 0;
@@ -131,7 +131,7 @@ TEST_F(NavigatorTest, ADoorThatStaysShutIsGivenUpWithTheReason) {
   navigator_.begin({5.0, 1.6, 0}, now_);
   run(0.5);
   box(31, 16);
-  remark_ = "; perhaps the map is wrong";
+  explanation_ = "; perhaps the map is wrong";
   run(kNoProgressTime + 10);
   EXPECT_EQ(out_.state, State::kFailed);
   EXPECT_THAT(out_.reason, HasSubstr("(for 20 s); perhaps the map is wrong"));
