@@ -5,6 +5,8 @@ log = loop.run(seconds=10.0, command=(0.5, 0.2))
 log["truth_linear"]  # numpy, one value per cycle
 """
 
+from __future__ import annotations  # help() shows the names of the types
+
 import re
 from collections.abc import Callable, Mapping, Sequence
 from os import PathLike

@@ -5,6 +5,8 @@ out = est.process(time, left_position, right_position, gyro, accel)
 out["x"], out["y"], out["yaw"], out["pose_covariance"]  # numpy, a row per sample
 """
 
+from __future__ import annotations  # help() shows the names of the types
+
 from collections.abc import Mapping, Sequence
 from os import PathLike
 from typing import Any
