@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import contextlib
-import gc
 import io
 import json
 import math
@@ -33,6 +32,7 @@ from robot_control.robot.pose import turned
 from robot_control.settings.files import SettingsError
 from sensor_msgs.msg import BatteryState
 from support.mutants import mutants
+from support.timed import longest, timed
 
 from bench.fleet.attack import mutated, seeds
 from bench.fleet.messages import MANUFACTURER, SERIAL, action, header, order
@@ -41,12 +41,8 @@ from bench.fleet.virtual_robot import MACHINE, Run, VirtualRobot
 jsonschema = pytest.importorskip("jsonschema", reason="needs Debian's python3-jsonschema: scripts/setup --fleet")
 STATE = jsonschema.Draft202012Validator(schema("state"))
 COUNT, NIGHTLY_COUNT = 2000, 100_000
-LONGEST = 0.1  # s of the thread's processor time for one message
 PLACES = [(0.0, 0.0), (1.0, 0.0), (2.0, 0.0)]
 BOTH = pytest.mark.parametrize("count", [COUNT, pytest.param(NIGHTLY_COUNT, marks=pytest.mark.nightly)])
-
-
-longest = [0.0]  # s, of the calls of `timed`
 
 
 @pytest.fixture(autouse=True, scope="module")
@@ -55,22 +51,16 @@ def said():
     print(f"the longest call took {1000 * longest[0]:.1f} ms")
 
 
-def timed(function, *given):
-    """The value, or the refusal; the call took no longer than LONGEST."""
-    gc.freeze()  # what other tests left is not traversed again
-    began = time.thread_time()
+def taken(function, *given):
+    """The value, or the refusal; in time."""
     try:
-        return function(*given)
+        return timed(function, *given)
     except RefusedError as refused:
         return refused
-    finally:
-        took = time.thread_time() - began
-        longest[0] = max(longest[0], took)
-        assert took < LONGEST, f"{took:.3f} s for {str(given)[:200]}"
 
 
 def decode(payload, topic="order"):
-    return timed(decoded, payload, topic, MANUFACTURER, SERIAL)
+    return taken(decoded, payload, topic, MANUFACTURER, SERIAL)
 
 
 # one message
@@ -98,13 +88,13 @@ def test_a_message_of_any_content_is_decoded_in_linear_time(payload):
 def test_the_largest_order_is_decoded_and_checked_in_time():
     actions = {at: [action("horn", f"{at}-{number}") for number in range(4)] for at in range(0, 300, 2)}
     message = decode(encoded(order([(0.5 * number, 0.0, 0.0) for number in range(500)], actions=actions)))
-    assert len(timed(order_of, message).nodes) == 500
+    assert len(taken(order_of, message).nodes) == 500
     controls = [{"x": 0.9 * number, "y": math.sin(number) / 10} for number in range(200)]
     knots = [0] * 11 + [number / 190 for number in range(1, 190)] + [1] * 11
     curve = {"degree": 10, "knotVector": knots, "controlPoints": controls}
     run = Run()
     payload = encoded(order([(0.0, 0.0), (179.1, math.sin(199) / 10)], trajectory=curve))
-    timed(run.client.receive, "order", payload, run.now)
+    taken(run.client.receive, "order", payload, run.now)
     run.step(0.02)
     assert run.state["nodeStates"], run.state["errors"]
 
@@ -371,8 +361,8 @@ def seed_payloads():
 
 def fed(run, topic, payload):
     """One message, and the pass after it."""
-    timed(run.client.receive, topic, payload, run.now)
-    timed(run.client.step, run.now)
+    taken(run.client.receive, topic, payload, run.now)
+    taken(run.client.step, run.now)
     run.step(0.02)
     encoded(run.state)
 
@@ -443,7 +433,7 @@ def test_no_settings_file_ends_the_program_but_with_its_problem(count, tmp_path)
     for payload in mutants(valid, count, seed=1):
         path.write_bytes(payload)
         with contextlib.suppress(SettingsError, OSError):
-            assert isinstance(timed(read_settings, path), Settings)
+            assert isinstance(taken(read_settings, path), Settings)
 
 
 @BOTH
@@ -454,7 +444,7 @@ def test_no_damage_of_its_file_ends_the_program(count, tmp_path):
     valid = path.read_bytes()
     for payload in mutants(valid, count, seed=1):
         path.write_bytes(payload)
-        vehicle, _ = timed(lambda: recalled(Memory(path)))
+        vehicle, _ = taken(lambda: recalled(Memory(path)))
         assert (vehicle.order_id == "o1") == (payload == valid)
 
 
@@ -551,10 +541,10 @@ def test_no_message_of_a_topic_ends_the_client_or_holds_it_up(wire, topic, count
     kind, _ = wire.arrive["follow_path/feedback"]
     for number, payload in enumerate(mutants(wire_of(message), count, seed=1)):
         if topic == "feedback":
-            robot._client.feedback(None, timed(kind().deserialize, payload).feedback)
+            robot._client.feedback(None, taken(kind().deserialize, payload).feedback)
         else:
-            timed(wire.feed, topic, payload)
-        for name, out in timed(client.step, 0.02 * number):
+            taken(wire.feed, topic, payload)
+        for name, out in taken(client.step, 0.02 * number):
             encoded(out)
             if name == "state":
                 assert next(STATE.iter_errors({**header(), **out}), None) is None
@@ -570,7 +560,7 @@ def test_no_message_of_the_action_raises_in_the_thread_that_reads_it(wire, topic
     status = GoalStatus(GoalID(id="1"), GoalStatus.ACTIVE, "driving")
     message = FollowPathActionResult(status=status) if topic == "result" else GoalStatusArray(status_list=[status])
     for payload in mutants(wire_of(message), count, seed=1):
-        timed(kind().deserialize, payload)
+        taken(kind().deserialize, payload)
     assert set(crossing.boundary.dropped) == {kind._type}
 
 

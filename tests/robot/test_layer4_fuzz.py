@@ -1,7 +1,7 @@
 """Damaged messages at the boundary of every program beside the loop that has no fuzz of its own: none ends one.
 
 Each mutant crosses the real deserialization and what the program does with it. Nothing may raise, nothing may surprise
-the boundary, and no message may take longer than LIMIT of the processor.
+the boundary, and no message may take longer than `timed` allows.
 """
 
 from __future__ import annotations
@@ -41,12 +41,11 @@ from robot_control.watch.status.main import Status
 from robot_control.watch.view import main as view
 from robot_control.watch.why.screen import Layout, render
 from support.mutants import mutants
+from support.timed import longest, timed
 from support.topics import Topics, graph, surprises_of, wire
 
 COUNT = 100_000 if os.environ.get("ROBOT_CONTROL_NIGHTLY") else 2000
 """mutants of each topic and input"""
-LIMIT = 0.1
-"""s of the thread's processor time"""
 ROWS = 3
 """of each list in a sample"""
 Step = Callable[[], object]
@@ -182,15 +181,11 @@ def test_no_damaged_message_ends_or_surprises_it(
 ) -> None:
     step = program()
     step()
-    slowest = 0.0
+    longest[0] = 0.0
     for topic, kind in sorted(topics.types.items()):
         draw = random.Random(topic)
         for number, mutant in enumerate(mutants(wire(sample(kind, draw)), COUNT, seed=len(topic))):
-            began = time.thread_time()
-            topics.send_bytes(topic, mutant)
-            step()
-            took = time.thread_time() - began
-            assert not surprises, (topic, number, surprises)
-            assert took < LIMIT, (topic, number, mutant)
-            slowest = max(slowest, took)
-    print(f"{COUNT} mutants of each of {len(topics.types)} topics: the slowest took {1000 * slowest:.1f} ms")
+            timed(topics.send_bytes, topic, mutant)
+            timed(step)
+            assert not surprises, (topic, number, mutant, surprises)
+    print(f"{COUNT} mutants of each of {len(topics.types)} topics: the slowest took {1000 * longest[0]:.1f} ms")

@@ -37,17 +37,22 @@ class ConsoleNavigationTest(ConsoleTestCase):
         rospy.set_param("/localization/map", str(Path(tempfile.mkdtemp(), "room.yaml")))
         write_map(rospy.get_param("/localization/map"), true_map(read_scene(scene)))
         super().setUpClass()
-        names = ("state_publisher.py", "localization", "follow_path.py", "navigate")
+        names = ("state_publisher.py", "follow_path.py", "navigate")
         cls.programs = [Program(name) for name in names]
         cls.goal = Latest("move_base_simple/goal", PoseStamped)
         cls.place = Latest("initialpose", PoseWithCovarianceStamped)
-        cls.state = Latest("localization_state", LocalizationState)
 
     @classmethod
     def tearDownClass(cls) -> None:
         for program in reversed(cls.programs):
             program.end()
         super().tearDownClass()
+
+    def setUp(self) -> None:
+        """Each attempt begins without a place."""
+        super().setUp()
+        self.addCleanup(Program("localization").end)
+        self.state = Latest("localization_state", LocalizationState)
 
     def pixel(self, browser: Browser, ahead: float) -> tuple[float, float]:
         """The pixel of the place so far ahead of the robot, which looks along x."""

@@ -64,6 +64,7 @@ class Services:
         self._watch = watch
         self._topic = rospy.Publisher("e_stop", Bool, queue_size=1, tcp_nodelay=True)
         self._topic_said_true = False
+        self._proxies = {name: rospy.ServiceProxy(name, Trigger) for name in (E_STOP, "e_stop_reset")}
         self._wanted: queue.Queue[tuple[str, float, int]] = queue.Queue()  # service, when it was requested, attempts
         self._answers: queue.Queue[Answer] = queue.Queue()
         self._e_stop_at: float | None = None  # when it was requested, until it is answered
@@ -137,10 +138,10 @@ class Services:
                 self._answers.put(Answer(name, accepted=False, text="it could not be called in time; request it again"))
                 continue
             try:
-                response = rospy.ServiceProxy(name, Trigger)()
+                response = self._proxies[name]()
                 if not response.success and attempts > 1:
                     time.sleep(PATIENCE)
-                    response = rospy.ServiceProxy(name, Trigger)()
+                    response = self._proxies[name]()
                 self._answers.put(Answer(name, accepted=bool(response.success), text=response.message))
             except (rospy.ServiceException, OSError) as error:
                 self._answers.put(Answer(name, accepted=False, text=str(error)))

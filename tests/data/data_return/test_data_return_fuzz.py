@@ -1,7 +1,6 @@
 """Damaged copies of what data return reads from outside: each is used or refused, at once."""
 
 import json
-import time
 
 import pytest
 from robot_control.data.data_return.fetch import _names
@@ -13,8 +12,8 @@ from robot_control.files.kept_file import digest_of
 from robot_control.settings.files import SettingsError
 from support.data_return_system import DAY, WHOLE_BAG, System, use_small_parts, write
 from support.mutants import mutants
+from support.timed import timed
 
-LONGEST = 0.1  # s of this thread
 NUMBER = 2000
 SETTINGS = """far_side: factory:robots
 robot: amr-07
@@ -35,14 +34,6 @@ def write_new(path, content):
     """A file that is written over is flushed by some file systems."""
     path.unlink(missing_ok=True)
     path.write_bytes(content)
-
-
-def in_time(take, given):
-    """The result of a call, which took no longer than LONGEST."""
-    before = time.thread_time()
-    result = take(given)
-    assert time.thread_time() - before < LONGEST, given[:300]
-    return result
 
 
 def finished(tmp_path):
@@ -138,7 +129,7 @@ def fuzz(kind, tmp_path, number, seed):
     take, valid = kind(tmp_path)
     assert take(valid)
     for mutant in mutants(valid, number, seed):
-        assert in_time(take, mutant), mutant[:300]
+        assert timed(take, mutant), mutant[:300]
 
 
 @pytest.mark.parametrize("kind", FORMATS)

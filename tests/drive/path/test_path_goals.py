@@ -3,7 +3,6 @@
 import io
 import itertools
 import math
-import time
 from types import SimpleNamespace
 
 import pytest
@@ -15,9 +14,9 @@ from robot_control.drive.path import run
 from robot_control.msg import FollowPathActionGoal
 from robot_control.robot import boundary as crossing
 from support.mutants import mutants
+from support.timed import timed
 
 COUNT, NIGHTLY_COUNT = 2000, 100_000
-LONGEST = 0.1  # s of the thread's processor time for one goal
 
 
 def goal_of(places):
@@ -85,7 +84,7 @@ def follow_path(monkeypatch):
 
 
 def executed(follow_path, payload):
-    """The reason with which the goal of these bytes ended; both cost less than LONGEST."""
+    """The reason with which the goal of these bytes ended; both are `timed`."""
     passes = itertools.count()
 
     def going_on():
@@ -94,11 +93,7 @@ def executed(follow_path, payload):
         return next(passes) < 10
 
     follow_path._going_on = going_on
-    began = time.thread_time()
-    goal = TimedGoal().deserialize(payload)
-    follow_path._execute(goal.goal)
-    took = time.thread_time() - began
-    assert took < LONGEST, payload
+    timed(lambda data: follow_path._execute(TimedGoal().deserialize(data).goal), payload)
     return follow_path._action.reasons[-1]
 
 

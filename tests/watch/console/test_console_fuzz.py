@@ -1,4 +1,4 @@
-"""Damaged input of pages, requests and files: none surprises the console, and none takes longer than LIMIT."""
+"""Damaged input of pages, requests and files: none surprises the console, and none takes longer than `timed` allows."""
 
 from __future__ import annotations
 
@@ -14,11 +14,10 @@ from robot_control.drive.path.waypoints import PathError, read_csv_text
 from robot_control.settings.files import SettingsError
 from robot_control.watch.console import authority, calls, messages, sessions, settings, users
 from support.mutants import mutants
+from support.timed import timed
 from support.topics import graph, surprises_of
 
 COUNT = 100_000 if os.environ.get("ROBOT_CONTROL_NIGHTLY") else 2000
-LIMIT = 0.1
-"""s of the thread's processor time"""
 POINTS = [[0.0, 0.0], [1.0, 0.5]]
 ARGUMENTS = {
     "key": "0" * 16,
@@ -52,13 +51,6 @@ class Task:
 
     def add_done_callback(self, forget):
         forget(self)
-
-
-def timed(act, *given):
-    began = time.thread_time()
-    act(*given)
-    took = time.thread_time() - began
-    assert took < LIMIT, (took, given)
 
 
 @pytest.mark.parametrize("message", [DRIVE, SPEEDS, *OTHERS, *CALLS], ids=lambda m: m.get("name", m["type"]))
