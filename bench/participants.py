@@ -1,4 +1,4 @@
-"""Runs a robot's nodes as processes without ROS (tests/support/participant.cpp); their telemetry records all cycles."""
+"""Runs a robot's nodes without ROS (tests/support/processes/participant.cpp); their telemetry records all cycles."""
 
 from __future__ import annotations
 

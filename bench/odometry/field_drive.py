@@ -4,7 +4,7 @@ The drive is kinematic, without physics. It has a path and the travel of the whe
 accelerometer of the given quality report it, each with its own stamps. The defaults follow recordings of real skid
 steers.
 
-    /usr/bin/python3 -m bench.odometry.field_drive tests/simulation/field_drive.npz  # writes it for the tests
+    /usr/bin/python3 -m bench.odometry.field_drive tests/simulation/estimation/field_drive.npz  # for the tests
 """
 
 from __future__ import annotations

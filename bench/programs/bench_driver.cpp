@@ -1,9 +1,9 @@
-/// bench_driver: the node `driver` on a robot without simulated physics (tests/support/free_wheels.h). With it,
+/// bench_driver: the node `driver` on a robot without simulated physics (tests/support/robots/free_wheels.h). With it,
 /// scripts/bench realtime measures what the loop itself costs.
 
 #include "ros/nodes/driver_node.h"
 #include "ros/nodes/node.h"
-#include "support/free_wheels.h"
+#include "support/robots/free_wheels.h"
 
 int main(int argc, char** argv) {
   using namespace robot_control;

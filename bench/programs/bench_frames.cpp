@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "bench/programs/rows.h"
-#include "support/torture.h"
+#include "support/bus/torture.h"
 
 namespace robot_control::bench {
 namespace {

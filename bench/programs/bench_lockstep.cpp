@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "bench/programs/rows.h"
-#include "support/loop_speed.h"
+#include "support/processes/loop_speed.h"
 
 namespace robot_control::bench {
 namespace {

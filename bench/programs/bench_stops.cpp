@@ -10,7 +10,7 @@
 
 #include "bench/programs/rows.h"
 #include "bench/programs/stop_budget.h"
-#include "support/stop_trials.h"
+#include "support/processes/stop_trials.h"
 
 namespace robot_control::bench {
 namespace {

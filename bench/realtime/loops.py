@@ -19,7 +19,7 @@ FIRST = 1000
 LAST = 200
 """likewise at the end"""
 FREE_WHEELS = "free_wheels"
-"""a driver of a robot without physics (tests/support/free_wheels.h)"""
+"""a driver of a robot without physics (tests/support/robots/free_wheels.h)"""
 SOME_ROWS = 100_000
 """bytes of run.bag"""
 

@@ -5,7 +5,7 @@ import math
 
 import numpy as np
 import pytest
-from support.synthetic_odometry import RADIUS, drive
+from support.recordings.synthetic_odometry import RADIUS, drive
 
 from bench.odometry.consistency import Notice, nees, nees_band, notice
 from bench.odometry.errors import Errors

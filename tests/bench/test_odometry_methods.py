@@ -4,7 +4,7 @@ import dataclasses
 
 import numpy as np
 import pytest
-from support.synthetic_odometry import PERIOD, drive
+from support.recordings.synthetic_odometry import PERIOD, drive
 
 from bench.odometry.errors import GYRO_BIAS, Errors, draw_errors
 from bench.odometry.methods import (

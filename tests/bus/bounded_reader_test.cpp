@@ -6,7 +6,7 @@
 #include "bus/latest_frames.h"
 #include "bus/latest_value.h"
 #include "bus/ring.h"
-#include "support/damage.h"
+#include "support/bus/damage.h"
 
 namespace robot_control {
 namespace {

@@ -14,9 +14,9 @@
 #include "rt/clock.h"
 #include "signals/command_frame.h"
 #include "signals/permit.h"
-#include "support/child_process.h"
-#include "support/scoped_bus.h"
-#include "support/test_frame.h"
+#include "support/bus/scoped_bus.h"
+#include "support/bus/test_frame.h"
+#include "support/processes/child_process.h"
 
 namespace robot_control {
 namespace {

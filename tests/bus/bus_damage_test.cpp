@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "bus/bus.h"
-#include "support/damage.h"
-#include "support/scoped_bus.h"
-#include "support/test_frame.h"
+#include "support/bus/damage.h"
+#include "support/bus/scoped_bus.h"
+#include "support/bus/test_frame.h"
 
 namespace robot_control {
 namespace {

@@ -8,10 +8,10 @@
 
 #include "bus/bus.h"
 #include "rt/clock.h"
-#include "support/anonymous_memory.h"
-#include "support/child_process.h"
-#include "support/scoped_bus.h"
-#include "support/test_frame.h"
+#include "support/bus/scoped_bus.h"
+#include "support/bus/test_frame.h"
+#include "support/processes/anonymous_memory.h"
+#include "support/processes/child_process.h"
 
 namespace robot_control {
 namespace {

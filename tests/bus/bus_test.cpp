@@ -8,9 +8,9 @@
 #include <cstdlib>
 #include <fstream>
 
+#include "support/bus/scoped_bus.h"
+#include "support/bus/test_frame.h"
 #include "support/message_of.h"
-#include "support/scoped_bus.h"
-#include "support/test_frame.h"
 
 namespace robot_control {
 namespace {

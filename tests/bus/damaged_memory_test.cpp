@@ -8,8 +8,8 @@
 
 #include "bus/latest_frames.h"
 #include "bus/ring.h"
-#include "support/damage.h"
-#include "support/test_frame.h"
+#include "support/bus/damage.h"
+#include "support/bus/test_frame.h"
 
 namespace robot_control {
 namespace {

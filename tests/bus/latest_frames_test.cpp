@@ -4,8 +4,8 @@
 
 #include "rt/clock.h"
 #include "support/allocation_guard.h"
-#include "support/anonymous_memory.h"
-#include "support/test_frame.h"
+#include "support/bus/test_frame.h"
+#include "support/processes/anonymous_memory.h"
 
 namespace robot_control {
 namespace {

@@ -6,9 +6,9 @@
 
 #include "bus/latest_frames.h"
 #include "rt/clock.h"
-#include "support/anonymous_memory.h"
-#include "support/child_process.h"
-#include "support/test_frame.h"
+#include "support/bus/test_frame.h"
+#include "support/processes/anonymous_memory.h"
+#include "support/processes/child_process.h"
 
 namespace robot_control {
 namespace {

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "support/allocation_guard.h"
-#include "support/torture.h"
+#include "support/bus/torture.h"
 
 namespace robot_control {
 namespace {

@@ -5,8 +5,8 @@
 #include <thread>
 
 #include "support/allocation_guard.h"
-#include "support/anonymous_memory.h"
-#include "support/child_process.h"
+#include "support/processes/anonymous_memory.h"
+#include "support/processes/child_process.h"
 
 namespace robot_control {
 namespace {

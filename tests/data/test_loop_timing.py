@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 from robot_control.data.loop_timing import ProcessorTime, distribution, loop_timing, parse_processor_time, stolen_share
-from support.synthetic_run import CYCLES, healthy_run
+from support.recordings.synthetic_run import CYCLES, healthy_run
 
 
 @pytest.fixture

@@ -1,8 +1,8 @@
 #include "drivers/driver_contract.h"
 
 #include "drivers/mujoco/mujoco_plant.h"
-#include "support/diffbot_urdf.h"
-#include "support/free_wheels.h"
+#include "support/robots/diffbot_urdf.h"
+#include "support/robots/free_wheels.h"
 
 namespace robot_control {
 namespace {

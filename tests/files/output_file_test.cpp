@@ -10,8 +10,8 @@
 #include <system_error>
 
 #include "rt/process_limits.h"
-#include "support/child_process.h"
 #include "support/file_content.h"
+#include "support/processes/child_process.h"
 #include "support/temporary_folder.h"
 
 namespace robot_control {

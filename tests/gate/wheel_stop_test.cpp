@@ -6,7 +6,7 @@
 
 #include <cmath>
 
-#include "support/made_robot.h"
+#include "support/robots/made_robot.h"
 
 namespace robot_control {
 namespace {

@@ -13,9 +13,9 @@
 #include "log/trace_reader.h"
 #include "rt/clock.h"
 #include "rt/futex.h"
-#include "support/four_nodes.h"
 #include "support/log_table.h"
-#include "support/node_processes.h"
+#include "support/processes/four_nodes.h"
+#include "support/processes/node_processes.h"
 #include "support/temporary_folder.h"
 
 namespace robot_control {

@@ -6,7 +6,7 @@
 
 #include "black_box_fixture.h"
 #include "log/replay/replay.h"
-#include "support/child_process.h"
+#include "support/processes/child_process.h"
 
 namespace robot_control {
 namespace {

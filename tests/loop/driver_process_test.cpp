@@ -11,7 +11,7 @@
 #include "cycle_fixture.h"
 #include "robots/differential_drive.h"
 #include "rt/futex.h"
-#include "support/scoped_bus.h"
+#include "support/bus/scoped_bus.h"
 
 namespace robot_control {
 namespace {

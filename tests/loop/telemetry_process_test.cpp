@@ -6,7 +6,7 @@
 #include "cycle_fixture.h"
 #include "loop/cycles/trace_sink.h"
 #include "robots/differential_drive.h"
-#include "support/scoped_bus.h"
+#include "support/bus/scoped_bus.h"
 #include "support/temporary_folder.h"
 
 namespace robot_control {

@@ -6,7 +6,7 @@
 
 #include <thread>
 
-#include "support/scoped_bus.h"
+#include "support/bus/scoped_bus.h"
 
 namespace robot_control {
 namespace {

@@ -9,8 +9,8 @@
 
 #include "rt/clock.h"
 #include "rt/futex.h"
-#include "support/anonymous_memory.h"
-#include "support/child_process.h"
+#include "support/processes/anonymous_memory.h"
+#include "support/processes/child_process.h"
 
 namespace robot_control {
 

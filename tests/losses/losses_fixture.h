@@ -10,7 +10,7 @@
 #include <cstdio>
 #include <string>
 
-#include "support/driving_robot.h"
+#include "support/processes/driving_robot.h"
 
 namespace robot_control {
 

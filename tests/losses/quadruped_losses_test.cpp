@@ -10,7 +10,7 @@
 #include "losses_fixture.h"
 #include "machine/legs/leg_model.h"
 #include "robots/quadruped.h"
-#include "support/stop_trials.h"
+#include "support/processes/stop_trials.h"
 
 namespace robot_control {
 namespace {

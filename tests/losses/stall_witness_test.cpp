@@ -1,6 +1,6 @@
 /// The witness of stalls detects what stops the loop's core, and nothing that the loop itself does to it.
 
-#include "support/stall_witness.h"
+#include "support/processes/stall_witness.h"
 
 #include <gtest/gtest.h>
 

@@ -4,7 +4,7 @@
 #include <tuple>
 
 #include "losses_fixture.h"
-#include "support/stop_trials.h"
+#include "support/processes/stop_trials.h"
 
 namespace robot_control {
 namespace {

@@ -6,7 +6,7 @@
 
 #include "machine/bodies/rigid_bodies.h"
 #include "machine/urdf_text.h"
-#include "support/diffbot_urdf.h"
+#include "support/robots/diffbot_urdf.h"
 
 namespace robot_control {
 namespace {

@@ -1,4 +1,4 @@
-/// Real quadrupeds (support/corpus.h) against their facts: FACTS.json, read as the YAML that it is.
+/// Real quadrupeds (support/robots/corpus.h) against their facts: FACTS.json, read as the YAML that it is.
 
 #include <gtest/gtest.h>
 #include <yaml-cpp/yaml.h>
@@ -6,8 +6,8 @@
 #include <algorithm>
 
 #include "machine/wheeled/drive_train.h"
-#include "support/corpus.h"
 #include "support/message_of.h"
+#include "support/robots/corpus.h"
 
 namespace robot_control {
 namespace {

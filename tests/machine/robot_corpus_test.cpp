@@ -1,4 +1,4 @@
-/// Real robots (support/corpus.h) against their truth: TRUTH.json, read as the YAML that it is.
+/// Real robots (support/robots/corpus.h) against their truth: TRUTH.json, read as the YAML that it is.
 
 #include <gtest/gtest.h>
 #include <yaml-cpp/yaml.h>
@@ -7,8 +7,8 @@
 #include <filesystem>
 
 #include "machine/urdf_text.h"
-#include "support/corpus.h"
 #include "support/message_of.h"
+#include "support/robots/corpus.h"
 
 namespace robot_control {
 namespace {

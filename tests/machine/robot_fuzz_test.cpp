@@ -11,7 +11,7 @@
 #include "machine/random_text.h"
 #include "machine/urdf_text.h"
 #include "signals/joint.h"
-#include "support/diffbot_urdf.h"
+#include "support/robots/diffbot_urdf.h"
 
 namespace robot_control {
 namespace {

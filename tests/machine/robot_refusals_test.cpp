@@ -7,9 +7,9 @@
 
 #include "machine/urdf_text.h"
 #include "machine/wheeled/drive_train.h"
-#include "support/diffbot_urdf.h"
 #include "support/message_of.h"
 #include "support/quiet_refusal.h"
+#include "support/robots/diffbot_urdf.h"
 
 namespace robot_control {
 namespace {

@@ -1,7 +1,7 @@
 /// The limits of robots on legs in the pose, on the slope and with the torques in force.
 
 #include "robots/quadruped_fixture.h"
-#include "support/quadruped_trials.h"
+#include "support/robots/quadruped_trials.h"
 
 namespace robot_control {
 namespace {

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "machine/legs/legs_corpus.h"
-#include "support/quadruped_loop.h"
+#include "support/robots/quadruped_loop.h"
 
 namespace robot_control {
 

@@ -4,7 +4,7 @@
 
 #include "control/wheeled/wheel_loops/feed_forward.h"
 #include "gate/wheeled/wheel_stop.h"
-#include "support/diffbot_urdf.h"
+#include "support/robots/diffbot_urdf.h"
 
 namespace robot_control {
 namespace {

@@ -7,7 +7,7 @@
 #include <fstream>
 
 #include "machine/wheeled/drive_train.h"
-#include "support/diffbot_urdf.h"
+#include "support/robots/diffbot_urdf.h"
 
 namespace robot_control {
 namespace {

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 
-#include "support/child_process.h"
+#include "support/processes/child_process.h"
 
 namespace robot_control {
 namespace {

@@ -20,8 +20,8 @@
 #include "rt/thread_priority.h"
 #include "rt/unlock_libraries.h"
 #include "support/allocation_guard.h"
-#include "support/child_process.h"
 #include "support/file_content.h"
+#include "support/processes/child_process.h"
 #include "support/temporary_folder.h"
 
 namespace robot_control {

@@ -10,7 +10,7 @@
 
 #include "rt/clock.h"
 #include "rt/futex.h"
-#include "support/child_process.h"
+#include "support/processes/child_process.h"
 
 namespace robot_control {
 namespace {

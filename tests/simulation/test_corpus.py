@@ -2,13 +2,13 @@
 
 import os
 
-import corpus
 import numpy as np
 import pytest
-from corpus import CorpusRobot, drivable_robots
 from robot_control import ClosedLoop, RobotError
+from simulation.corpus import CorpusRobot, drivable_robots
 
 from bench.drives.wheel_command import WHEEL_COMMANDS, for_drives
+from simulation import corpus
 
 pytestmark = pytest.mark.skipif(corpus.FOLDER is None, reason=corpus.ABSENT)
 

@@ -5,7 +5,7 @@ import time
 import rospy
 from geometry_msgs.msg import TwistStamped
 from robot_control.msg import DriveState
-from system_support import CONTROLLER, SEND_PERIOD, Report, Robot
+from system.system_support import CONTROLLER, SEND_PERIOD, Report, Robot
 
 
 class StampedSender:

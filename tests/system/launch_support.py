@@ -3,7 +3,7 @@
 import signal
 from pathlib import Path
 
-from system_support import LIMIT, Process, repository
+from system.system_support import LIMIT, Process, repository
 
 LAUNCH_LIMIT = 3 * LIMIT
 """s; a launch is a dozen programs, and roslaunch gives each 15 s to end."""

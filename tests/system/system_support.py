@@ -20,16 +20,16 @@ from typing import Any, NamedTuple, TypeVar
 
 import roslib.packages
 import rospy
-import rosunit_skips
 from diagnostic_msgs.msg import DiagnosticArray
 from geometry_msgs.msg import Twist
 from nav_msgs.msg import Odometry
 from robot_control.msg import DriveState, SafetyStatus
 from robot_control.robot.pose import Pose, pose_of
 from sensor_msgs.msg import JointState
-from stall_witness import StallWitness
 from std_msgs.msg import Bool, Float64MultiArray
 from std_srvs.srv import Trigger, TriggerResponse
+from system import rosunit_skips
+from system.stall_witness import StallWitness
 
 rosunit_skips.record()
 

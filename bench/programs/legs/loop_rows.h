@@ -4,7 +4,7 @@
 #include <cstdint>
 
 #include "bench/programs/legs/worst_values.h"
-#include "support/quadruped_loop.h"
+#include "support/robots/quadruped_loop.h"
 
 namespace robot_control::bench {
 
@@ -70,7 +70,7 @@ void walking_hours(const LegModel& model, std::uint64_t seed, WorstValues& worst
 /// The controller is silent for 5 … 19 cycles at 200 phases of a trot of 1.0 m/s.
 void walking_silent(const LegModel& model, std::uint64_t seed, WorstValues& worst);
 
-/// Random walks at full speed with random poses of the body (support/quadruped_trials.h).
+/// Random walks at full speed with random poses of the body (support/robots/quadruped_trials.h).
 void leaning_walks(const LegModel& model, std::uint64_t seed, WorstValues& worst);
 /// The same without poses, with first joints that need 0.6 of their torque for half of the weight.
 void weak_hips(const LegModel& model, std::uint64_t seed, WorstValues& worst);

@@ -1,5 +1,5 @@
 #include "bench/programs/legs/loop_rows.h"
-#include "support/quadruped_trials.h"
+#include "support/robots/quadruped_trials.h"
 
 namespace robot_control::bench {
 

@@ -6,7 +6,7 @@ from robot_control.data.demo import run_picture
 from robot_control.data.demo.run_picture import draw_run
 from robot_control.data.demo.run_summary import summarize, to_json, to_table
 from robot_control.loop.signal_names import mask_of, number_of
-from support.synthetic_run import ANGULAR, BEGIN, END, LINEAR, SECONDS, brake_at, healthy_run
+from support.recordings.synthetic_run import ANGULAR, BEGIN, END, LINEAR, SECONDS, brake_at, healthy_run
 
 
 @pytest.fixture

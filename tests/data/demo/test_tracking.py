@@ -14,7 +14,17 @@ from robot_control.data.demo.tracking import (
     steady_rows,
 )
 from robot_control.loop.signal_names import mask_of
-from support.synthetic_run import ANGULAR, BEGIN, END, LINEAR, PERIOD, RAMP, brake_at, healthy_run, with_truth
+from support.recordings.synthetic_run import (
+    ANGULAR,
+    BEGIN,
+    END,
+    LINEAR,
+    PERIOD,
+    RAMP,
+    brake_at,
+    healthy_run,
+    with_truth,
+)
 
 MIDDLE = 4000  # a cycle in the steady part
 

@@ -17,7 +17,7 @@ from robot_control.data.estimate.main import main
 from robot_control.data.estimate.samples import Stream, merged
 from robot_control.data.estimate.wheels import wheel_angles
 from robot_control.installed_files import share_file
-from support.kinematic_drive import IMU, RADIUS, WHEEL_BASE, drive
+from support.recordings.kinematic_drive import IMU, RADIUS, WHEEL_BASE, drive
 
 SCRIPT = Path(__file__).parents[3] / "scripts/estimate.py"
 ROBOT = [f"--wheel-radius={RADIUS}", f"--wheel-base={WHEEL_BASE}", f"--imu-position={','.join(map(str, IMU))}"]

@@ -10,7 +10,7 @@ from robot_control.data.estimate.input_check import check, check_angles
 from robot_control.data.estimate.samples import InputError, Samples, Stream, merged
 from robot_control.data.estimate.streams import streams_of
 from robot_control.robot.pose import rotation
-from support.kinematic_drive import IMU, RADIUS, WHEEL_BASE, drive
+from support.recordings.kinematic_drive import IMU, RADIUS, WHEEL_BASE, drive
 
 from bench.odometry.recordings import ABSENT, NAMES, recording, recordings_folder
 

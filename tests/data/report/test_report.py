@@ -19,7 +19,7 @@ from robot_control.data.report.incidents import incidents
 from robot_control.data.run_log import RunLog, read_run
 from robot_control.loop.roles import LEGGED, Kind
 from robot_control.loop.signal_names import mask_of
-from support.synthetic_run import BEGIN, CYCLES, PERIOD, brake_at, healthy_run
+from support.recordings.synthetic_run import BEGIN, CYCLES, PERIOD, brake_at, healthy_run
 
 MUST_RUN = bool(os.environ.get("CI") and os.environ.get("ROBOT_CONTROL_NIGHTLY"))
 E_STOP_SERVICE = mask_of("StopCause", "e_stop_service")

@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "drivers/mujoco/mujoco_errors.h"
-#include "plant_fixture.h"
+#include "drivers/mujoco/plant_fixture.h"
 #include "support/allocation_guard.h"
 
 namespace robot_control {

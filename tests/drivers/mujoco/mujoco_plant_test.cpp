@@ -5,7 +5,7 @@
 #include <cstring>
 
 #include "drivers/mujoco/constants.h"
-#include "plant_fixture.h"
+#include "drivers/mujoco/plant_fixture.h"
 #include "support/allocation_guard.h"
 
 namespace robot_control {

@@ -1,5 +1,5 @@
 /// Real robots, as their makers publish them, on the plant alone: they stand still and stop without tipping
-/// (support/corpus.h).
+/// (support/robots/corpus.h).
 
 #include <gtest/gtest.h>
 
@@ -7,9 +7,9 @@
 #include <filesystem>
 #include <optional>
 
-#include "integrated_force.h"
-#include "plant_fixture.h"
-#include "support/corpus.h"
+#include "drivers/mujoco/plant_fixture.h"
+#include "drivers/mujoco/sensors/integrated_force.h"
+#include "support/robots/corpus.h"
 
 namespace robot_control {
 namespace {

@@ -4,7 +4,7 @@
 #include <cstring>
 #include <vector>
 
-#include "plant_fixture.h"
+#include "drivers/mujoco/plant_fixture.h"
 #include "support/allocation_guard.h"
 
 namespace robot_control {

@@ -10,7 +10,7 @@
 #include <string>
 
 #include "drivers/mujoco/mujoco_plant.h"
-#include "support/diffbot_urdf.h"
+#include "support/robots/diffbot_urdf.h"
 
 namespace robot_control {
 

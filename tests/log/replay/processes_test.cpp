@@ -7,7 +7,7 @@
 
 #include "log/replay/recorded.h"
 #include "log/trace_reader.h"
-#include "support/driving_robot.h"
+#include "support/processes/driving_robot.h"
 
 namespace robot_control {
 namespace {

@@ -11,8 +11,8 @@
 #include "loop/simulation_services.h"
 #include "signals/names.h"
 #include "simulation/closed_loop.h"
-#include "support/four_nodes.h"
 #include "support/log_table.h"
+#include "support/processes/four_nodes.h"
 #include "support/temporary_folder.h"
 
 namespace robot_control {

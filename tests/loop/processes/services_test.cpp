@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "simulation/closed_loop.h"
-#include "support/four_nodes.h"
 #include "support/log_table.h"
+#include "support/processes/four_nodes.h"
 
 namespace robot_control {
 namespace {

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <string>
 
-#include "support/loop_speed.h"
+#include "support/processes/loop_speed.h"
 
 namespace robot_control {
 namespace {

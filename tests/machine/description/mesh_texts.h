@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "support/diffbot_urdf.h"
+#include "support/robots/diffbot_urdf.h"
 
 namespace robot_control {
 

@@ -1,5 +1,5 @@
 #pragma once
-/// The real quadrupeds (support/corpus.h) with their facts, and the project's own quadruped.
+/// The real quadrupeds (support/robots/corpus.h) with their facts, and the project's own quadruped.
 
 #include <gtest/gtest.h>
 #include <yaml-cpp/yaml.h>
@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "machine/legs/leg_model.h"
-#include "support/corpus.h"
+#include "support/robots/corpus.h"
 
 namespace robot_control {
 

@@ -14,7 +14,7 @@ from robot_control.setup.calibrate.evaluation import (
     wheels_of,
 )
 from robot_control.setup.calibrate.law import NotCalibratedError, Square, Straight, Truth, replay
-from support.square_path import square_path
+from support.recordings.square_path import square_path
 
 TRUE = Truth(scale=1.008, ratio=1.004 / 1.012, base=1.02)
 

@@ -19,7 +19,7 @@ from robot_control.setup.calibrate.law import (
     steps,
     umbmark,
 )
-from support.square_path import square_path
+from support.recordings.square_path import square_path
 
 WHEELS = Wheels(0.5)
 TRUE = Truth(scale=1.008, ratio=1.004 / 1.012, base=1.02)  # left +1.2 %, right +0.4 %, base +2 %

@@ -5,7 +5,7 @@ import pytest
 from robot_control.loop.signal_names import mask_of
 from robot_control.setup.identify.fit import identify
 from robot_control.setup.identify.rows import UnfitError
-from support import synthetic_drive as drive
+from support.recordings import synthetic_drive as drive
 
 
 def values(found):

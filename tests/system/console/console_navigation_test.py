@@ -1,0 +1,119 @@
+#!/usr/bin/python3
+"""The console's map in a browser: the place of the robot, a goal and its cancel, each by a press and a drag."""
+
+import math
+import tempfile
+import unittest
+from pathlib import Path
+
+import numpy as np
+import rospy
+import rostest
+from geometry_msgs.msg import PoseStamped, PoseWithCovarianceStamped
+from robot_control._navigation import write_map
+from robot_control.msg import LocalizationState
+from system.console.console_support import ConsoleTestCase
+from system.navigation.navigation_support import Latest, missing, missing_mrpt, share
+from system.system_support import Program, again_after_a_stall, wait_for
+
+from bench.console.browser import Browser
+from bench.navigation.scene_map import read_scene, true_map
+
+EYE, LOOK = np.array([-1.3, -1.3, 1.2]), np.array([0.0, 0.0, 0.1])
+"""m from the robot: the page's camera, and what it looks at"""
+HALF_VIEW = math.tan(math.radians(25))
+CLICKED = 0.05
+"""m; a few pixels"""
+REASON = missing_mrpt() or missing()
+
+
+@unittest.skipIf(REASON, REASON)
+class ConsoleNavigationTest(ConsoleTestCase):
+    @classmethod
+    def setUpClass(cls) -> None:
+        scene = share("urdf/scenes/room.xml")
+        rospy.set_param("/mujoco_plant/scene", str(scene))
+        rospy.set_param("/mujoco_plant/laser/rate", 10)
+        rospy.set_param("/localization/map", str(Path(tempfile.mkdtemp(), "room.yaml")))
+        write_map(rospy.get_param("/localization/map"), true_map(read_scene(scene)))
+        super().setUpClass()
+        names = ("state_publisher.py", "follow_path.py", "navigate")
+        cls.programs = [Program(name) for name in names]
+        cls.goal = Latest("move_base_simple/goal", PoseStamped)
+        cls.place = Latest("initialpose", PoseWithCovarianceStamped)
+
+    @classmethod
+    def tearDownClass(cls) -> None:
+        for program in reversed(cls.programs):
+            program.end()
+        super().tearDownClass()
+
+    def setUp(self) -> None:
+        """Each attempt begins without a place."""
+        super().setUp()
+        self.addCleanup(Program("localization").end)
+        self.state = Latest("localization_state", LocalizationState)
+
+    def pixel(self, browser: Browser, ahead: float) -> tuple[float, float]:
+        """The pixel of the place so far ahead of the robot, which looks along x."""
+        left, top, width, height = browser.run(
+            "const b = document.querySelector('#scene').getBoundingClientRect();"
+            " return [b.left, b.top, b.width, b.height]"
+        )
+        forward = (LOOK - EYE) / np.linalg.norm(LOOK - EYE)
+        right = np.cross(forward, [0, 0, 1]) / np.linalg.norm(np.cross(forward, [0, 0, 1]))
+        to = np.array([ahead, 0, 0]) - EYE
+        x, y = (float(to @ axis / (to @ forward) / HALF_VIEW) for axis in (right, np.cross(right, forward)))
+        return left + width / 2 + x * height / 2, top + (1 - y) * height / 2
+
+    def stroke(self, browser: Browser, button: str, ahead: float) -> None:
+        """Presses the button, then the map so far ahead of the robot, and drags along x."""
+        browser.click(button)
+        drawing = "return document.getElementById('view').classList.contains('drawing')"
+        wait_for("a map to press on", lambda: browser.run(drawing))
+        begin, end = self.pixel(browser, ahead), self.pixel(browser, ahead + 0.4)
+        for kind, (x, y), held in (("mousePressed", begin, 1), ("mouseMoved", end, 1), ("mouseReleased", end, 0)):
+            event = {"type": kind, "x": x, "y": y, "button": "left", "buttons": held, "clickCount": 1}
+            browser.driver.execute_cdp_cmd("Input.dispatchMouseEvent", event)
+
+    def received(self, browser: Browser, topic: Latest, before: int) -> tuple[float, float, float]:
+        self.waits_for(browser, "what was clicked", lambda: topic.count > before)
+        pose = topic.message.pose if isinstance(topic.message, PoseStamped) else topic.message.pose.pose
+        return pose.position.x, pose.position.y, 2 * math.atan2(pose.orientation.z, pose.orientation.w)
+
+    @again_after_a_stall
+    def test_place_goal_and_cancel_do_what_the_pointer_says(self) -> None:
+        browser = self.browser()
+        browser.screen(1300, 900)
+        browser.open(self.address)
+        self.await_link(browser)
+        browser.run("document.getElementById('navigation').open = true")
+        wait_for("the place's button", lambda: not browser.run("return document.getElementById('set-place').title"))
+        start = self.robot.pose
+        wait_for("a robot without a place", lambda: self.state.message is not None)
+        self.assertEqual(self.state.message.state, "no pose")
+        before = self.place.count
+        self.stroke(browser, "set-place", 0.0)
+        x, y, yaw = self.received(browser, self.place, before)
+        self.assertLess(math.hypot(x - start.x, y - start.y), CLICKED)
+        self.assertLess(abs(yaw), 0.2)
+        self.waits_for(browser, "a place", lambda: self.state.message.state == "localized")
+
+        before = self.goal.count
+        self.stroke(browser, "set-goal", 1.0)
+        x, y, _ = self.received(browser, self.goal, before)
+        self.assertLess(math.hypot(x - start.x - 1.0, y - start.y), 3 * CLICKED)
+        self.waits_for(browser, "motion", lambda: self.robot.pose.x - start.x > 0.1)
+        browser.run("document.querySelector('[data-call=goal_cancel]').click()")
+        self.robot.await_rest()
+        self.assertIn("the goal was cancelled", browser.text("messages"))
+        self.assertLess(self.robot.pose.x - start.x, 0.8)
+
+        here = self.robot.pose
+        self.stroke(browser, "set-goal", 0.5)
+        self.waits_for(browser, "the goal", lambda: abs(self.robot.pose.x - here.x - 0.5) < 3 * CLICKED)
+        self.robot.await_rest()
+
+
+if __name__ == "__main__":
+    rostest.rosrun("robot_control", "console_navigation", ConsoleNavigationTest)

@@ -1,0 +1,235 @@
+#!/usr/bin/python3
+"""navigate with wrong maps, scans and transforms: each goal is refused with the cause, and the node goes on."""
+
+import math
+import time
+import unittest
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+
+import actionlib
+import numpy as np
+import rospy
+import rostest
+from actionlib_msgs.msg import GoalID, GoalStatus
+from nav_msgs.msg import OccupancyGrid, Odometry
+from robot_control.msg import FollowPathActionGoal, NavigateToAction, NavigateToGoal
+from sensor_msgs.msg import LaserScan
+from std_msgs.msg import Float64
+from system.navigation.navigation_support import Localised, message_of, missing, share, transform
+from system.system_support import Process, Program, init_test_node, refusal, wait_for
+from tf2_msgs.msg import TFMessage
+
+HALL = np.zeros((80, 120), dtype=np.int8)
+HALL[[0, -1], :] = HALL[:, [0, -1]] = 100
+MAP = (-2.0, -2.0, 0.05, HALL)
+"""a hall of 6 m by 4 m, with the robot at x = y = 0"""
+RAYS = 360
+SECOND = "{header: {frame_id: laser_link}, angle_increment: 0.1, range_max: 9.0, ranges: [1.0, 1.0]}"
+"""a scan of another laser"""
+
+
+def scan_of(hall: tuple[float, float, float, float] = (-1.95, 3.95, -1.95, 1.95)) -> LaserScan:
+    """Returns the scan of a laser at the origin of the hall: left, right, bottom, top [m]."""
+    scan = LaserScan(angle_min=-math.pi, angle_increment=2 * math.pi / RAYS, range_min=0.1, range_max=12.0)
+    scan.header.frame_id, scan.header.stamp = "laser_link", rospy.Time.now()
+    angles = scan.angle_min + np.arange(RAYS) * scan.angle_increment
+    scan.angle_max = float(angles[-1])
+    with np.errstate(divide="ignore"):
+        walls = [np.where(np.cos(angles) * x > 0, x / np.cos(angles), np.inf) for x in hall[:2]]
+        walls += [np.where(np.sin(angles) * y > 0, y / np.sin(angles), np.inf) for y in hall[2:]]
+    scan.ranges = np.min(walls, axis=0).tolist()
+    return scan
+
+
+class World:
+    """Publishes scan and odom at 10 Hz, as a robot that stands; `change` is applied to each scan."""
+
+    def __init__(self) -> None:
+        self.change: Callable[[LaserScan], LaserScan | None] = lambda scan: scan
+        self._scan = rospy.Publisher("scan", LaserScan, queue_size=1)
+        self._odom = rospy.Publisher("odom", Odometry, queue_size=1)
+        self._timer = rospy.Timer(rospy.Duration(0.1), self._publish)
+
+    def _publish(self, _event: object) -> None:
+        odom = Odometry(child_frame_id="base_link")
+        odom.header.frame_id, odom.header.stamp = "odom", rospy.Time.now()
+        odom.pose.pose.orientation.w = 1.0
+        self._odom.publish(odom)
+        scan = self.change(scan_of())
+        if scan is not None:
+            self._scan.publish(scan)
+
+
+@unittest.skipIf(missing(), missing())
+class NavigationInputsTest(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls) -> None:
+        init_test_node("navigation_inputs")
+        rospy.set_param("/robot_description", share("urdf/diffbot.urdf").read_text())
+        cls.map = rospy.Publisher("map", OccupancyGrid, queue_size=1, latch=True)
+        cls.static = rospy.Publisher("tf_static", TFMessage, queue_size=1, latch=True)
+        cls.static.publish(TFMessage([transform("base_link", "laser_link")]))
+        cls.localised, cls.world = Localised(place=0.0), World()
+        cls.paths: list[FollowPathActionGoal] = []
+        cls.follower = rospy.Subscriber("follow_path/goal", FollowPathActionGoal, cls.paths.append)
+        cls.navigate = Program("navigate")
+        cls.client = actionlib.SimpleActionClient("navigate_to", NavigateToAction)
+        assert cls.client.wait_for_server(rospy.Duration(30.0)), cls.navigate.output
+
+    @classmethod
+    def tearDownClass(cls) -> None:
+        cls.localised.end()
+        cls.navigate.end()
+
+    def answer(self) -> str:
+        """Sends a goal that is right, and returns why it is refused; "driven" if a path is sent."""
+        self.paths.clear()
+        goal = NavigateToGoal()
+        goal.target.header.frame_id, goal.target.pose.position.x = "map", 2.0
+        goal.target.pose.orientation.w = 1.0
+        self.client.send_goal(goal)
+        end = time.monotonic() + 6.0
+        while time.monotonic() < end and not self.paths:
+            if self.client.get_state() == GoalStatus.ABORTED:
+                return str(self.client.get_result().reason)
+            time.sleep(0.02)
+        self.client.cancel_goal()
+        self.client.wait_for_result(rospy.Duration(5.0))
+        return "driven" if self.paths else f"no end: {self.navigate.output}"
+
+    @contextmanager
+    def broken(self, change: Callable[[LaserScan], LaserScan | None]) -> Iterator[None]:
+        self.world.change = change
+        time.sleep(0.7)
+        yield
+        self.world.change = lambda scan: scan
+        time.sleep(1.2)
+
+    def assert_driven(self) -> None:
+        self.assertEqual(self.answer(), "driven")
+
+    def test_1_without_a_map_a_goal_is_refused(self) -> None:
+        self.assertIn("no map has come", self.answer())
+
+    def test_2_each_wrong_map_is_refused_and_the_right_one_taken(self) -> None:
+        def negative(message: OccupancyGrid) -> None:
+            message.info.resolution = -0.05
+
+        def turned(message: OccupancyGrid) -> None:
+            message.info.origin.orientation.z, message.info.origin.orientation.w = math.sin(0.2), math.cos(0.2)
+
+        def short(message: OccupancyGrid) -> None:
+            message.data = message.data[:-1]
+
+        def huge(message: OccupancyGrid) -> None:
+            message.info.width = message.info.height = 10_000
+
+        def other_frame(message: OccupancyGrid) -> None:
+            message.header.frame_id = "house"
+
+        wrong = {
+            "resolution is -0.05": negative,
+            "origin is turned by 0.4 rad": turned,
+            "9599 cells": short,
+            "10000 x 10000 cells": huge,
+            "in the frame 'house'": other_frame,
+        }
+        for reason, spoil in wrong.items():
+            message = message_of(MAP)
+            spoil(message)
+            self.map.publish(message)
+            wait_for(reason, lambda reason=reason: reason in self.navigate.output)
+        self.assertIn("map is refused: the map is in the frame 'house'", self.answer())
+        self.map.publish(message_of(MAP))
+        time.sleep(1.0)
+        self.assert_driven()
+
+    def test_3_each_wrong_scan_is_named_and_the_laser_is_trusted_again(self) -> None:
+        def changed(**fields: float | list[float] | str) -> Callable[[LaserScan], LaserScan]:
+            def change(scan: LaserScan) -> LaserScan:
+                for name, value in fields.items():
+                    setattr(scan, name, value)
+                return scan
+
+            return change
+
+        def late(scan: LaserScan) -> LaserScan:
+            scan.header.stamp -= rospy.Duration(3.0)
+            return scan
+
+        def foreign(scan: LaserScan) -> LaserScan:
+            scan.header.frame_id = "moon"
+            return scan
+
+        wrong = {
+            "scan is silent": lambda _scan: None,
+            "has 0 rays": changed(ranges=[]),
+            "has 100000 rays": changed(ranges=[1.0] * 100_000),
+            "no range that was measured": changed(ranges=[0.0] * RAYS),
+            "angle_increment 0": changed(angle_increment=0.0),
+            "covers 35.9 rad": changed(angle_increment=0.1),
+            "s old: synchronise": late,
+            "tf does not give the place of the laser": foreign,
+            "contradicts the map": lambda _scan: scan_of((-3.0, 5.0, -3.0, 3.0)),
+        }
+        for reason, change in wrong.items():
+            with self.subTest(reason), self.broken(change):
+                self.assertIn(reason, self.answer())
+                self.assertEqual(self.paths, [])
+        with self.broken(changed(ranges=[math.inf] * RAYS)):
+            self.assert_driven()  # nothing is near
+        self.assert_driven()
+
+    def test_4_two_lasers_and_a_silent_localisation_are_named(self) -> None:
+        second = Process("rostopic", ["rostopic", "pub", "-r", "10", "scan", "sensor_msgs/LaserScan", SECOND])
+        wait_for("both", lambda: "two publishers" in self.navigate.output)
+        second.end()
+        self.localised.silent = True
+        time.sleep(1.5)
+        self.assertIn("not localised", self.answer())
+        self.localised.silent = False
+        time.sleep(0.5)
+        self.assert_driven()
+
+    def test_5_while_a_goal_is_driven_a_silent_laser_leaves_no_clearance(self) -> None:
+        clearances: list[float] = []
+        subscriber = rospy.Subscriber("clearance", Float64, lambda message: clearances.append(message.data))
+        goal = NavigateToGoal()
+        goal.target.header.frame_id, goal.target.pose.position.x = "map", 2.0
+        goal.target.pose.orientation.w = 1.0
+        self.client.send_goal(goal)
+        wait_for("a free way", lambda: bool(clearances) and clearances[-1] > 1.0)
+        self.world.change = lambda _scan: None
+        wait_for("no clearance", lambda: clearances[-1] == 0.0)
+        self.world.change = lambda scan: scan
+        self.client.cancel_goal()
+        wait_for("no limit after the goal", lambda: math.isinf(clearances[-1]))
+        subscriber.unregister()
+
+    def test_6_a_parameter_of_another_type_refuses_the_start(self) -> None:
+        for name, value in {"speed": "fast", "unknown_is_free": 1, "map_frame": 2}.items():
+            with self.subTest(name):
+                rospy.set_param("/wrong", {name: value})
+                self.assertIn(f"~{name} must be", refusal("navigate", "__name:=wrong"))
+
+    def test_7_one_that_is_started_again_ends_the_path_of_the_one_before_and_frees_the_robot(self) -> None:
+        clearances: list[float] = []
+        cancelled: list[GoalID] = []
+        self.assert_driven()
+        self.navigate.kill()
+        subscribers = [
+            rospy.Subscriber("clearance", Float64, lambda message: clearances.append(message.data)),
+            rospy.Subscriber("follow_path/cancel", GoalID, cancelled.append),
+        ]
+        self.__class__.navigate = Program("navigate")
+        wait_for("no limit", lambda: bool(clearances) and math.isinf(clearances[-1]))
+        wait_for("the end of all paths before", lambda: bool(cancelled))
+        self.assertGreater(cancelled[0].stamp, self.paths[-1].goal_id.stamp)
+        self.assertEqual(cancelled[0].id, "")
+        for subscriber in subscribers:
+            subscriber.unregister()
+
+
+if __name__ == "__main__":
+    rostest.rosrun("robot_control", "navigation_inputs", NavigationInputsTest)
