@@ -457,10 +457,14 @@ def test_linked_libraries_are_included_libraries():
 
 
 def file_counts():
-    """Folders of the product and of the tests of its laws, each with the number of files that lie directly in it."""
-    roots = [SRC, BINDINGS, ROOT / "tests/control", ROOT / "tests/estimation"]
+    """Folders of the product's C++ and of the tests, each with the number of files that lie directly in it."""
+    roots = [SRC, BINDINGS, ROOT / "tests"]
     folders = [*roots, *(path for root in roots for path in root.rglob("*") if path.is_dir())]
-    return {str(path.relative_to(ROOT)): sum(item.is_file() for item in path.iterdir()) for path in folders}
+    return {
+        str(path.relative_to(ROOT)): sum(item.is_file() for item in path.iterdir())
+        for path in folders
+        if path.name != "__pycache__"
+    }
 
 
 def test_folders_stay_small():
