@@ -530,7 +530,7 @@ class Sequence {
   std::string violation() {
     if (!released_ && now_ - std::max(started_at_, last_sent_) >= shortest_silence() - kJudgesMargin) {
       released_ = true;
-      release();
+      if (last_permit_.causes == 0) release();  // else the accepted reset grants it
     }
     if (std::exchange(accepted_, false)) {
       ++figures_.accepted_resets;
