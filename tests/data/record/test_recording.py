@@ -10,7 +10,7 @@ from robot_control.data.record.main import TOPICS, main, namespace_of, record_co
 
 
 def topics(*arguments: str, **environment: str) -> list[str]:
-    return record_command(["/out", *arguments], environment)[3:]
+    return record_command(["/out", *arguments], environment)[2:]
 
 
 @pytest.mark.parametrize(
@@ -58,7 +58,7 @@ def test_namespace_moves_what_belongs_to_the_robot_and_nothing_else() -> None:
     ],
 )
 def test_bag_lies_in_the_folder_of_the_namespace(arguments: list[str], prefix: str) -> None:
-    assert record_command(arguments, {})[:3] == ["rosbag", "record", f"--output-prefix={prefix}"]
+    assert record_command(arguments, {})[1] == f"--output-prefix={prefix}"
 
 
 @pytest.mark.parametrize("arguments", [[], ["__name:=record"], ["/out", "/other"], ["--nonsense"], ["-h"], ["--help"]])
@@ -70,7 +70,7 @@ def test_without_one_folder_the_usage_is_printed(arguments: list[str], capsys: p
 
 def test_makes_the_folder_and_becomes_rosbag(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     commands = []
-    monkeypatch.setattr(os, "execvp", lambda _, command: commands.append(command))
+    monkeypatch.setattr(os, "execv", lambda _, command: commands.append(command))
     monkeypatch.setattr(sys, "argv", ["record.py", str(tmp_path / "not" / "there"), "__ns:=robot2"])
     main()
     assert (tmp_path / "not" / "there" / "robot2").is_dir()

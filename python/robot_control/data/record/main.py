@@ -6,6 +6,7 @@ import sys
 from pathlib import Path
 
 import rosgraph.names
+import roslib.packages
 
 from robot_control.files.files import given_path, in_words
 
@@ -68,7 +69,8 @@ def namespace_of(arguments: list[str], environment: dict[str, str]) -> str:
 
 
 def record_command(arguments: list[str], environment: dict[str, str]) -> list[str]:
-    """The rosbag command for `FOLDER` and the remappings that roslaunch appends.
+    """rosbag's recorder for `FOLDER` and the remappings that roslaunch appends. The command `rosbag record` is not used:
+    on SIGINT it ends before its recorder has closed the bag.
 
     Raises:
         SystemExit: no folder is named, or help is asked for.
@@ -81,15 +83,15 @@ def record_command(arguments: list[str], environment: dict[str, str]) -> list[st
     namespace = namespace_of(arguments, environment)
     names = [rosgraph.names.ns_join(namespace, topic) for topic in TOPICS]
     prefix = Path(given_path(folder), namespace.strip("/"), "robot_control")
-    return ["rosbag", "record", f"--output-prefix={prefix}", *names]
+    return [roslib.packages.find_node("rosbag", "record")[0], f"--output-prefix={prefix}", *names]
 
 
 def main() -> None:
-    """Makes the folder and becomes rosbag."""
+    """Makes the folder and becomes rosbag's recorder."""
     command = record_command(sys.argv[1:], dict(os.environ))
-    folder = Path(command[2].partition("=")[2]).parent
+    folder = Path(command[1].partition("=")[2]).parent
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise SystemExit(f"record.py: {in_words(error)}; name another folder") from None
-    os.execvp(command[0], command)
+    os.execv(command[0], command)
