@@ -33,6 +33,7 @@ from robot_control.robot.interruptions import SURPRISE
 from robot_control.robot.safety_watch import SafetyWatch
 from sensor_msgs.msg import BatteryState
 from support.mutants import mutants
+from support.timed import timed
 from support.topics import Topics, wire
 
 
@@ -241,19 +242,12 @@ def test_long_reports_of_one_sender_are_few(diagnostics) -> None:
     assert list(table.items(0.0)) == ["/safety_monitor"]
 
 
-def costs(kind: type, data: bytes) -> float:
-    """s of the thread's processor time to read a message."""
-    began = time.thread_time()
-    opened(sealed(kind, data))
-    return time.thread_time() - began
-
-
-def test_the_longest_map_and_the_longest_path_cost_less_than_a_tenth_of_a_second() -> None:
+def test_the_longest_map_and_the_longest_path_are_opened_in_time() -> None:
     grid = OccupancyGrid()
     cells = MAX_LONG_BYTES - len(wire(grid))
-    assert costs(OccupancyGrid, wire(grid)[:-4] + struct.pack("<I", cells) + bytes(cells)) < 0.1
+    timed(opened, sealed(OccupancyGrid, wire(grid)[:-4] + struct.pack("<I", cells) + bytes(cells)))
     path = Path(poses=[PoseStamped()] * 3600)
-    assert costs(Path, wire(path)) < 0.1
+    timed(opened, sealed(Path, wire(path)))
     with pytest.raises(UnfitError, match="bytes, more than"):
         opened(sealed(Path, wire(Path(poses=[PoseStamped()] * 20_000))))
     assert len(opened(sealed(Path, wire(Path(poses=[PoseStamped()] * 20_000))), longest=MAX_LONG_BYTES).poses) == 20_000
