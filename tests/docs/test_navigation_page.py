@@ -46,6 +46,7 @@ assert end.status.text == "reached" and math.hypot(at.x - 6.8, at.y - 2.0) < 0.2
 """
 
 
+@pytest.mark.nightly
 @pytest.mark.skipif(MRPT is None, reason="slam was built without MRPT: scripts/setup --navigation")
 def test_the_page_of_navigation_is_followed_from_an_empty_house_to_a_goal(tmp_path):
     house, hand, save, again, goal = next(

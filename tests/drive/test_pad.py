@@ -349,7 +349,7 @@ def test_what_is_a_pad():
 
 def test_the_fake_has_the_form_of_the_library():
     if not (os.environ.get("CI") and os.environ.get("ROBOT_CONTROL_NIGHTLY")):  # there it must run
-        pytest.importorskip("evdev", reason="python3-evdev, optional, is not installed")
+        pytest.importorskip("evdev", reason="python3-evdev, optional, is not installed: scripts/setup --operator")
     import evdev
 
     for name in ("capabilities", "active_keys", "absinfo"):

@@ -49,7 +49,8 @@ TEST_P(PostureLimits, HipsThatCarryTheWeightLimitTheTwist) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Robots, PostureLimits, testing::ValuesIn(legged_robots()), robot_name);
+INSTANTIATE_TEST_SUITE_P(Robots, PostureLimits, testing::ValuesIn(legged_robots(true)), robot_name);
+INSTANTIATE_TEST_SUITE_P(Nightly, PostureLimits, testing::ValuesIn(legged_robots(false)), robot_name);
 
 }  // namespace
 }  // namespace robot_control

@@ -238,7 +238,8 @@ TEST_P(QuadrupedOf, MovesItsJointsAlongAPathWhileItLies) {
   EXPECT_EQ(robot.permit().causes, 0u) << robot.causes();
 }
 
-INSTANTIATE_TEST_SUITE_P(Robots, QuadrupedOf, testing::ValuesIn(legged_robots()), robot_name);
+INSTANTIATE_TEST_SUITE_P(Robots, QuadrupedOf, testing::ValuesIn(legged_robots(true)), robot_name);
+INSTANTIATE_TEST_SUITE_P(Nightly, QuadrupedOf, testing::ValuesIn(legged_robots(false)), robot_name);
 INSTANTIATE_TEST_SUITE_P(Robots, NightlyQuadrupedOf, testing::ValuesIn(legged_robots()), robot_name);
 
 class Quadbot : public testing::Test {

@@ -692,7 +692,9 @@ def mutated(data, random):
     return bytes(data)
 
 
-@pytest.mark.parametrize("compression", ["none", "bz2", "lz4"])
+@pytest.mark.parametrize(
+    "compression", ["none", *(pytest.param(one, marks=pytest.mark.nightly) for one in ("bz2", "lz4"))]
+)
 def test_a_damaged_bag_is_estimated_or_refused_in_one_message(rosbag, run, exact, compression):
     with rosbag.Bag("sound.bag", "w", compression=compression, chunk_threshold=20000) as bag:
         for topic, message, stamp in messages_of(exact, rate=10):

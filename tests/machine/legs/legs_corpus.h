@@ -24,6 +24,15 @@ inline std::vector<std::string> legged_robots() {
   return names;
 }
 
+/// Of those the ones of every run, or the others, which are built as a1 is: by the same maker, and heavier.
+inline std::vector<std::string> legged_robots(bool of_every_run) {
+  std::vector<std::string> names = legged_robots();
+  std::erase_if(names, [&](const std::string& name) {
+    return (name == "aliengo" || name == "go1" || name == "go2") == of_every_run;
+  });
+  return names;
+}
+
 inline RobotDescription legged_description(const std::string& name) {
   if (name == "quadbot") return load_description(PROJECT_DIRECTORY "/urdf/quadbot.urdf");
   return load_description((quadrupeds() / name / "robot.urdf").string());
