@@ -24,7 +24,7 @@ inline std::vector<std::string> legged_robots() {
   return names;
 }
 
-/// Of those the ones of every run, or the others, which are built as a1 is: by the same maker, and heavier.
+/// Returns those of every run, or the others, which are built as a1 is: by the same maker, and heavier.
 inline std::vector<std::string> legged_robots(bool of_every_run) {
   std::vector<std::string> names = legged_robots();
   std::erase_if(names, [&](const std::string& name) {

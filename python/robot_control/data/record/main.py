@@ -69,8 +69,8 @@ def namespace_of(arguments: list[str], environment: dict[str, str]) -> str:
 
 
 def record_command(arguments: list[str], environment: dict[str, str]) -> list[str]:
-    """rosbag's recorder for `FOLDER` and the remappings that roslaunch appends. The command `rosbag record` is not used:
-    on SIGINT it ends before its recorder has closed the bag.
+    """The recorder of rosbag for `FOLDER` and the remappings that roslaunch appends. The command `rosbag record` is not
+    used, for on SIGINT it ends before its recorder has closed the bag.
 
     Raises:
         SystemExit: no folder is named, or help is asked for.
