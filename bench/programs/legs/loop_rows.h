@@ -72,7 +72,7 @@ void walking_silent(const LegModel& model, std::uint64_t seed, WorstValues& wors
 
 /// Random walks at full speed with random poses of the body (support/robots/quadruped_trials.h).
 void leaning_walks(const LegModel& model, std::uint64_t seed, WorstValues& worst);
-/// The same without poses, with first joints that need 0.6 of their torque for half of the weight.
+/// The same without poses, with first joints that need 0.97 of their torque for half of the weight.
 void weak_hips(const LegModel& model, std::uint64_t seed, WorstValues& worst);
 /// A robot that lies on slopes of 10, 15 and 20° is to stand up. The seed chooses one of eight headings.
 void slopes(const LegModel& model, std::uint64_t seed, WorstValues& worst);

@@ -58,7 +58,8 @@ def test_namespace_moves_what_belongs_to_the_robot_and_nothing_else() -> None:
     ],
 )
 def test_bag_lies_in_the_folder_of_the_namespace(arguments: list[str], prefix: str) -> None:
-    assert record_command(arguments, {})[1] == f"--output-prefix={prefix}"
+    recorder, output, *_ = record_command(arguments, {})
+    assert (Path(recorder).parts[-2:], output) == (("rosbag", "record"), f"--output-prefix={prefix}")
 
 
 @pytest.mark.parametrize("arguments", [[], ["__name:=record"], ["/out", "/other"], ["--nonsense"], ["-h"], ["--help"]])
