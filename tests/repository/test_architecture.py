@@ -384,7 +384,8 @@ CAUSES = re.findall(
     re.MULTILINE,
 )
 """Identifier and name of each cause."""
-CONDITION_SETS = ("safety/conditions/wheeled/wheeled_conditions.h", "safety/conditions/legged/legged_conditions.h")
+CONDITIONS = "src/safety/conditions/"
+CONDITION_SETS = {f"{CONDITIONS}{kind}/{kind}_conditions.h" for kind in ("wheeled", "legged")}
 MAX_NAMING_A_CAUSE = 4
 """files of the product outside its own file, the generated lines of config/robot_params.yaml apart"""
 
@@ -392,32 +393,33 @@ MAX_NAMING_A_CAUSE = 4
 def test_few_files_name_a_safety_cause():
     """In C++ by its bit or by its parameter, in other files by its name as a string or as a key; comments do not count.
 
-    Its row in stop_causes.def and the list of its set count, too. Its own file, where it is measured, is one header
-    of safety/conditions with its source, other than such a list; a second one counts. A word with another meaning counts where it is
-    written in the same way, as the column `overruns` of a report."""
-    tops = ("python", "launch", "scripts", "config")
-    paths = [path for top in tops for path in (ROOT / top).rglob("*") if path.is_file() and path.suffix != ".pyc"]
-    paths.remove(ROOT / "config/robot_params.yaml")
+    Its row in stop_causes.def and the list of its set count, too. Its own file, in which it is measured, is one header
+    of safety/conditions with its source, but no such list; a second one counts. A word with another meaning counts if
+    it is written in the same way, as the column `overruns` of a report."""
+    sources = {str(path.relative_to(ROOT)): code(path) for path in FILES}
     others = {
         str(path.relative_to(ROOT)): re.sub(r"#.*", "", path.read_text(errors="ignore"))
-        for path in paths
-        if path.suffix not in (".h", ".cpp")
+        for top in ("python", "launch", "scripts", "config")
+        for path in (ROOT / top).rglob("*")
+        if path.is_file() and path.suffix not in (".h", ".cpp", ".pyc") and path.name != "robot_params.yaml"
     }
-    sources = {str(path.relative_to(SRC)): code(path) for path in FILES if SRC in path.parents}
-    sources |= {str(path.relative_to(ROOT)): code(path) for path in FILES if SRC not in path.parents}
+
+    def using(texts, pattern, *words):
+        return [path for path, text in texts.items() if any(word in text for word in words) and pattern.search(text)]
 
     def naming(identifier, name):
-        used = rf"\b{name}\.(?:limit|persistence|reaction)\b"
+        limit = rf"\b{name}\.(?:limit|persistence|reaction)\b"
         parameter = rf"\b(?:\w*parameters|\w*safety\w*|\w*limits|given|SafetyParameters(?:\{{\}})?)(?:\.|::){name}\b"
-        in_source = re.compile(rf"\bkCause{identifier}\b|{parameter}|{used}")
-        elsewhere = re.compile(rf"[\"']{name}[\"']|^\s*{name}:|{used}", re.MULTILINE)
-        found = [path for path, text in sources.items() if in_source.search(text)]
-        stems = [path.rsplit(".")[0] for path in found if path.startswith("safety/conditions/") and path not in CONDITION_SETS]
-        found += [path for path, text in others.items() if elsewhere.search(text)]
-        return ["signals/stop_causes.def", *(path for path in found if path.rsplit(".")[0] not in stems[:1])]
+        in_source = re.compile(rf"\bkCause{identifier}\b|{parameter}|{limit}")
+        elsewhere = re.compile(rf"[\"']{name}[\"']|^\s*{name}:|{limit}", re.MULTILINE)
+        found = using(sources, in_source, name, identifier)
+        stems = [path.split(".")[0] for path in found if path.startswith(CONDITIONS) and path not in CONDITION_SETS]
+        found += using(others, elsewhere, name)
+        return ["src/signals/stop_causes.def", *(path for path in found if path.split(".")[0] not in stems[:1])]
 
     files = {name: naming(identifier, name) for identifier, name in CAUSES}
-    assert "safety/derived_limits.cpp" in files["stall"] and CONDITION_SETS[0] in files["stall"]
+    assert len(files["runaway"]) == MAX_NAMING_A_CAUSE
+    assert any(path in CONDITION_SETS for path in files["runaway"])
     assert {name: found for name, found in files.items() if len(found) > MAX_NAMING_A_CAUSE} == {}
 
 
