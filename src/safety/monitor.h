@@ -10,7 +10,7 @@
 ///   operator_conditions.h, clearance.h                   what the operator commands
 ///   gate_conditions.h, machine_conditions.h              does the gate obey, does the driver report a fault
 ///   KindConditions                                       how joints and body move, compared with limits and targets
-///                                                        (conditions/wheeled/wheeled_conditions.h)
+///                                                        (conditions/common/condition_set.h)
 ///
 /// One `step` is made per cycle with that cycle's sensor frame. A step without a frame is made when the driver is
 /// silent and something else happened (SensorSilence, a corrupt frame, a request of the operator). It evaluates no
@@ -168,7 +168,7 @@ void Monitor<KindConditions>::restore(const InheritedLatch& latch) noexcept {
   }
   supervisor_.restore(latch.causes, latch.first_cause);
   const std::uint64_t active = last != nullptr ? last->active : latch.causes;
-  if ((active & kCauseEmergencyStopTopic) != 0) operator_conditions_.hold_e_stop();
+  operator_conditions_.restore(active);
 }
 
 template <class KindConditions>

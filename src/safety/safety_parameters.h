@@ -3,10 +3,8 @@
 ///
 /// A condition is active when a quantity measured from raw sensors and the command is beyond `limit` without
 /// interruption for `persistence`. Only wrong_state.h looks at the estimate, to doubt it. An active condition is a
-/// cause, and `reaction` is what the monitor does. The conditions and their defaults: signals/stop_causes.def. Those of
-/// wheels are defined in wheel_limits.h, wheel_following.h, yaw_agreement.h and torque_oscillation.h. Those of legs are
-/// in joint_conditions.h, encoder_conditions.h, foot_conditions.h, downward_force.h and wrong_state.h. The others are
-/// in body_conditions.h, sensor_presence.h and machine_conditions.h.
+/// cause, and `reaction` is what the monitor does. The conditions and their defaults: signals/stop_causes.def. They are
+/// defined in conditions/wheeled, conditions/legged and conditions/common.
 
 #include <algorithm>
 #include <array>
@@ -15,6 +13,7 @@
 
 #include "parameters/block.h"
 #include "signals/joint.h"
+#include "signals/permit.h"
 #include "signals/wheeled/wheel_count.h"
 
 namespace robot_control {
@@ -35,7 +34,7 @@ inline std::vector<Word> words_of(Reaction) {
 
 struct Condition {
   std::optional<double> limit;  ///< absent: derived from the robot where it can be (derived_limits.h, on legs
-                                ///< foot_conditions.h), else no condition
+                                ///< legged_conditions.h), else no condition
   double persistence = 0;       ///< s; 0: the first cycle counts
   Reaction reaction = Reaction::kBrake;
 };
@@ -74,6 +73,17 @@ struct SafetyParameters {
   /// JointValidity bits that a driven joint must report. Not a user parameter: velocity drives need not measure torque.
   std::uint32_t joint_numbers = kValidMotion;
 };
+
+// clang-format off
+/// The condition of a cause of CONDITION or CONDITION_WITHOUT_LIMIT.
+template <StopCause kWanted>
+constexpr const Condition& condition_of(const SafetyParameters& parameters) noexcept {
+#define CAUSE(...)
+#define CONDITION(id, name, ...) if constexpr (kWanted == kCause##id) return parameters.name;
+#define CONDITION_WITHOUT_LIMIT(id, name, ...) CONDITION(id, name)
+#include "signals/stop_causes.def"
+}
+// clang-format on
 
 /// s. A stop takes the sensors of one period, the permit of the next and the torque of the one after.
 constexpr double fastest_stop(double period) noexcept {

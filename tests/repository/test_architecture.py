@@ -395,6 +395,51 @@ def test_few_files_name_a_drive():
     assert {name: files for name, files in found.items() if len(files) > MAX_NAMING_A_DRIVE} == {}
 
 
+CAUSES = re.findall(
+    r"^(?:CAUSE|CONDITION|CONDITION_WITHOUT_LIMIT)\((\w+), (\w+),",
+    (SRC / "signals/stop_causes.def").read_text(),
+    re.MULTILINE,
+)
+"""Identifier and name of each cause."""
+CONDITIONS = "src/safety/conditions/"
+CONDITION_SETS = {f"{CONDITIONS}{kind}/{kind}_conditions.h" for kind in ("wheeled", "legged")}
+MAX_NAMING_A_CAUSE = 4
+"""files of the product outside its own file, the generated lines of config/robot_params.yaml apart"""
+
+
+def test_few_files_name_a_safety_cause():
+    """In C++ by its bit or by its parameter, in other files by its name as a string or as a key; comments do not count.
+
+    Its row in stop_causes.def and the list of its set count, too. Its own file, in which it is measured, is one header
+    of safety/conditions with its source, but no such list; a second one counts. A word with another meaning counts if
+    it is written in the same way, as the column `overruns` of a report."""
+    sources = {str(path.relative_to(ROOT)): code(path) for path in FILES}
+    others = {
+        str(path.relative_to(ROOT)): re.sub(r"#.*", "", path.read_text(errors="ignore"))
+        for top in ("python", "launch", "scripts", "config")
+        for path in (ROOT / top).rglob("*")
+        if path.is_file() and path.suffix not in (".h", ".cpp", ".pyc") and path.name != "robot_params.yaml"
+    }
+
+    def using(texts, pattern, *words):
+        return [path for path, text in texts.items() if any(word in text for word in words) and pattern.search(text)]
+
+    def naming(identifier, name):
+        limit = rf"\b{name}\.(?:limit|persistence|reaction)\b"
+        parameter = rf"\b(?:\w*parameters|\w*safety\w*|\w*limits|given|SafetyParameters(?:\{{\}})?)(?:\.|::){name}\b"
+        in_source = re.compile(rf"\bkCause{identifier}\b|{parameter}|{limit}")
+        elsewhere = re.compile(rf"[\"']{name}[\"']|^\s*{name}:|{limit}", re.MULTILINE)
+        found = using(sources, in_source, name, identifier)
+        stems = [path.split(".")[0] for path in found if path.startswith(CONDITIONS) and path not in CONDITION_SETS]
+        found += using(others, elsewhere, name)
+        return ["src/signals/stop_causes.def", *(path for path in found if path.split(".")[0] not in stems[:1])]
+
+    files = {name: naming(identifier, name) for identifier, name in CAUSES}
+    assert len(files["runaway"]) == MAX_NAMING_A_CAUSE
+    assert any(path in CONDITION_SETS for path in files["runaway"])
+    assert {name: found for name, found in files.items() if len(found) > MAX_NAMING_A_CAUSE} == {}
+
+
 PROGRAMS = re.compile(r"\b(?:mujoco_plant|state_estimator|(?:diff_drive|leg)_controller(?!\.h)|safety_monitor)\b")
 OTHER_PACKAGES = {"configuration/parameters.h", "configuration/peer_file.h"}
 """They speak of the diff_drive_controller of ros_controllers."""

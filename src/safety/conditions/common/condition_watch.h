@@ -21,10 +21,15 @@ struct ConditionMeasurement {
   double value = 0;  ///< in the unit of the cause
   double limit = 0;
   std::uint64_t joint = kMaxJoints;  ///< index into MachineModel::joints; kMaxJoints: no single joint
+  std::uint64_t times = 1;           ///< how often each cycle counts
 };
 
 inline ConditionMeasurement beyond(std::size_t joint, double value, double limit) noexcept {
   return {.beyond = value > limit, .value = value, .limit = limit, .joint = joint};
+}
+
+inline ConditionMeasurement below(double value, double limit) noexcept {
+  return {.beyond = value < limit, .value = value, .limit = limit};
 }
 
 /// The one of two with the larger value − limit. NaN is never worse.
@@ -35,17 +40,30 @@ inline const ConditionMeasurement& worse(const ConditionMeasurement& a, const Co
 /// A measurement that is never beyond its limit and never the worse of two.
 inline constexpr ConditionMeasurement kNothingMeasured{.limit = std::numeric_limits<double>::infinity()};
 
+/// Returns the worst measurement of `measure(0)` … `measure(count - 1)`.
+template <class Measure>
+ConditionMeasurement worst_of(std::size_t count, const Measure& measure) noexcept {
+  ConditionMeasurement worst = kNothingMeasured;
+  for (std::size_t i = 0; i < count; ++i) worst = worse(worst, measure(i));
+  return worst;
+}
+
 inline constexpr double kFarTimes = 3;  ///< a measurement of so many times its limit is far beyond it
 
-/// The number of cycles for which a measurement counts. From kFarTimes the limit on, n times the limit counts n cycles,
-/// at most kMaxTimes. A light wheel whose motor runs away (10³ rad/s) is stopped before the persistence ends; a wheel
-/// that leaves a bump is not.
-inline std::uint64_t weighed(const ConditionMeasurement& measurement, std::uint64_t elapsed) noexcept {
+/// From kFarTimes the limit on, a measurement of n times the limit counts n cycles, at most kMaxTimes. A light wheel
+/// whose motor runs away (10³ rad/s) is stopped before the persistence ends; a wheel that leaves a bump is not.
+inline ConditionMeasurement weighed(ConditionMeasurement measurement) noexcept {
   constexpr double kMaxTimes = 50;
-  if (!measurement.beyond) return elapsed;
   const double times = measurement.value / measurement.limit;
-  if (!(times >= kFarTimes)) return elapsed;
-  return elapsed * static_cast<std::uint64_t>(std::min(times, kMaxTimes));
+  if (measurement.beyond && times >= kFarTimes)
+    measurement.times = static_cast<std::uint64_t>(std::min(times, kMaxTimes));
+  return measurement;
+}
+
+/// Counts one cycle as more than the longest persistence, a minute at 2 kHz.
+inline ConditionMeasurement at_once(ConditionMeasurement measurement) noexcept {
+  measurement.times = std::uint64_t{1} << 20;
+  return measurement;
 }
 
 class ConditionWatch {
@@ -62,6 +80,8 @@ class ConditionWatch {
 
   /// Meaningful if watched.
   double limit() const noexcept { return condition_.limit.value_or(0); }
+  double persistence() const noexcept { return condition_.persistence; }  ///< s
+  std::uint64_t cycles() const noexcept { return cycles_; }               ///< n
 
   StopCause cause() const noexcept { return cause_; }
   Reaction reaction() const noexcept { return condition_.reaction; }
@@ -75,7 +95,7 @@ class ConditionWatch {
       return false;
     }
     measurement_ = measurement;
-    beyond_ += elapsed;
+    beyond_ += elapsed * measurement.times;
     return active();
   }
 

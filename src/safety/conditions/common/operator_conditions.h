@@ -25,8 +25,10 @@ class OperatorConditions {
   /// A new run. Heartbeats received before it do not count.
   void enter_run(const OperatorInput& operator_input) noexcept;
 
-  /// After a restart of the monitor: the topic e_stop counts as true until its next message.
-  void hold_e_stop() noexcept { e_stop_held_ = true; }
+  /// After a restart of the monitor: a topic e_stop that was active counts as true until its next message.
+  void restore(std::uint64_t active) noexcept {
+    if ((active & kCauseEmergencyStopTopic) != 0) e_stop_held_ = true;
+  }
 
   /// `driving`: the state before this cycle is DRIVE. Without a sensor frame only topic and service are evaluated.
   void step(const MonitorInput& input, bool driving, ActiveCauses& out) noexcept;

@@ -4,30 +4,10 @@
 #include <cmath>
 
 namespace robot_control {
-namespace {
-
-Condition at_once(Condition condition) noexcept {
-  condition.persistence = 0;
-  return condition;
-}
-
-}  // namespace
-
-SensorPresence::Silence::Silence(StopCause cause, const Condition& condition, double period) noexcept
-    : watch_(cause, at_once(condition), period),
-      period_(period),
-      persistence_(condition.persistence),
-      limit_(std::max<std::uint64_t>(1, static_cast<std::uint64_t>(std::ceil(persistence_ / period - 1e-9)))) {}
-
-void SensorPresence::Silence::step(std::uint64_t cycles, std::uint64_t joint, ActiveCauses& out) noexcept {
-  const bool beyond = cycles >= limit_;
-  const double silent = static_cast<double>(cycles) * period_;
-  out.update(watch_, {.beyond = beyond, .value = silent, .limit = persistence_, .joint = joint}, 1);
-}
-
 SensorPresence::SensorPresence(const SafetyParameters& parameters, std::size_t joints, double period) noexcept
     : joints_(std::min(joints, kMaxJoints)),
       needed_(parameters.joint_numbers),
+      period_(period),
       period_ns_(static_cast<std::uint64_t>(std::max(1LL, std::llround(period * 1e9)))),
       encoders_(kCauseEncodersLost, parameters.encoders_lost, period),
       imu_(kCauseImuLost, parameters.imu_lost, period) {}
@@ -35,6 +15,16 @@ SensorPresence::SensorPresence(const SafetyParameters& parameters, std::size_t j
 void SensorPresence::enter_run() noexcept {
   joint_silent_ = {};
   imu_silent_ = imu_seen_ = 0;
+}
+
+void SensorPresence::report(ConditionWatch& watch, std::uint64_t cycles, std::uint64_t joint,
+                            ActiveCauses& out) const noexcept {
+  out.update(watch,
+             at_once({.beyond = cycles >= watch.cycles(),
+                      .value = static_cast<double>(cycles) * period_,
+                      .limit = watch.persistence(),
+                      .joint = joint}),
+             1);
 }
 
 void SensorPresence::step_encoders(const SensorFrame& sensors, std::uint64_t elapsed, ActiveCauses& out) noexcept {
@@ -46,14 +36,14 @@ void SensorPresence::step_encoders(const SensorFrame& sensors, std::uint64_t ela
     joint_silent_[i] = sampled ? age / period_ns_ : joint_silent_[i] + elapsed;
     if (joint_silent_[i] > joint_silent_[worst]) worst = i;
   }
-  encoders_.step(joint_silent_[worst], worst, out);
+  report(encoders_, joint_silent_[worst], worst, out);
 }
 
 void SensorPresence::step(const SensorFrame& sensors, std::uint64_t elapsed, ActiveCauses& out) noexcept {
   step_encoders(sensors, elapsed, out);
   imu_seen_ |= sensors.valid & (kValidGyro | kValidAccelerometer);
   imu_silent_ = (imu_seen_ & ~sensors.valid) != 0 ? imu_silent_ + elapsed : 0;
-  imu_.step(imu_silent_, kMaxJoints, out);
+  report(imu_, imu_silent_, kMaxJoints, out);
 }
 
 }  // namespace robot_control

@@ -28,27 +28,16 @@ class SensorPresence {
   void step(const SensorFrame& sensors, std::uint64_t elapsed, ActiveCauses& out) noexcept;
 
  private:
-  /// The time for which a device has been silent is known, so the condition acts in the cycle that reaches its
-  /// persistence.
-  class Silence {
-   public:
-    Silence(StopCause cause, const Condition& condition, double period) noexcept;
-    void step(std::uint64_t cycles, std::uint64_t joint, ActiveCauses& out) noexcept;
-
-   private:
-    ConditionWatch watch_;
-    double period_;
-    double persistence_;
-    std::uint64_t limit_;  ///< cycles, ≥ 1
-  };
-
+  /// Silent for `cycles`, which are known, so that the condition acts in the cycle that reaches its persistence.
+  void report(ConditionWatch& watch, std::uint64_t cycles, std::uint64_t joint, ActiveCauses& out) const noexcept;
   void step_encoders(const SensorFrame& sensors, std::uint64_t elapsed, ActiveCauses& out) noexcept;
 
   std::size_t joints_;
   std::uint32_t needed_;  ///< JointValidity bits
+  double period_;
   std::uint64_t period_ns_;
-  Silence encoders_;
-  Silence imu_;
+  ConditionWatch encoders_;
+  ConditionWatch imu_;
   std::array<std::uint64_t, kMaxJoints> joint_silent_{};  ///< cycles since the sample of each joint
   std::uint64_t imu_silent_ = 0;                          ///< cycles
   std::uint64_t imu_seen_ = 0;                            ///< kValidGyro, kValidAccelerometer

@@ -5,7 +5,7 @@
 ///          possible, t s ago, V the velocity limit
 ///   stuck  |c − c₀| > limit, while the robot is on its feet. c is the angle that q can show: the command demanded it
 ///          kAnswer cycles ago. c₀ was this angle when q changed for the last time. A joint that is blocked looks the
-///          same. The command of a robot that walks demands angles of feet in the air alone. Its limit is kOfSwing
+///          same. The command of a robot that walks demands angles of feet in the air alone. Its limit is kSwingFactor
 ///          larger. q has to stay for kStays, and for two cycles: a noisy gyro moves the command at once, and no joint
 ///
 /// While c stays, a stuck encoder changes nothing: the joint is where it reports to be. An angle that is missing or not
@@ -16,63 +16,61 @@
 #include <cmath>
 #include <cstdint>
 
-#include "machine/legs/leg_model.h"
-#include "safety/conditions/common/condition_watch.h"
-#include "safety/conditions/legged/commanded_foot.h"
-#include "safety/latch/active_causes.h"
-#include "safety/monitor_input.h"
-#include "safety/safety_parameters.h"
-#include "signals/fixed_vector.h"
+#include "safety/conditions/common/condition_list.h"
+#include "safety/conditions/legged/legged_observer.h"
 
 namespace robot_control {
 
-class EncoderConditions {
+class EncoderJump {
  public:
-  static constexpr double kFaster = 1.1;     ///< as the default limit of joint_speed
-  static constexpr double kOfSwing = 1.8;    ///< a foot leaves the ground late (docs/evidence/derivations.md)
-  static constexpr double kStays = 0.01;     ///< s
-  static constexpr std::size_t kAnswer = 2;  ///< cycles: command k − 1 moves the joint from cycle k to k + 1
+  static constexpr double kFaster = 1.1;  ///< as the default limit of joint_speed
 
   /// `period` s.
-  EncoderConditions(const SafetyParameters& parameters, const LegModel& robot, double period) noexcept
-      : stays_(std::max<std::uint64_t>(2, static_cast<std::uint64_t>(std::lround(kStays / period)))),
-        jump_(kLegsJoints, {kCauseEncoderJump, parameters.encoder_jump, period}),
-        stuck_(kCauseEncoderStuck, parameters.encoder_stuck, period) {
-    for (std::size_t i = 0; i < kLegsJoints; ++i) joints_[i].reach = kFaster * robot.joints[i].velocity_limit * period;
-  }
+  EncoderJump(const SafetyParameters&, const LegModel&, double period) noexcept : period_(period) {}
+  void enter_run() noexcept { joints_ = {}; }
 
-  void enter_run() noexcept {
-    for (ConditionWatch& watch : jump_) watch.reset();
-    stuck_.reset();
-    for (Joint& joint : joints_) {
-      joint.known = joint.demanded = false;
-      joint.demand_count = 0;
-    }
-  }
-
-  void step(const MonitorInput& input, std::uint64_t elapsed, ActiveCauses& out) noexcept {
-    ConditionMeasurement stuck = kNothingMeasured;
-    const bool walks = input.command != nullptr && input.command->legged.phase == LegPhase::kWalking;
-    const double limit = (walks ? kOfSwing : 1) * stuck_.limit();
-    for (std::size_t i = 0; i < kLegsJoints; ++i) {
-      Joint& joint = joints_[i];
-      joint.cycles += elapsed;
-      const JointSample& sample = input.sensors->joints[i];
-      ConditionMeasurement jump = kNothingMeasured;
-      if (has_position(sample)) jump = beyond(i, jumped(joint, sample.position, jump_[i].limit()), jump_[i].limit());
-      out.update(jump_[i], jump, elapsed);
-      if (!has_position(sample)) continue;
-      stuck = worse(stuck, beyond(i, demanded(joint, sample.position, demand(input.command, i), elapsed), limit));
-    }
-    out.update(stuck_, stuck, elapsed);
+  ConditionMeasurement measure(const LeggedMeasurements& now, const ConditionWatch& watch, std::size_t i) noexcept {
+    Joint& joint = joints_[i];
+    joint.cycles += now.elapsed;
+    if (!has_position(now.joint(i))) return kNothingMeasured;
+    const double position = now.joint(i).position, reach = kFaster * now.limits[i].speed * period_;
+    const double past =
+        joint.known ? std::abs(position - joint.possible) - reach * static_cast<double>(joint.cycles) : 0;
+    if (past <= watch.limit()) joint = {.known = true, .possible = position};
+    return beyond(i, past, watch.limit());
   }
 
  private:
   struct Joint {
-    double reach = 0;                       ///< rad, in a cycle
-    bool known = false;                     ///< q₀ is known
-    double possible = 0;                    ///< rad, q₀
-    std::uint64_t cycles = 0;               ///< since q₀
+    bool known = false;        ///< q₀ is known
+    double possible = 0;       ///< rad, q₀
+    std::uint64_t cycles = 0;  ///< since q₀
+  };
+
+  double period_;
+  std::array<Joint, kLegsJoints> joints_{};
+};
+
+class EncoderStuck {
+ public:
+  static constexpr double kSwingFactor = 1.8;  ///< a foot leaves the ground late (docs/evidence/derivations.md)
+  static constexpr double kStays = 0.01;       ///< s
+  static constexpr std::size_t kAnswer = 2;    ///< cycles: command k − 1 moves the joint from cycle k to k + 1
+
+  /// `period` s.
+  EncoderStuck(const SafetyParameters&, const LegModel&, double period) noexcept
+      : stays_(std::max<std::uint64_t>(2, static_cast<std::uint64_t>(std::lround(kStays / period)))) {}
+  void enter_run() noexcept { joints_ = {}; }
+
+  ConditionMeasurement measure(const LeggedMeasurements& now, const ConditionWatch& watch) noexcept {
+    const double limit = (now.walks() ? kSwingFactor : 1) * watch.limit();
+    return worst_of(kLegsJoints, [&](std::size_t i) {
+      return has_position(now.joint(i)) ? beyond(i, command_moved(now, i), limit) : kNothingMeasured;
+    });
+  }
+
+ private:
+  struct Joint {
     std::array<double, kAnswer> demands{};  ///< rad, of the last commands, the oldest first
     std::size_t demand_count = 0;           ///< of `demands`
     bool demanded = false;                  ///< c₀ is known
@@ -81,56 +79,39 @@ class EncoderConditions {
     double demand = 0;                      ///< rad, c₀
   };
 
-  /// Returns the command of a joint that demands an angle while the robot is on its feet; else null.
-  static const JointCommand* demand(const CommandFrame* command, std::size_t joint) noexcept {
-    if (command == nullptr || command->joints[joint].mode != JointMode::kImpedance) return nullptr;
-    const LegPhase phase = command->legged.phase;
-    const bool on_feet = phase == LegPhase::kRising || phase == LegPhase::kStanding || phase == LegPhase::kLowering ||
-                         commanded_to_swing(command, joint);
-    return on_feet ? &command->joints[joint] : nullptr;
-  }
-
-  /// Returns by how many rad the angle is beyond the reach of the joint.
-  static double jumped(Joint& joint, double position, double limit) noexcept {
-    const double past =
-        joint.known ? std::abs(position - joint.possible) - joint.reach * static_cast<double>(joint.cycles) : 0;
-    if (!joint.known || past <= limit) {
-      joint.known = true;
-      joint.possible = position;
-      joint.cycles = 0;
-    }
-    return past;
+  /// The command demands an angle of this joint while the robot is on its feet.
+  static bool demands(const LeggedMeasurements& now, std::size_t i) noexcept {
+    if (now.walks()) return now.swings(i);
+    const bool on_feet =
+        now.phase == LegPhase::kRising || now.phase == LegPhase::kStanding || now.phase == LegPhase::kLowering;
+    return on_feet && now.command(i).mode == JointMode::kImpedance;
   }
 
   /// Returns by how many rad the command moved while the angle stayed.
-  double demanded(Joint& joint, double position, const JointCommand* command, std::uint64_t elapsed) const noexcept {
+  double command_moved(const LeggedMeasurements& now, std::size_t i) noexcept {
+    Joint& joint = joints_[i];
+    const double position = now.joint(i).position;
+    const bool stays = position == joint.reported, commanded = demands(now, i);
     double moved = 0;
-    joint.stays = position == joint.reported ? joint.stays + elapsed : 0;
-    if (joint.demand_count == kAnswer && command != nullptr) {
-      if (!joint.demanded || position != joint.reported) joint.demand = joint.demands.front();
+    joint.stays = stays ? joint.stays + now.elapsed : 0;
+    if (joint.demand_count == kAnswer && commanded) {
+      if (!joint.demanded || !stays) joint.demand = joint.demands.front();
       joint.demanded = true;
       if (joint.stays >= stays_) moved = std::abs(joint.demands.front() - joint.demand);
     }
     joint.reported = position;
-    remember(joint, command);
-    return moved;
-  }
-
-  static void remember(Joint& joint, const JointCommand* command) noexcept {
-    if (command == nullptr) {
-      joint.demanded = false;
-      joint.demand_count = 0;
-      return;
-    }
+    joint.demanded = joint.demanded && commanded;
+    joint.demand_count = commanded ? std::min(joint.demand_count + 1, kAnswer) : 0;
     std::rotate(joint.demands.begin(), joint.demands.begin() + 1, joint.demands.end());
-    joint.demands.back() = command->position;
-    joint.demand_count = std::min(joint.demand_count + 1, kAnswer);
+    if (commanded) joint.demands.back() = now.command(i).position;
+    return moved;
   }
 
   std::uint64_t stays_;  ///< cycles
   std::array<Joint, kLegsJoints> joints_{};
-  FixedVector<ConditionWatch, kLegsJoints> jump_;
-  ConditionWatch stuck_;
 };
+
+using EncoderConditions = ConditionList<WatchedCondition<kCauseEncoderJump, EncoderJump, kLegsJoints>,
+                                        WatchedCondition<kCauseEncoderStuck, EncoderStuck>>;
 
 }  // namespace robot_control

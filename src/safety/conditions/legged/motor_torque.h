@@ -3,9 +3,9 @@
 ///
 /// Three commands demand torques at the measured angle and speed of this cycle and of the one before. They are those of
 /// now, of kLate and of 2 kLate ago, rounded to whole cycles but 0. They span a range. A torque is wrong if it is
-/// outside by more than kOfDemand of the range's end and kOfEffort of the effort limit. All of these torques are means
-/// over kMean, because measured speeds come in steps. The result w is the part of the last cycles in which the torque
-/// was wrong:
+/// outside by more than kDemandShare of the range's end and kEffortShare of the effort limit. All of these torques are
+/// means over kMean, because measured speeds come in steps. The result w is the part of the last cycles in which the
+/// torque was wrong:
 ///
 ///   w += T/kTime (1 − w), or T/kTime (0 − w)      T: period
 ///
@@ -25,8 +25,8 @@ class MotorTorque {
  public:
   static constexpr double kLate = 0.005;        ///< s: a late motor is none that fails
   static constexpr std::size_t kCommands = 21;  ///< of 2 kLate at 2 kHz
-  static constexpr double kOfDemand = 0.5;      ///< nor is a weak one
-  static constexpr double kOfEffort = 0.04;     ///< docs/evidence/derivations.md
+  static constexpr double kDemandShare = 0.5;   ///< nor is a weak one
+  static constexpr double kEffortShare = 0.04;  ///< docs/evidence/derivations.md
   static constexpr double kMean = 0.01;         ///< s
   static constexpr double kTime = 0.06;         ///< s
 
@@ -69,8 +69,8 @@ class MotorTorque {
       demanded_[i] += part * (demand - demanded_[i]);
     }
     const auto [lower, upper] = std::ranges::minmax(demanded_);
-    const bool wrong = given_ < lower - kOfDemand * std::abs(lower) - kOfEffort * limit ||
-                       given_ > upper + kOfDemand * std::abs(upper) + kOfEffort * limit;
+    const bool wrong = given_ < lower - kDemandShare * std::abs(lower) - kEffortShare * limit ||
+                       given_ > upper + kDemandShare * std::abs(upper) + kEffortShare * limit;
     wrong_ += period / kTime * ((wrong ? 1 : 0) - wrong_);
   }
 

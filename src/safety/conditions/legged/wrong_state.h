@@ -7,42 +7,28 @@
 /// within 0.2 s. A state that is 10 ms old may differ as much. Without one of them nothing is compared.
 
 #include <Eigen/Core>
-#include <cstdint>
 #include <limits>
 
-#include "safety/conditions/common/condition_watch.h"
-#include "safety/latch/active_causes.h"
-#include "safety/safety_parameters.h"
-#include "signals/state_frame.h"
+#include "machine/stored.h"
+#include "safety/conditions/legged/legged_observer.h"
 
 namespace robot_control {
 
 class WrongState {
  public:
-  /// `period` s.
-  WrongState(const SafetyParameters& parameters, double period) noexcept
-      : watch_(kCauseWrongState, parameters.wrong_state, period) {}
+  WrongState(const SafetyParameters&, const LegModel&, double) noexcept { enter_run(); }
+  void enter_run() noexcept { (*before_).setConstant(std::numeric_limits<double>::quiet_NaN()); }
 
-  void enter_run() noexcept {
-    watch_.reset();
-    before_.fill(std::numeric_limits<double>::quiet_NaN());
-  }
-
-  /// `state`: of the cycle before; null: missing. `rate`: of the gyro in this cycle, rad/s, base axes, NaN without a
-  /// sample.
-  void step(const StateFrame* state, const Eigen::Vector3d& rate, std::uint64_t elapsed, ActiveCauses& out) noexcept {
-    ConditionMeasurement measured = kNothingMeasured;
-    if (state != nullptr && elapsed == 1) {
-      const Eigen::Map<const Eigen::Vector3d> by_state(state->base.twist_base.angular.data()), by_gyro(before_.data());
-      measured = beyond(kMaxJoints, (by_state - by_gyro).norm(), watch_.limit());
-    }
-    Eigen::Map<Eigen::Vector3d>(before_.data()) = rate;
-    out.update(watch_, measured, elapsed);
+  ConditionMeasurement measure(const LeggedMeasurements& now, const ConditionWatch& watch) noexcept {
+    const Eigen::Vector3d by_gyro = *before_;
+    *before_ = now.body.rate();
+    if (now.input.state == nullptr || now.elapsed != 1) return kNothingMeasured;
+    const Eigen::Map<const Eigen::Vector3d> by_state(now.input.state->base.twist_base.angular.data());
+    return beyond(kMaxJoints, (by_state - by_gyro).norm(), watch.limit());
   }
 
  private:
-  ConditionWatch watch_;
-  Vector3 before_{};  ///< rad/s, ω_g
+  Stored<Eigen::Vector3d> before_;  ///< rad/s, ω_g
 };
 
 }  // namespace robot_control

@@ -37,7 +37,6 @@ TorqueOscillation::TorqueOscillation(const SafetyParameters& parameters, const D
       watch_(kCauseTorqueOscillation, parameters.torque_oscillation, period),
       count_ripple_(parameters.count_ripple) {
   for (std::size_t i = 0; i < std::min(robot.wheels.size(), kMaxWheels); ++i) {
-    effort_limit_[i] = robot.joints[robot.wheels[i].joint].effort_limit;
     inertia_[i] = std::max(straight_inertia(robot, robot.wheels[i]), turning_inertia(robot, robot.wheels[i]));
   }
 }
@@ -49,21 +48,19 @@ void TorqueOscillation::enter_run() noexcept {
   watch_.reset();
 }
 
-void TorqueOscillation::step(const MonitorInput& input, const WheelTargets& targets, const WheelMotion& motion,
-                             std::uint64_t elapsed, ActiveCauses& out) noexcept {
-  ConditionMeasurement measurement = kNothingMeasured;
-  for (std::size_t i = 0; i < motion.wheels(); ++i) {
-    const double measured = input.sensors->joints[i].effort;
-    if (input.command != nullptr) commanded_[i] = input.command->joints[i].effort;
-    if (!motion.sampled() || !targets.has(i) || !std::isfinite(measured) || !std::isfinite(commanded_[i])) {
+void TorqueOscillation::step(const WheeledMeasurements& now, ActiveCauses& out) noexcept {
+  const ConditionMeasurement measurement = worst_of(now.motion.wheels(), [&](std::size_t i) {
+    const double measured = now.input.sensors->joints[i].effort;
+    if (now.input.command != nullptr) commanded_[i] = now.input.command->joints[i].effort;
+    if (!now.motion.sampled() || !now.targets.has(i) || !std::isfinite(measured) || !std::isfinite(commanded_[i])) {
       wheels_[i] = {};
-      continue;
+      return kNothingMeasured;
     }
-    follow(i, measured, commanded_[i], targets[i], elapsed);
-    measurement = worse(measurement, measure(i, motion));
-  }
-  out.update(watch_, measurement, elapsed);
-  warning_.step(measurement, elapsed);
+    follow(i, measured, commanded_[i], now.targets[i], now.dt);
+    return measure(i, now);
+  });
+  out.update(watch_, measurement, now.elapsed);
+  warning_.step(measurement, now.elapsed);
   if (!watch_.active()) out.add(warning_);
 }
 
@@ -72,9 +69,8 @@ TorqueOscillation::Weights TorqueOscillation::weights_of(double dt) noexcept {
 }
 
 void TorqueOscillation::follow(std::size_t wheel, double measured, double commanded, double target,
-                               std::uint64_t elapsed) noexcept {
-  const double dt = static_cast<double>(elapsed) * period_;
-  const Weights weights = elapsed == 1 ? one_cycle_ : weights_of(dt);
+                               double dt) noexcept {
+  const Weights weights = dt == period_ ? one_cycle_ : weights_of(dt);
   Wheel& state = wheels_[wheel];
   if (!state.driven) {
     state.measured.slow = measured;
@@ -88,10 +84,10 @@ void TorqueOscillation::follow(std::size_t wheel, double measured, double comman
   state.target = target;
 }
 
-ConditionMeasurement TorqueOscillation::measure(std::size_t wheel, const WheelMotion& motion) const noexcept {
+ConditionMeasurement TorqueOscillation::measure(std::size_t wheel, const WheeledMeasurements& now) const noexcept {
   const Wheel& state = wheels_[wheel];
-  const double effort_limit = effort_limit_[wheel];
-  const double explained = 2 * state.planned.rms() + count_ripple_[wheel] * motion.quantum(wheel);
+  const double effort_limit = now.wheels[wheel].effort_limit;
+  const double explained = 2 * state.planned.rms() + count_ripple_[wheel] * now.motion.quantum(wheel);
   const double ripple = std::min(state.measured.rms(), state.commanded.rms());
   return beyond(wheel, ripple / effort_limit, watch_.limit() + explained / effort_limit);
 }

@@ -17,13 +17,9 @@
 
 #include <array>
 #include <cstddef>
-#include <cstdint>
 
-#include "machine/wheeled/drive_train.h"
-#include "safety/latch/active_causes.h"
-#include "safety/measurements/wheel_motion.h"
-#include "safety/measurements/wheel_targets.h"
-#include "safety/monitor_input.h"
+#include "safety/conditions/common/condition_list.h"
+#include "safety/conditions/wheeled/wheeled_observer.h"
 
 namespace robot_control {
 
@@ -37,8 +33,7 @@ class TorqueOscillation {
   TorqueOscillation(const SafetyParameters& parameters, const DriveTrain& robot, double period) noexcept;
 
   void enter_run() noexcept;
-  void step(const MonitorInput& input, const WheelTargets& targets, const WheelMotion& motion, std::uint64_t elapsed,
-            ActiveCauses& out) noexcept;
+  void step(const WheeledMeasurements& now, ActiveCauses& out) noexcept;
 
  private:
   /// The parts of the two low passes' states that a step replaces, 1 − e^{−dt/T}.
@@ -62,16 +57,15 @@ class TorqueOscillation {
   };
 
   static Weights weights_of(double dt) noexcept;
-  void follow(std::size_t wheel, double measured, double commanded, double target, std::uint64_t elapsed) noexcept;
-  ConditionMeasurement measure(std::size_t wheel, const WheelMotion& motion) const noexcept;
+  void follow(std::size_t wheel, double measured, double commanded, double target, double dt) noexcept;
+  ConditionMeasurement measure(std::size_t wheel, const WheeledMeasurements& now) const noexcept;
 
-  double period_;
-  Weights one_cycle_;
+  double period_;      ///< s
+  Weights one_cycle_;  ///< weights of a period
   ConditionWatch warning_;
   ConditionWatch watch_;
   std::array<Wheel, kMaxWheels> wheels_{};
   std::array<double, kMaxWheels> commanded_{};     ///< N·m, last seen
-  std::array<double, kMaxWheels> effort_limit_{};  ///< N·m
   std::array<double, kMaxWheels> inertia_{};       ///< kg·m², J
   std::array<double, kMaxWheels> count_ripple_{};  ///< N·m/rad
 };

@@ -7,65 +7,64 @@
 ///   wheel_acceleration  |ω̇| > limit + tolerance
 ///   wheel_effort        |τ|/(the joint's effort limit) > limit, in ticks in which the gate let a command pass: the
 ///                       driver's own brake may be stronger than the motor
+///   yaw_rate            gyro and wheels measure different yaw rates (yaw_agreement.h)
 ///   power               Σ max(0, τ ω) > limit + Σ |τ|·tolerance: the power that the motors draw; braking draws none
 ///
 /// Without a measured torque wheel_effort and power are not evaluated.
 ///
 /// ω, ω̇ and their tolerances: wheel_motion.h. The measurement is that of the worst wheel.
 
-#include <array>
-#include <cstdint>
+#include <algorithm>
+#include <cmath>
 
-#include "machine/wheeled/drive_train.h"
-#include "safety/latch/active_causes.h"
-#include "safety/measurements/wheel_motion.h"
-#include "signals/sensor_frame.h"
+#include "safety/conditions/common/condition_list.h"
+#include "safety/conditions/wheeled/wheeled_observer.h"
 
 namespace robot_control {
 
-/// The largest speed limit of the last ramp_time to 2·ramp_time: every limit below it has been in force for long
-/// enough.
-class SpeedLimitInForce {
- public:
-  SpeedLimitInForce(double ramp_time, double period) noexcept;
-  void enter_run() noexcept;
-  /// m/s
-  double step(double speed_limit, std::uint64_t elapsed) noexcept;
-
- private:
-  std::uint64_t cycles_;
-  std::uint64_t since_ = 0;
-  double last_ = kNoSpeedLimit;  ///< the largest of the last full ramp_time
-  double now_ = kNoSpeedLimit;   ///< the largest since then
-};
-
-class WheelLimits {
- public:
+struct WheelLaws {
   static constexpr double kSlack = 1.2;        ///< overshoot of a wheel that follows
   static constexpr double kSlackSpeed = 0.05;  ///< m/s
 
-  /// `period` s.
-  WheelLimits(const SafetyParameters& parameters, const DriveTrain& robot, double period) noexcept;
+  static ConditionMeasurement wheel_speed(const WheeledMeasurements& now, const ConditionWatch& watch) noexcept {
+    if (!now.motion.speed_known()) return kNothingMeasured;
+    return weighed(worst_of(now.motion.wheels(), [&](std::size_t i) {
+      const double slowed = (kSlack * now.speed_limit + kSlackSpeed) / now.wheels[i].radius;
+      return beyond(i, std::abs(now.motion.speed(i)), std::min(watch.limit(), slowed) + now.motion.speed_tolerance(i));
+    }));
+  }
 
-  void enter_run() noexcept;
+  static ConditionMeasurement wheel_acceleration(const WheeledMeasurements& now, const ConditionWatch& watch) noexcept {
+    if (!now.motion.acceleration_known()) return kNothingMeasured;
+    return worst_of(now.motion.wheels(), [&](std::size_t i) {
+      return beyond(i, std::abs(now.motion.acceleration(i)), watch.limit() + now.motion.acceleration_tolerance(i));
+    });
+  }
 
-  /// `passed`: tick k−1 let a command pass. `speed_limit` m/s: of the last permit.
-  void step(const SensorFrame& sensors, const WheelMotion& motion, bool passed, double speed_limit,
-            std::uint64_t elapsed, ActiveCauses& out) noexcept;
+  static ConditionMeasurement wheel_effort(const WheeledMeasurements& now, const ConditionWatch& watch) noexcept {
+    if (!now.motion.sampled() || !now.targets.passed() || !now.efforts_measured) return kNothingMeasured;
+    return worst_of(now.motion.wheels(), [&](std::size_t i) {
+      return beyond(i, std::abs(now.input.sensors->joints[i].effort) / now.wheels[i].effort_limit, watch.limit());
+    });
+  }
 
- private:
-  ConditionMeasurement fastest(const WheelMotion& motion, double speed_limit) const noexcept;
-  ConditionMeasurement most_jerked(const WheelMotion& motion) const noexcept;
-  ConditionMeasurement strongest(const SensorFrame& sensors) const noexcept;
-  ConditionMeasurement drawn(const SensorFrame& sensors, const WheelMotion& motion) const noexcept;
-
-  ConditionWatch speed_;
-  ConditionWatch acceleration_;
-  ConditionWatch effort_;
-  ConditionWatch power_;
-  SpeedLimitInForce in_force_;
-  std::array<double, kMaxWheels> radius_{};
-  std::array<double, kMaxWheels> effort_limit_{};
+  static ConditionMeasurement power(const WheeledMeasurements& now, const ConditionWatch& watch) noexcept {
+    if (!now.motion.speed_known() || !now.efforts_measured) return kNothingMeasured;
+    double power = 0;
+    double limit = watch.limit();
+    for (std::size_t i = 0; i < now.motion.wheels(); ++i) {
+      const double effort = now.input.sensors->joints[i].effort;
+      power += std::max(0.0, effort * now.motion.speed(i));
+      limit += std::abs(effort) * now.motion.speed_tolerance(i);
+    }
+    return beyond(kMaxJoints, power, limit);
+  }
 };
+
+using WheelLimits = ConditionList<WatchedCondition<kCauseWheelSpeed, Stateless<WheelLaws::wheel_speed>>,
+                                  WatchedCondition<kCauseWheelAcceleration, Stateless<WheelLaws::wheel_acceleration>>,
+                                  WatchedCondition<kCauseWheelEffort, Stateless<WheelLaws::wheel_effort>>,
+                                  WatchedCondition<kCausePower, Stateless<WheelLaws::power>>,
+                                  WatchedCondition<kCauseYawRate, Stateless<&WheeledMeasurements::yaw_rate>>>;
 
 }  // namespace robot_control

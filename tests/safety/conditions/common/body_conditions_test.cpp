@@ -51,7 +51,19 @@ class BodyConditionsTest : public testing::Test {
     steps(10);
   }
 
-  BodyConditions made() const { return {parameters_, robot_, middle_of_axles(robot_), kPeriod}; }
+  /// Body and conditions with the present parameters and robot.
+  struct Monitored {
+    BodyMotion body;
+    BodyConditions conditions;
+
+    void enter_run() {
+      body.enter_run();
+      conditions.enter_run();
+    }
+  };
+  Monitored made() const {
+    return {.body = {robot_, middle_of_axles(robot_), kPeriod}, .conditions = {parameters_, robot_, kPeriod}};
+  }
 
   void step() {
     jitter_ = -jitter_;
@@ -62,7 +74,9 @@ class BodyConditionsTest : public testing::Test {
   /// Checks the present frame.
   void check(std::uint64_t elapsed = 1) {
     out_.clear();
-    facts_.step(sensors_, elapsed, RimSpeed(robot_).value(sensors_), wheels_turn_, out_);
+    facts_.body.step(sensors_, elapsed, RimSpeed(robot_).value(sensors_), wheels_turn_);
+    const MonitorInput input{.sensors = &sensors_};
+    facts_.conditions.step(BodyMeasurements{input, elapsed, static_cast<double>(elapsed) * kPeriod, facts_.body}, out_);
   }
   void steps(int count) {
     for (int i = 0; i < count; ++i) step();
@@ -89,7 +103,7 @@ class BodyConditionsTest : public testing::Test {
   SafetyParameters parameters_;
   DriveTrain robot_;
   SensorFrame sensors_;
-  BodyConditions facts_ = made();
+  Monitored facts_ = made();
   ActiveCauses out_;
   Vector3d rate_ = Vector3d::Zero();
   Vector3d force_{0, 0, kGravity};
@@ -142,7 +156,7 @@ TEST_F(BodyConditionsTest, TippingOverIsFoundBeforeTheTiltIsReached) {
   EXPECT_EQ(out_.stopping(), kCauseTipOver);
   EXPECT_NEAR(count, 0.21 / 2 / kPeriod + cycles(parameters_.tip_over), 2);
   EXPECT_NEAR(out_.measurements()[0].value, 2, 1e-6);
-  EXPECT_LT(facts_.attitude().tilt(), 0.42);
+  EXPECT_LT(facts_.body.attitude().tilt(), 0.42);
 }
 
 TEST_F(BodyConditionsTest, RisingAgainIsNoTippingOver) {
@@ -204,13 +218,13 @@ TEST_F(BodyConditionsTest, AnImpactMayComeFromAnySide) {
 TEST_F(BodyConditionsTest, AKnockIsNoImpact) {
   force_ = {-500, 0, kGravity};
   step();  // 0.5 m/s
-  EXPECT_NEAR(facts_.shock(), 50, 1e-6);
+  EXPECT_NEAR(facts_.body.shock(), 50, 1e-6);
   force_ = {0, 0, kGravity};
   for (int i = 0; i < 20; ++i) {
     EXPECT_TRUE(quiet());
     step();
   }
-  EXPECT_NEAR(facts_.shock(), 0, 1e-9) << "the window is past";
+  EXPECT_NEAR(facts_.body.shock(), 0, 1e-9) << "the window is past";
 }
 
 TEST_F(BodyConditionsTest, ALandingIsNoImpact) {
@@ -223,7 +237,7 @@ TEST_F(BodyConditionsTest, GravityOnARampIsNoPartOfAnImpact) {
   lean(0.35);
   facts_.enter_run();
   steps(100);
-  EXPECT_NEAR(facts_.shock(), 0, 1e-6);
+  EXPECT_NEAR(facts_.body.shock(), 0, 1e-6);
 }
 
 TEST_F(BodyConditionsTest, LiftIsFoundWhereContactsAreFelt) {
@@ -237,7 +251,7 @@ TEST_F(BodyConditionsTest, LiftIsFoundWhereContactsAreFelt) {
 
 TEST_F(BodyConditionsTest, WithoutContactSensorsThereIsNoLift) {
   EXPECT_EQ(cycles_until(kCauseLift), -1);
-  EXPECT_EQ(facts_.carried(), 1);
+  EXPECT_EQ(facts_.body.carried(), 1);
 }
 
 TEST_F(BodyConditionsTest, CastersCarryToo) {
@@ -255,7 +269,7 @@ TEST_F(BodyConditionsTest, WeightIsVertical) {
   measure_contacts(sensors_);
   sensors_.contacts[0].force = plain(10 * force_);
   step();
-  EXPECT_NEAR(facts_.carried(), 1, 1e-9);
+  EXPECT_NEAR(facts_.body.carried(), 1, 1e-9);
 }
 
 // The other device goes on.
@@ -369,7 +383,7 @@ INSTANTIATE_TEST_SUITE_P(OnAxes, JumpingRatesTest,
                          testing::Values(Vector3d(1, 1, 1), Vector3d(1, 0, 0), Vector3d(0, 1, 0), Vector3d(0, 0, 1)));
 
 TEST_F(BodyConditionsTest, ASampleThatIsNotFiniteIsIgnored) {
-  const double before = facts_.attitude().tilt();
+  const double before = facts_.body.attitude().tilt();
   for (const double bad : {kNaN, std::numeric_limits<double>::infinity()}) {
     for (std::size_t axis = 0; axis < 3; ++axis) {
       sensors_.imu.angular_velocity = {0, 0, 0};
@@ -380,8 +394,8 @@ TEST_F(BodyConditionsTest, ASampleThatIsNotFiniteIsIgnored) {
       EXPECT_TRUE(quiet());
     }
   }
-  EXPECT_NEAR(facts_.attitude().tilt(), before, 1e-9);
-  EXPECT_NEAR(facts_.shock(), 0, 1e-9);
+  EXPECT_NEAR(facts_.body.attitude().tilt(), before, 1e-9);
+  EXPECT_NEAR(facts_.body.shock(), 0, 1e-9);
   EXPECT_EQ(cycles_until(kCauseTilt, 100), -1);
 }
 
@@ -391,7 +405,7 @@ TEST_F(BodyConditionsTest, ASampleThatIsNotValidIsIgnored) {
   rate_ = {30, 0, 0};
   steps(100);
   EXPECT_TRUE(quiet());
-  EXPECT_LT(facts_.attitude().tilt(), 1e-6);
+  EXPECT_LT(facts_.body.attitude().tilt(), 1e-6);
 }
 
 TEST_F(BodyConditionsTest, ContactForcesThatAreNotFiniteTellNothing) {
@@ -407,7 +421,7 @@ TEST_F(BodyConditionsTest, ACurveIsNoTilt) {
   for (std::size_t i = 0; i < 2; ++i) sensors_.joints[i].velocity = 10;
   steps(20000);
   EXPECT_TRUE(quiet());
-  EXPECT_NEAR(facts_.attitude().tilt(), 0, 1e-6);
+  EXPECT_NEAR(facts_.body.attitude().tilt(), 0, 1e-6);
 }
 
 // 0.5 m ahead of the axle, at 2 rad/s on the spot: 2 m/s² backwards.
@@ -418,7 +432,7 @@ TEST_F(BodyConditionsTest, AnImuFarOutIsNotTilted) {
   force_ = {-2, 0, kGravity};
   for (std::size_t i = 0; i < 2; ++i) sensors_.joints[i].velocity = i == 0 ? -4 : 4;
   steps(20000);
-  EXPECT_NEAR(facts_.attitude().tilt(), 0, 1e-6);
+  EXPECT_NEAR(facts_.body.attitude().tilt(), 0, 1e-6);
 }
 
 TEST_F(BodyConditionsTest, ACurveIsFeltWithWheelsThatTurnTheOtherWay) {
@@ -429,13 +443,13 @@ TEST_F(BodyConditionsTest, ACurveIsFeltWithWheelsThatTurnTheOtherWay) {
   sensors_.joints[0].velocity = -10;
   sensors_.joints[1].velocity = 10;
   steps(20000);
-  EXPECT_NEAR(facts_.attitude().tilt(), 0, 1e-6);
+  EXPECT_NEAR(facts_.body.attitude().tilt(), 0, 1e-6);
 }
 
 TEST_F(BodyConditionsTest, EncodersThatSayNothingDoNoHarm) {
   sensors_.joints[0].velocity = kNaN;
   steps(1000);
-  EXPECT_LT(facts_.attitude().tilt(), 1e-6);
+  EXPECT_LT(facts_.body.attitude().tilt(), 1e-6);
 }
 
 // The IMU is mounted upside down and turned: its samples are turned back into base axes.
@@ -446,7 +460,7 @@ TEST_F(BodyConditionsTest, TheMountingOfTheImuCounts) {
   force_ = mounting.inverse() * Vector3d(0, 0, kGravity);
   facts_ = made();
   steps(100);
-  EXPECT_NEAR(facts_.attitude().tilt(), 0, 1e-9);
+  EXPECT_NEAR(facts_.body.attitude().tilt(), 0, 1e-9);
   double angle = 0;
   while (quiet() && angle < 1) {
     angle += kPeriod;
@@ -461,10 +475,10 @@ TEST_F(BodyConditionsTest, ANewRunKnowsNothing) {
   force_ = {0, 0, 0.5};
   steps(cycles(parameters_.free_fall) - 1);
   facts_.enter_run();
-  EXPECT_FALSE(facts_.attitude().known());
-  EXPECT_EQ(facts_.force(), 0);
-  EXPECT_EQ(facts_.shock(), 0);
-  EXPECT_EQ(made().shock(), 0);
+  EXPECT_FALSE(facts_.body.attitude().known());
+  EXPECT_EQ(facts_.body.force(), 0);
+  EXPECT_EQ(facts_.body.shock(), 0);
+  EXPECT_EQ(made().body.shock(), 0);
   step();
   EXPECT_TRUE(quiet()) << "the count restarts";
 }

@@ -176,7 +176,7 @@ TEST_F(CoarseEncoderTest, AWheelThatTurnsFromCountToCountIsNotStalled) {
 // The next count may be a whole one away, and the last one leaves the window late. Then kStall, with a quantum, passes
 // at kPushed.
 TEST_F(CoarseEncoderTest, AWheelThatStandsIsStalledOnceItsCountIsOverdue) {
-  const double owed = kCount / kSlow, missed = (kStall + kCount) / WheelFollowing::kPushed;
+  const double owed = kCount / kSlow, missed = (kStall + kCount) / Stall::kPushed;
   steps(static_cast<std::uint64_t>(owed / kPeriod));
   turn_wheels(0);
   steps(static_cast<std::uint64_t>(missed / kPeriod) - 1);
@@ -303,8 +303,8 @@ TEST_F(ScrubbingTest, WheelsWhoseTorqueIsBelowTheirFrictionAndGrowsAreStalledLat
     step();
   }
   EXPECT_EQ(permit_.causes, std::uint64_t{kCauseStall});
-  EXPECT_GT(k * kPeriod, (1 + WheelFollowing::kExcused) * usual);
-  EXPECT_LT(k * kPeriod, (1 + WheelFollowing::kExcused) * usual + kSpeedWindow);
+  EXPECT_GT(k * kPeriod, (1 + Stall::kExcused) * usual);
+  EXPECT_LT(k * kPeriod, (1 + Stall::kExcused) * usual + kSpeedWindow);
 }
 
 TEST_F(ScrubbingTest, WheelsWhoseTorqueDoesNotGrowAreStalledAsAnyOther) {
@@ -312,7 +312,7 @@ TEST_F(ScrubbingTest, WheelsWhoseTorqueDoesNotGrowAreStalledAsAnyOther) {
   turn(0, 0.5 * kScrub);
   for (; permit_.causes == 0 && k < 2000; ++k) step();
   EXPECT_EQ(permit_.causes, std::uint64_t{kCauseStall});
-  EXPECT_LT(k * kPeriod, kStall / kSpeed + kSpeedWindow + 2 * WheelFollowing::kBuildUp);
+  EXPECT_LT(k * kPeriod, kStall / kSpeed + kSpeedWindow + 2 * Stall::kBuildUp);
 }
 
 TEST_F(ScrubbingTest, WheelsThatStandUnderMoreTorqueThanFrictionAre) {

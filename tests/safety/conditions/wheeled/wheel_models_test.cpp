@@ -8,9 +8,8 @@
 #include <optional>
 #include <random>
 
-#include "safety/conditions/wheeled/torque_oscillation.h"
-#include "safety/conditions/wheeled/wheel_following.h"
-#include "safety/conditions/wheeled/wheel_limits.h"
+#include "machine/wheeled/scrub.h"
+#include "safety/conditions/wheeled/wheeled_conditions.h"
 #include "safety/monitor_fixture.h"
 
 namespace robot_control {
@@ -94,7 +93,7 @@ struct Measured {
   }
 };
 
-/// The laws of wheel_limits.h, wheel_following.h and torque_oscillation.h in one run.
+/// The laws of wheel_limits.h, wheel_excess.h, stall.h, not_stopping.h and torque_oscillation.h in one run.
 class Model {
  public:
   Model(const DriveTrain& robot, const SafetyParameters& parameters)
@@ -395,6 +394,7 @@ SafetyParameters drawn(std::mt19937& random, const DriveTrain& robot) {
     return std::uniform_real_distribution<>(lower, upper)(random);
   };
   SafetyParameters parameters;
+  parameters.yaw_rate.reaction = Reaction::kOff;
   parameters.ramp_time = between(0.05, 0.4);
   const auto set = [&](Condition& condition, double lower, double upper) {
     condition = {.limit = between(lower, upper), .persistence = between(0, 0.1), .reaction = Reaction::kBrake};
@@ -420,9 +420,15 @@ TEST(WheelModels, RandomDrivesAreJudgedAsTheHeadersSayInEveryRun) {
     for (JointModel& joint : robot.joints) joint.friction = 0.2 * (seed % 3);
     if (seed % 5 == 0) robot.joints[0].velocity_limit = 0;
     const SafetyParameters parameters = drawn(random, robot);
-    WheelLimits limits(parameters, robot, kModelPeriod);
-    WheelFollowing following(parameters, robot, kModelPeriod);
-    TorqueOscillation oscillation(parameters, robot, kModelPeriod);
+    ConditionList<WheelLimits, WheelExcess<kCauseRunaway>, WheelExcess<kCauseWrongDirection>,
+                  WatchedCondition<kCauseStall, Stall>, WatchedCondition<kCauseNotStopping, NotStopping>,
+                  TorqueOscillation>
+        conditions(parameters, robot, kModelPeriod);
+    const BodyMotion body(robot, {}, kModelPeriod);
+    SpeedLimitInForce in_force(parameters.ramp_time, kModelPeriod);
+    std::array<WheelNumbers, kMaxWheels> wheels{};
+    for (std::size_t i = 0; i < robot.wheels.size(); ++i)
+      wheels[i] = {robot.wheels[i].radius, robot.joints[i].effort_limit};
     RandomDrive drive(robot.wheels.size(), seed);
     for (int run = 0; run < 3; ++run) {
       Measured measured(robot, parameters);
@@ -432,10 +438,17 @@ TEST(WheelModels, RandomDrivesAreJudgedAsTheHeadersSayInEveryRun) {
         measured.step(facts);
         ActiveCauses out;
         const MonitorInput input{.sensors = &facts.sensors, .command = facts.command ? &*facts.command : nullptr};
-        limits.step(facts.sensors, measured.motion, measured.targets.passed(), facts.speed_limit, facts.elapsed, out);
-        following.step(facts.sensors, measured.targets, measured.motion, measured.standstill, facts.yaw_excess,
-                       facts.elapsed, out);
-        oscillation.step(input, measured.targets, measured.motion, facts.elapsed, out);
+        const double dt = static_cast<double>(facts.elapsed) * kModelPeriod;
+        const bool efforts_measured = joints_have(facts.sensors, robot.wheels.size(), kValidEffort);
+        conditions.step(WheeledMeasurements{{input, facts.elapsed, dt, body},
+                                            wheels,
+                                            measured.motion,
+                                            measured.standstill,
+                                            measured.targets,
+                                            efforts_measured,
+                                            in_force.step(facts.speed_limit, facts.elapsed),
+                                            {.beyond = facts.yaw_excess > 0, .value = facts.yaw_excess}},
+                        out);
         const std::map<StopCause, Quantity> expected = model.step(facts, measured);
         std::map<StopCause, Quantity> reported;
         for (const CauseEvidence& each : out.measurements())
@@ -451,9 +464,8 @@ TEST(WheelModels, RandomDrivesAreJudgedAsTheHeadersSayInEveryRun) {
           ++seen[cause];
         }
       }
-      limits.enter_run();
-      following.enter_run();
-      oscillation.enter_run();
+      conditions.enter_run();
+      in_force.enter_run();
       drive.enter_run();
     }
   }

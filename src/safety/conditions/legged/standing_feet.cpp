@@ -1,0 +1,186 @@
+#include "safety/conditions/legged/standing_feet.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+#include "machine/gravity.h"
+
+namespace robot_control {
+namespace {
+
+using Vector = Stored<Eigen::Vector3d>;
+
+std::size_t knee_of(std::size_t leg) noexcept {
+  return kLegJoints * leg + kLegJoints - 1;
+}
+
+Eigen::Vector3d between(const std::array<Vector, kLegs>& feet, std::size_t a, std::size_t b) noexcept {
+  return *feet[b] - *feet[a];
+}
+
+template <class Each>
+void for_each_pair(const Each& each) noexcept {
+  for (std::size_t a = 0; a < kLegs; ++a) {
+    for (std::size_t b = a + 1; b < kLegs; ++b) each(a, b);
+  }
+}
+
+Eigen::Vector3d turned(const Eigen::Vector3d& axis, double angle, const Eigen::Vector3d& vector) noexcept {
+  return Eigen::AngleAxisd(angle, axis) * vector;
+}
+
+}  // namespace
+
+StandingFeet::StandingFeet(const SafetyParameters& parameters, const LegModel& robot, double period)
+    : weight_(robot.mass * kGravity),
+      interval_(
+          std::max<std::uint64_t>(1, static_cast<std::uint64_t>(std::lround(kWindow / kSamplesInWindow / period)))),
+      window_(static_cast<double>(interval_ * kSamplesInWindow) * period),
+      slip_limit_(parameters.foot_slip.limit.value_or(0)),
+      load_limit_(parameters.foot_load.limit.value_or(0)),
+      sinking_limit_(parameters.sinking.limit.value_or(0)),
+      turn_limit_(parameters.body_turn.limit.value_or(0)),
+      length_(robot.leg_length()) {
+  for (std::size_t leg = 0; leg < kLegs; ++leg) {
+    const LegGeometry& given = robot.legs[leg].kinematics.geometry();
+    legs_[leg] = {.hip = Vector(given.hip),
+                  .upper = Vector(given.upper),
+                  .lower = Vector(given.lower),
+                  .foot = Vector(given.foot),
+                  .sign = given.sign};
+  }
+}
+
+/// The formula is that of leg_kinematics.h.
+Eigen::Vector3d StandingFeet::position(const Lengths& leg, const LegAngles& angles) noexcept {
+  const Eigen::Vector3d x = Eigen::Vector3d::UnitX(), y = Eigen::Vector3d::UnitY();
+  const Eigen::Vector3d shank = *leg.lower + turned(y, leg.sign[2] * angles[2], *leg.foot);
+  const Eigen::Vector3d thigh = *leg.upper + turned(y, leg.sign[1] * angles[1], shank);
+  return *leg.hip + turned(x, leg.sign[0] * angles[0], thigh);
+}
+
+void StandingFeet::enter_run() noexcept {
+  counts_ = {};
+  loads_.fill(1);
+  judged_ = {};
+  measured_ = {};
+  since_ = {};
+  unbraked_ = 0;
+  stood_ = false;
+}
+
+FootMeasurements StandingFeet::step(const BodyMeasurements& now) noexcept {
+  const SensorFrame& sensors = *now.input.sensors;
+  static constexpr CommandFrame kNoCommand;
+  const CommandFrame& command = now.input.command != nullptr ? *now.input.command : kNoCommand;
+  const Eigen::Vector3d up = now.body.attitude().up();
+  const bool stands = command.legged.phase == LegPhase::kStanding, walks = command.legged.phase == LegPhase::kWalking;
+  Feet judged{};
+  for (std::size_t leg = 0; leg < kLegs; ++leg)
+    judged[leg] = stands ? leg + 1 != command.legged.lifted : walks && command.contact_schedule[leg] > kEdge;
+  const bool begins = counts_ == std::array<std::size_t, kLegs>{};
+  for (std::size_t leg = 0; leg < kLegs; ++leg) {
+    if (!judged[leg]) counts_[leg] = 0;
+  }
+  if (!walks) loads_.fill(1);
+  waited_ += now.elapsed;
+  const bool any = judged != Feet{};
+  if (!any) measured_.foot_slip = kNothingMeasured;
+  if (!any || !walks) measured_.body_turn = kNothingMeasured;
+  if (!walks) measured_.sinking = kNothingMeasured;
+  unbraked_ = sensors.gate.verdict == GateVerdict::kBrake ? 0 : unbraked_ + now.dt;
+  *since_.turn += now.dt * now.body.rate();
+  if (any && (begins || waited_ >= interval_)) {
+    waited_ = 0;
+    sample(sensors, command, up, judged);
+  }
+  const double share = weight_ / static_cast<double>(stands && command.legged.lifted != 0 ? kLegs - 1 : kLegs);
+  measured_.foot_load = stands || walks ? lightest(sensors, up, judged, share, walks) : kNothingMeasured;
+  return measured_;
+}
+
+void StandingFeet::sample(const SensorFrame& sensors, const CommandFrame& command, const Eigen::Vector3d& up,
+                          const Feet& judged) noexcept {
+  std::array<double, kLegsJoints> angles{};
+  for (std::size_t i = 0; i < kLegsJoints; ++i) {
+    if (!has_position(sensors.joints[i])) return;
+    angles[i] = sensors.joints[i].position;
+  }
+  Sample now = since_;
+  since_ = {};
+  double height = 0, count = 0;
+  for (std::size_t leg = 0; leg < kLegs; ++leg) {
+    const Eigen::Vector3d foot = position(legs_[leg], LegModel::angles_of(angles, leg));
+    now.feet[leg] = Vector(foot);
+    if (!judged[leg]) continue;
+    height -= up.dot(foot);
+    ++count;
+  }
+  height = height / count - command.legged.body[2];
+  if (command.legged.phase == LegPhase::kStanding) {
+    reference_ = height;
+    stood_ = true;
+  } else if (stood_) {
+    measured_.sinking = beyond(kMaxJoints, (reference_ - height) / length_, sinking_limit_);
+  }
+  compare(now, command, up);
+  samples_[next_] = now;
+  next_ = (next_ + 1) % kSamplesInWindow;
+  for (std::size_t leg = 0; leg < kLegs; ++leg) counts_[leg] += judged[leg] ? 1 : 0;
+}
+
+/// A foot whose stance ends bears little, and may leave the ground early.
+void StandingFeet::compare(const Sample& now, const CommandFrame& command, const Eigen::Vector3d& up) noexcept {
+  const bool walks = command.legged.phase == LegPhase::kWalking;
+  const auto ago = [&](std::size_t samples) -> const Sample& {
+    return samples_[(next_ + kSamplesInWindow - samples) % kSamplesInWindow];
+  };
+  const auto turn_within = [&](std::size_t samples) {
+    Eigen::Vector3d turn = *now.turn;
+    for (std::size_t i = 1; i < samples; ++i) turn += *ago(i).turn;
+    return turn;
+  };
+  std::array<double, kLegs> slips{};
+  double slip = 0, turn = 0;
+  for_each_pair([&](std::size_t a, std::size_t b) {
+    const std::size_t samples = std::min({counts_[a], counts_[b], kSamplesInWindow});
+    if (samples < kFewestSamples) return;
+    const Eigen::Vector3d first = between(ago(samples).feet, a, b), last = between(now.feet, a, b);
+    const double along = std::abs(last.norm() - first.norm());
+    if (samples == kSamplesInWindow) {
+      slip = std::max(slip, along);
+      slips[a] += along;
+      slips[b] += along;
+    }
+    if (!walks || unbraked_ <= kWindow ||
+        std::max(command.contact_schedule[a], command.contact_schedule[b]) > 1 - kEdge)
+      return;
+    const Eigen::Vector3d middle = (first + last) / 2, change = last - first + turn_within(samples).cross(middle);
+    const double rise = std::abs(change.dot(up)), yaw = std::abs(change.dot(up.cross(middle).normalized()));
+    turn = std::max(turn, (std::max(rise, kYawShare * yaw) - kSlipFactor * along) / middle.norm());
+  });
+  const auto foot = static_cast<std::size_t>(std::ranges::max_element(slips) - slips.begin());
+  measured_.foot_slip = beyond(knee_of(foot), slip / window_, (walks ? kStepShare : 1) * slip_limit_);
+  measured_.body_turn = beyond(kMaxJoints, turn, turn_limit_);
+}
+
+ConditionMeasurement StandingFeet::lightest(const SensorFrame& sensors, const Eigen::Vector3d& up, const Feet& judged,
+                                            double share, bool walks) noexcept {
+  if (sensors.contact_count < kLegs) return kNothingMeasured;
+  ConditionMeasurement result{.beyond = false, .value = 1, .limit = load_limit_};
+  for (std::size_t leg = 0; leg < kLegs; ++leg) {
+    const ContactSample& contact = sensors.contacts[leg];
+    if (judged[leg]) {
+      const double load =
+          contact.valid != 0 ? up.dot(Eigen::Map<const Eigen::Vector3d>(contact.force.data())) / share : 1;
+      loads_[leg] = walks && judged_[leg] ? std::max(loads_[leg], load) : load;
+    }
+    if (loads_[leg] < result.value) result.value = loads_[leg], result.joint = knee_of(leg);
+  }
+  judged_ = judged;
+  result.beyond = result.value < result.limit;
+  return result;
+}
+
+}  // namespace robot_control

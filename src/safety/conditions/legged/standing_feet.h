@@ -1,0 +1,98 @@
+#pragma once
+/// How the feet stand, while the command says that the robot stands or walks. Feet in the air, or on their way, are
+/// left out. While it walks, a foot is judged after kEdge of its stance, and its slip with kStepShare of the limit.
+///
+///   foot slip  |Δd| / kWindow > limit, max over pairs of standing feet
+///   body turn  (max(|c·u|, kYawShare |h|) − kSlipFactor |Δd|) / |v| > limit, max over these pairs
+///   foot load  F·u / w < limit
+///   sinking    (c − c₀ − (h − h₀)) / l > limit
+///
+/// foot slip: d is the distance of two feet by the measured angles, and Δd its change within kWindow.
+///
+/// body turn, while it walks: v is the vector from foot to foot, θ the turn of the gyro, and c = Δv + θ × v. u is the
+/// vertical, and h the part of c across v and u. c is 0 over ground that rests, if the gyro is right. The change is
+/// that within kWindow, or since both stand, but within kFewestSamples at least. The last kEdge of both stances is left
+/// out, and kWindow after the driver braked.
+///
+/// foot load: F is the measured force of a foot, w an equal share of the weight. While it walks, the load of a foot is
+/// the largest of its present or last step. Without contact sensors it is not evaluated.
+///
+/// sinking, while it walks: h is the mean height of the body above its feet by the measured angles, c the commanded
+/// height, l the leg length. h₀ and c₀ are those of the robot that stood.
+///
+/// Slip and load name the knee of the worst foot. The reasons: docs/evidence/derivations.md.
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+#include "machine/legs/leg_model.h"
+#include "machine/stored.h"
+#include "safety/conditions/common/body_conditions.h"
+
+namespace robot_control {
+
+/// In the units of their causes.
+struct FootMeasurements {
+  ConditionMeasurement foot_slip = kNothingMeasured;
+  ConditionMeasurement foot_load = kNothingMeasured;
+  ConditionMeasurement sinking = kNothingMeasured;
+  ConditionMeasurement body_turn = kNothingMeasured;
+};
+
+class StandingFeet {
+ public:
+  static constexpr double kWindow = 0.1;  ///< s
+  static constexpr std::size_t kSamplesInWindow = 10;
+  static constexpr std::size_t kFewestSamples = 3;  ///< of at least kWindow / kSamplesInWindow each
+  static constexpr double kSlipFactor = 2;          ///< docs/evidence/legs.md
+  static constexpr double kYawShare = 0.5;          ///< docs/evidence/legs.md
+  static constexpr double kEdge = 0.15;
+  static constexpr double kStepShare = 0.55;  ///< docs/evidence/derivations.md
+
+  /// `period` s.
+  StandingFeet(const SafetyParameters& parameters, const LegModel& robot, double period);
+
+  void enter_run() noexcept;
+  FootMeasurements step(const BodyMeasurements& now) noexcept;
+
+ private:
+  using Feet = std::array<bool, kLegs>;
+  struct Sample {
+    std::array<Stored<Eigen::Vector3d>, kLegs> feet{};  ///< m, base axes
+    Stored<Eigen::Vector3d> turn{};                     ///< rad, of the gyro since the sample before
+  };
+
+  void sample(const SensorFrame& sensors, const CommandFrame& command, const Eigen::Vector3d& up,
+              const Feet& judged) noexcept;
+  void compare(const Sample& now, const CommandFrame& command, const Eigen::Vector3d& up) noexcept;
+  ConditionMeasurement lightest(const SensorFrame& sensors, const Eigen::Vector3d& up, const Feet& judged, double share,
+                                bool walks) noexcept;
+
+  /// The numbers of a LegGeometry, which is not trivially copyable.
+  struct Lengths {
+    Stored<Eigen::Vector3d> hip, upper, lower, foot;  ///< m
+    std::array<double, kLegJoints> sign{};
+  };
+  static Eigen::Vector3d position(const Lengths& leg, const LegAngles& angles) noexcept;
+
+  std::array<Lengths, kLegs> legs_{};
+  double weight_;           ///< N
+  std::uint64_t interval_;  ///< cycles between two samples
+  double window_;           ///< s
+  double slip_limit_, load_limit_, sinking_limit_, turn_limit_;
+  double length_;  ///< m, of a leg
+  std::array<Sample, kSamplesInWindow> samples_{};
+  std::size_t next_ = 0;                     ///< index of the oldest sample
+  std::array<std::size_t, kLegs> counts_{};  ///< samples since the foot stands
+  std::uint64_t waited_ = 0;                 ///< cycles since the last sample
+  Sample since_{};                           ///< then; without feet
+  std::array<double, kLegs> loads_{};        ///< of a share, of the feet when they were judged last
+  Feet judged_{};                            ///< in the last cycle
+  double unbraked_ = 0;                      ///< s since the driver braked
+  bool stood_ = false;                       ///< reference_ is known
+  double reference_ = 0;                     ///< m, height of the body less the commanded one, when it stood last
+  FootMeasurements measured_;                ///< of the last sample
+};
+
+}  // namespace robot_control
