@@ -54,7 +54,7 @@ class Driver {
   virtual std::string_view fault_message() const noexcept { return {}; }
 
   /// Returns true if the drives carry out commands of this mode. The loop does not start with a robot kind or a stop
-  /// action (carries_out) that needs another one.
+  /// action (StopKind) that needs another one.
   virtual bool accepts(JointMode mode) const noexcept { return mode == JointMode::kBrake; }
 
   /// Returns true if the frames of `read` hold this input. The loop does not start with a robot kind that needs

@@ -37,10 +37,9 @@ const StopAction& checked(const StopAction& action, std::size_t joint) {
   check("stop damping", action.damping);
   check("stop stiffness", action.stiffness);
   check("stop time", action.time);
-  check("stop time of a walk", action.walking_time);
-  if (!std::isfinite(action.posture)) refuse("stop posture", joint, action.posture, "that is finite");
-  if (action.upright && !std::isfinite(*action.upright))
-    refuse("upright position", joint, *action.upright, "that is finite");
+  check("stop time until the brake", action.brake_after);
+  if (!std::isfinite(action.target)) refuse("stop target", joint, action.target, "that is finite");
+  if (!std::isfinite(action.start)) refuse("stop start", joint, action.start, "that is finite");
   return action;
 }
 
@@ -57,24 +56,27 @@ Gate::Gate(const std::vector<JointLimits>& limits, const GateParameters& paramet
                                 std::to_string(kMaxJoints) + " are possible");
   }
   if (!(period > 0)) throw std::invalid_argument("gate: period " + std::to_string(period) + " s, must be > 0");
-  if (!parameters.stops.empty() && parameters.stops.size() != limits.size()) {
-    throw std::invalid_argument("gate: " + std::to_string(parameters.stops.size()) + " stop actions for " +
-                                std::to_string(limits.size()) + " joints, must be one for each");
+  for (const StopProfile& profile : parameters.profiles) {
+    if (profile.size() != limits.size()) {
+      throw std::invalid_argument("gate: " + std::to_string(profile.size()) + " stop actions for " +
+                                  std::to_string(limits.size()) + " joints, must be one for each");
+    }
+    auto& actions = profiles_.emplace_back();
+    for (const StopAction& action : profile) actions.emplace_back(checked(action, actions.size()));
   }
+  if (profiles_.empty()) profiles_.emplace_back(limits.size(), StopAction{});
   for (std::size_t i = 0; i < limits.size(); ++i) {
     check(limits[i], i);
     limits_.emplace_back(limits[i]);
-    stops_.emplace_back(JointStop(parameters.stops.empty() ? StopAction{} : checked(parameters.stops[i], i)));
     memory_.emplace_back(JointMemory{.speed = JointSpeed(period)});
   }
 }
 
 void Gate::enter_run() noexcept {
   for (JointMemory& memory : memory_) memory = {.speed = JointSpeed(period_)};
-  for (JointStop& stop : stops_) stop.release();
   last_cycle_.reset();
-  newest_permit_ = ramp_began_ = 0;
-  ramping_ = walks_ = false;
+  newest_permit_ = ramp_began_ = profile_ = 0;
+  ramping_ = false;
   report_ = GateReport{};
 }
 
@@ -82,7 +84,7 @@ std::span<const JointCommand> Gate::step(const GateInput& input) noexcept {
   report_.cycle = input.cycle;
   report_.verdict = GateVerdict::kBrake;
   report_.reasons = 0;
-  report_.stance = {};
+  report_.contact_schedule = {};
   read_samples(input);
   if (!check_and_clamp(input)) stop(elapsed_at(input.cycle), false);
   remember();
@@ -117,8 +119,8 @@ bool Gate::check_and_clamp(const GateInput& input) noexcept {
     report_.reasons |= kGateControllerBrake;
     return true;
   }
-  report_.stance = input.command->legged.stance;
-  walks_ = input.command->legged.phase == LegPhase::kWalking;
+  report_.contact_schedule = input.command->contact_schedule;
+  profile_ = input.command->stop_profile;
   clamp(static_cast<double>(elapsed_at(input.cycle)) * period_);
   if (input.permit->action == PermitAction::kRamp) {
     report_.verdict = GateVerdict::kRamp;
@@ -212,7 +214,7 @@ bool Gate::command_is_valid(const CommandFrame& command) noexcept {
     ++report_.refused;
     return false;
   }
-  std::uint64_t wrong = 0;
+  std::uint64_t wrong = command.stop_profile < profiles_.size() ? 0 : std::uint64_t{kGateUnknownMode};
   for (std::size_t i = 0; i < limits_.size(); ++i) {
     if (!finite(command.joints[i])) wrong |= kGateNotFinite;
     if (static_cast<std::uint64_t>(command.joints[i].mode) >= kJointModes) wrong |= kGateUnknownMode;
@@ -257,22 +259,20 @@ void Gate::clamp(double elapsed) noexcept {
 
 void Gate::stop(std::uint64_t elapsed, bool by_command) noexcept {
   for (std::size_t i = 0; i < limits_.size(); ++i) {
-    if (by_command && !stops_[i].folds()) {
+    if (by_command && !memory_[i].stop.moves()) {
       commands_[i] = {};
       continue;
     }
     const auto position = has_position(i) ? std::optional(samples_[i].position) : std::nullopt;
-    commands_[i] = stops_[i].step(position, static_cast<double>(elapsed) * period_, walks_);
+    commands_[i] = memory_[i].stop.step(profiles_[profile_][i], position, static_cast<double>(elapsed) * period_);
   }
 }
 
 void Gate::remember() noexcept {
   const bool braked = report_.verdict == GateVerdict::kBrake;
-  if (!braked) {
-    for (JointStop& stop : stops_) stop.release();
-  }
   auto command = commands_.begin();
   for (JointMemory& memory : memory_) {
+    if (!braked) memory.stop = {};
     memory.driven = !braked && !is_brake(*command);
     memory.follows = memory.driven && command->mode == JointMode::kDriveVelocity;
     memory.velocity = command->velocity;

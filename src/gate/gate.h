@@ -13,8 +13,9 @@
 ///            revoked permit does not become valid again
 ///   action   kDrive; or kRamp while k ≤ ramp_until, and for at most GateParameters::longest_ramp cycles in a row
 ///   command  k − kCommandLife ≤ cycle ≤ k − 1; one of cycle k − 1 is on time, an older one is *held*
-///   numbers  every field of every joint is finite, every mode is a JointMode, joint_count is that of the robot. The
-///            position sample of a joint that is to move and has a speed limit or end stops is finite, too
+///   numbers  every field of every joint is finite, every mode is a JointMode, joint_count is that of the robot, which
+///            has the stop profile. The position sample of a joint that is to move and has a speed limit or end stops
+///            is finite, too
 ///   clamps   joint_clamp.h, in this order: |effort| ≤ limit; gains ≥ 0; |Δeffort| ≤ effort_rate·Δt; kDriveVelocity:
 ///            |Δvelocity| ≤ acceleration·Δt; speed limit; end stops
 ///
@@ -22,13 +23,13 @@
 /// effort command after it may therefore lie between the torque measured last and zero, ± effort_rate·Δt. The first
 /// kDriveVelocity command may lie between the measured speed and zero, ± acceleration·Δt.
 ///
-/// Tick 0 brakes. A brake orders the stop action of every joint (stop_action.h). A command that itself requests the
-/// brake on every joint is applied as JointCommand{}, whatever their stop actions are. But a fold that the gate has
-/// begun goes on: a robot on legs lies down after a short stop, too. GateReport counts: `refused` frames (checksum,
-/// future cycle, joint count, finiteness, mode), `missed` ticks in which the permit was good and the command missing.
+/// Tick 0 brakes. A brake orders the stop action of every joint (stop_action.h). They are those of the profile that the
+/// last command which moved a joint named, or of the first profile. A command that itself requests the brake on every
+/// joint is applied as JointCommand{}, whatever their stop actions are. But a move that the gate has begun goes on: it
+/// is completed after a short stop, too. GateReport counts: `refused` frames (checksum, future cycle, joint count,
+/// finiteness, mode, profile), `missed` ticks in which the permit was good and the command missing.
 
 #include <array>
-#include <cmath>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -58,9 +59,11 @@ struct GateInput {
 
 class Gate {
  public:
-  /// One entry per joint; `period` > 0, s. Throws std::invalid_argument for a limit outside the range that JointLimits
-  /// names, a damping or a period out of range, and more than kMaxJoints joints. Stop actions that are not one for each
-  /// joint are refused, too.
+  static constexpr std::size_t kMaxProfiles = 4;
+
+  /// One entry per joint; `period` > 0, s. Throws std::invalid_argument for more than kMaxJoints joints, and for a
+  /// limit, a number of a stop action or a period out of range. A profile that has not one stop action for each joint
+  /// is refused, too. Throws std::length_error for more than kMaxProfiles profiles.
   Gate(const std::vector<JointLimits>& limits, const GateParameters& parameters, double period);
 
   /// A new run: counters restart.
@@ -75,6 +78,7 @@ class Gate {
   /// The state of one joint between two ticks.
   struct JointMemory {
     JointSpeed speed;
+    JointStop stop = {};
     bool driven = false;   ///< a command moved it in the last tick
     double effort = 0;     ///< the effort that it got then
     bool follows = false;  ///< it was driven with kDriveVelocity
@@ -95,7 +99,7 @@ class Gate {
   bool command_is_valid(const CommandFrame& command) noexcept;
   bool samples_suffice(const CommandFrame& command) noexcept;
   bool has_position(std::size_t joint) const noexcept {
-    return joint < samples_.size() && has(samples_[joint], kValidPosition) && std::isfinite(samples_[joint].position);
+    return joint < samples_.size() && robot_control::has_position(samples_[joint]);
   }
   void clamp(double elapsed) noexcept;
   void stop(std::uint64_t elapsed, bool by_command) noexcept;
@@ -104,13 +108,13 @@ class Gate {
   FixedVector<JointLimits, kMaxJoints> limits_;
   std::uint64_t longest_ramp_;
   double period_;
-  FixedVector<JointStop, kMaxJoints> stops_;
+  FixedVector<FixedVector<StopAction, kMaxJoints>, kMaxProfiles> profiles_;
   FixedVector<JointMemory, kMaxJoints> memory_;
   std::span<const JointSample> samples_;     ///< of the last tick; empty: missing
   std::optional<std::uint64_t> last_cycle_;  ///< of the last tick
   std::uint64_t newest_permit_ = 0;          ///< cycle of the newest permit seen in this run
   bool ramping_ = false;                     ///< the last permit that had not expired was a ramp
-  bool walks_ = false;                       ///< the last command that was executed walked
+  std::uint64_t profile_ = 0;                ///< of the last command that moved a joint
   std::uint64_t ramp_began_ = 0;             ///< the tick of its first permit
   std::array<JointCommand, kMaxJoints> commands_{};
   GateReport report_;

@@ -10,8 +10,8 @@
 namespace robot_control {
 
 struct GateParameters {
-  std::vector<StopAction> stops = {};  ///< one per joint; empty: every joint brakes
-  std::uint64_t longest_ramp = 2020;   ///< cycles in a row under ramp permits: ramp_time, and loss_cycles beyond it
+  std::vector<StopProfile> profiles = {};  ///< by CommandFrame::stop_profile; empty: one in which every joint brakes
+  std::uint64_t longest_ramp = 2020;       ///< cycles in a row under ramp permits: ramp_time, and loss_cycles beyond it
 };
 
 /// Limits of one joint. Beside each stands what it is where nothing is known.

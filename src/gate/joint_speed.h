@@ -6,7 +6,7 @@
 /// a: the last cycle in which the position changed; b: the last such cycle ≥ base before a, else the oldest one known.
 /// From change to change whole counts pass. If the counts are coarser than the samples, a steady speed is off by at
 /// most one cycle of a − b ≥ base. If they are finer, it is off by at most one count of q_a − q_b. At 1 kHz that is 8 %
-/// with 64 counts a turn and 0.13 rad/s with 4096; one cycle's difference jumps by 98 and 1.5 rad/s. A wheel that
+/// with 64 counts a turn and 0.13 rad/s with 4096; one cycle's difference jumps by 98 and 1.5 rad/s. A joint that
 /// dithers about an edge is no faster than a count per base; one that stands fades with k − a. The speed is that of
 /// base/2 ago.
 ///
@@ -18,7 +18,7 @@
 
 namespace robot_control {
 
-/// s. Half of it is the lag; a wheel of diffbot off the ground at full torque (700 rad/s²) gains 4 rad/s in it.
+/// s. Half of it is the lag, in which a joint of 700 rad/s² gains 4 rad/s.
 inline constexpr double kSpeedBase = 0.012;
 
 class JointSpeed {

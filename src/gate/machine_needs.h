@@ -16,7 +16,7 @@ enum class MachineInput : std::uint8_t {
 };
 
 struct MachineNeeds {
-  std::vector<JointMode> modes{};  ///< of the commands of its controller; stop actions have their own
+  std::vector<JointMode> modes{};  ///< of the commands of its controller; its stop profiles have their own
   std::vector<MachineInput> inputs{};
 };
 

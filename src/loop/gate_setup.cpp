@@ -23,27 +23,25 @@ std::vector<JointLimits> joint_limits(const MachineModel& robot) {
   return all;
 }
 
-bool carries_out(const Driver& driver, StopKind kind) noexcept {
-  const StopAction action{.kind = kind, .time = 1};
-  return driver.accepts(JointStop(action).step(std::nullopt, 0).mode) &&
-         driver.accepts(JointStop(action).step(0.0, 0).mode);
-}
-
-void require_stop_actions(const Driver& driver, const GateParameters& gate, const MachineModel& robot) {
-  for (std::size_t i = 0; i < gate.stops.size(); ++i) {
-    if (carries_out(driver, gate.stops[i].kind)) continue;
-    std::string wanted = "fold", possible;
-    for (const Word& word : words_of(StopKind{})) {
-      const auto kind = static_cast<StopKind>(word.value);
-      if (kind == gate.stops[i].kind) wanted = word.text;
-      if (carries_out(driver, kind)) possible.append(possible.empty() ? "" : " or ").append(word.text);
-    }
-    throw DriverError("joint " + robot.joints.at(i).name + " is to be stopped by the action \"" + wanted +
-                      "\", which this driver does not implement. Set robot.fail_action to " + possible + ".");
-  }
-}
-
 namespace {
+
+bool carries_out(const Driver& driver, StopKind kind) noexcept {
+  const StopAction action{.kind = kind, .time = 1, .brake_after = 1};
+  return driver.accepts(JointStop().step(action, std::nullopt, 0).mode) &&
+         driver.accepts(JointStop().step(action, 0.0, 0).mode);
+}
+
+void require_stop_action(const Driver& driver, StopKind stop, const JointModel& joint) {
+  if (carries_out(driver, stop)) return;
+  std::string wanted = "move", possible;
+  for (const Word& word : words_of(StopKind{})) {
+    const auto kind = static_cast<StopKind>(word.value);
+    if (kind == stop) wanted = word.text;
+    if (carries_out(driver, kind)) possible.append(possible.empty() ? "" : " or ").append(word.text);
+  }
+  throw DriverError("joint " + joint.name + " is to be stopped by the action \"" + wanted +
+                    "\", which this driver does not implement. Set robot.fail_action to " + possible + ".");
+}
 
 struct NeedWords {
   const char* need;
@@ -67,6 +65,12 @@ constexpr NeedWords kInputWords[] = {
 };
 
 }  // namespace
+
+void require_stop_actions(const Driver& driver, const GateParameters& gate, const MachineModel& robot) {
+  for (const StopProfile& profile : gate.profiles) {
+    for (std::size_t i = 0; i < profile.size(); ++i) require_stop_action(driver, profile[i].kind, robot.joints.at(i));
+  }
+}
 
 void require_needs(const Driver& driver, const MachineNeeds& needs) {
   std::string lacking;

@@ -12,18 +12,14 @@
 
 namespace robot_control {
 
-inline constexpr double kSoftPart = 0.05;  ///< of the range
-inline constexpr double kSoftAngle =
-    0.1;  ///< rad; 1 rad/s that tapers with the way left is gone in a third of a second
+inline constexpr double kSoftPart = 0.05;    ///< of the range
+inline constexpr double kSoftAngle = 0.1;    ///< rad: 1 rad/s tapers to nothing within a third of a second
 inline constexpr double kSoftLength = 0.02;  ///< m
 
 /// One entry per joint of the robot.
 std::vector<JointLimits> joint_limits(const MachineModel& robot);
 
-/// Returns true if the driver accepts the modes of this stop action.
-bool carries_out(const Driver& driver, StopKind kind) noexcept;
-
-/// Throws DriverError with the first joint whose stop action the driver cannot carry out.
+/// Throws DriverError with the first joint that has a stop action whose modes the driver does not accept.
 void require_stop_actions(const Driver& driver, const GateParameters& gate, const MachineModel& robot);
 
 /// Throws DriverError with everything that the robot kind needs and the driver lacks, and the remedies.

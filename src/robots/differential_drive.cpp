@@ -57,12 +57,11 @@ std::vector<Brake> DifferentialDrive::brakes() const {
 }
 
 GateParameters DifferentialDrive::gate() const {
-  GateParameters gate{.stops = std::vector<StopAction>(machine_.joints.size()),
-                      .longest_ramp = longest_ramp(parameters_.safety, parameters_.loop.period())};
+  StopProfile stops(machine_.joints.size());
   for (std::size_t i = 0; i < machine_.wheels.size(); ++i) {
-    gate.stops[machine_.wheels[i].joint] = wheel_stop(machine_, i, parameters_.loop.fail_action);
+    stops[machine_.wheels[i].joint] = wheel_stop(machine_, i, parameters_.loop.fail_action);
   }
-  return gate;
+  return {.profiles = {stops}, .longest_ramp = longest_ramp(parameters_.safety, parameters_.loop.period())};
 }
 
 std::unique_ptr<Retuner> DifferentialDrive::make_retuner(LatestValue<LiveTuning>& inbox) const {

@@ -3,7 +3,7 @@
 ///
 ///   recognised by   drive wheels on both sides (machine/wheeled/drive_train.h)
 ///   laws            estimation/wheeled/estimator.h, control/wheeled/drive_controller.h, safety/monitor.h
-///   stop actions    of its drive wheels robot.fail_action; every other joint brakes
+///   stop profiles   one: its drive wheels stop by robot.fail_action, and every other joint brakes
 
 #include "configuration/parameters.h"
 #include "machine/wheeled/drive_train.h"

@@ -90,20 +90,24 @@ MachineNeeds Quadruped::needs() const {
 
 GateParameters Quadruped::gate() const {
   const LegTuning tuning = leg_tuning(machine_);
-  GateParameters gate{.stops = {}, .longest_ramp = longest_ramp(limits(), parameters_.loop.period())};
+  const double scale = std::sqrt(machine_.leg_length() / kReferenceLeg);
+  StopProfile standing, walking;
   for (const Leg& leg : machine_.legs) {
-    const LegAngles standing = upright(leg, tuning.height);
+    const LegAngles start = upright(leg, tuning.height);
     for (Eigen::Index i = 0; i < LegAngles::SizeAtCompileTime; ++i) {
-      gate.stops.push_back({.kind = StopKind::kFold,
-                            .damping = std::sqrt(kFoldStiffness) * tuning.damping,
-                            .stiffness = kFoldStiffness * tuning.stiffness,
-                            .posture = leg.lying[i],
-                            .upright = standing[i],
-                            .time = kFoldTime * std::sqrt(machine_.leg_length() / kReferenceLeg),
-                            .walking_time = kWalkingFoldTime * std::sqrt(machine_.leg_length() / kReferenceLeg)});
+      standing.push_back({.kind = StopKind::kMove,
+                          .damping = std::sqrt(kFoldStiffness) * tuning.damping,
+                          .stiffness = kFoldStiffness * tuning.stiffness,
+                          .target = leg.lying[i],
+                          .start = start[i],
+                          .time = kFoldTime * scale,
+                          .brake_after = kBrakeTime * scale});
+      walking.push_back(standing.back());
+      walking.back().time = kWalkingFoldTime * scale;
     }
   }
-  return gate;
+  return {.profiles = {standing, walking},  // in the order of LegStop
+          .longest_ramp = longest_ramp(limits(), parameters_.loop.period())};
 }
 
 }  // namespace robot_control

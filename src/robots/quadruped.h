@@ -3,12 +3,13 @@
 ///
 ///   recognised by   four legs (machine/legs/leg_model.h)
 ///   laws            estimation/legged, control/legged, safety/conditions/legged
-///   stop action     fold: every joint moves to the lying posture within kFoldTime, in a walk kWalkingFoldTime,
-///                   kFoldStiffness times as stiff as while it stands, since no feed-forward carries the body. Then it
-///                   damps, and at the end the drives brake
+///   stop profiles   by LegStop. The legs fold: every joint moves to the lying posture within kFoldTime, in a walk
+///                   kWalkingFoldTime, since a foot stays behind while the body moves on. It is kFoldStiffness times as
+///                   stiff as while it stands, since no feed-forward carries the body. Then it damps, and the drives
+///                   brake kBrakeTime after the first order: the robot lies. A foot in the air waits for the others
 ///   ramp            the robot lies down
 ///
-/// The time of the fold is that of legs of 0.426 m. Time and gains follow leg length and mass as in
+/// The times of the fold are those of legs of 0.426 m. Times and gains follow leg length and mass as in
 /// control/legged. Without its IMU a robot on legs is stopped (imu_lost, imu_stuck and imu_jump always brake).
 /// Its feet need not carry it, because it may lie (lift is off).
 
@@ -25,6 +26,7 @@ class Quadruped : public Robot {
  public:
   static constexpr double kFoldTime = 1.25;        ///< s
   static constexpr double kWalkingFoldTime = 0.2;  ///< s
+  static constexpr double kBrakeTime = 1.5;        ///< s
   static constexpr double kFoldStiffness = 3;      ///< as damping its root
 
   Quadruped(const Parameters& parameters, const LegModel& machine);

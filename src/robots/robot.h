@@ -82,7 +82,7 @@ class Robot {
   /// Returns none if such drives do not stop a robot of this kind.
   virtual std::vector<Brake> brakes() const { return {}; }
 
-  /// Returns the stop action of each joint, and how long a ramp may last.
+  /// Returns the stop profiles of this kind, and how long a ramp may last.
   virtual GateParameters gate() const = 0;
 
   /// `inbox` is that of the controller's cycle. Returns null if nothing of this kind's controller changes while it

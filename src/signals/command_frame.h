@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 
+#include "signals/contact.h"
 #include "signals/frame_head.h"
 #include "signals/geometry.h"
 #include "signals/joint.h"
@@ -23,16 +24,15 @@ enum CommandReason : std::uint64_t {
   kReasonSpeedLimited = 1u << 3,  ///< max_linear_speed or max_angular_speed.
   kReasonAccelerationLimited = 1u << 4,
   kReasonJerkLimited = 1u << 5,
-  kReasonNoPermit = 1u << 6,     ///< No live permit: brake.
-  kReasonPermitBrake = 1u << 7,  ///< The permit orders the brake.
-  kReasonPermitRamp = 1u << 8,   ///< The permit orders a ramp to standstill.
-  kReasonNoState = 1u << 9,      ///< The state of this cycle was missing, held or invalid.
-  kReasonBadSensors = 1u << 10,  ///< Joint samples missing or not finite: brake.
-  kReasonHolding = 1u << 11,     ///< The robot stands with a zero command: the brake law holds the position.
-  kReasonPermitSlow = 1u << 12,  ///< The permit's speed limit applies.
-  kReasonJerkYielded =
-      1u << 13,             ///< The jerk limit was exceeded, so that the speed stops at zero instead of overshooting.
-  kReasonStale = 1u << 14,  ///< The last message was refused for its stamp; the command before it stays in force.
+  kReasonNoPermit = 1u << 6,      ///< No live permit: brake.
+  kReasonPermitBrake = 1u << 7,   ///< The permit orders the brake.
+  kReasonPermitRamp = 1u << 8,    ///< The permit orders a ramp to standstill.
+  kReasonNoState = 1u << 9,       ///< The state of this cycle was missing, held or invalid.
+  kReasonBadSensors = 1u << 10,   ///< Joint samples missing or not finite: brake.
+  kReasonHolding = 1u << 11,      ///< The robot stands with a zero command: the brake law holds the position.
+  kReasonPermitSlow = 1u << 12,   ///< The permit's speed limit applies.
+  kReasonJerkYielded = 1u << 13,  ///< The jerk limit was exceeded, so that the speed does not overshoot zero.
+  kReasonStale = 1u << 14,        ///< The last message was refused for its stamp; the command before it stays in force.
   kReasonManySenders = 1u << 15,  ///< More than one node sends, and one_sender forbids it.
   kReasonRevoked = 1u << 16,      ///< A sender requested motion before a withdrawal and has not sent zero since.
   kReasonPartIgnored = 1u << 17,  ///< The request has a part that this machine cannot execute (CommandFrame::ignored).
@@ -45,6 +45,8 @@ struct CommandFrame {
   FrameHead head;
   std::uint64_t joint_count = 0;
   std::array<JointCommand, kMaxJoints> joints{};  ///< in the order of MachineModel::joints
+  std::uint64_t stop_profile = 0;                 ///< index of the profile by which the gate stops after this command
+  ContactSchedule contact_schedule{};             ///< in the order of MachineModel::contacts
   Request requested;                              ///< as last received; zero once timed out or refused
   Twist twist_limited;                            ///< after limits: the target of the base
   std::uint64_t reasons = 0;                      ///< CommandReason bits, and those of the kind
@@ -61,12 +63,10 @@ struct CommandFrame {
   std::uint64_t timeouts = 0;          ///< in this run, one per event
 
   // The monitor reads the following members before it permits motion (safety/latch/motion_release.h).
-  std::uint64_t first_cycle = 0;  ///< cycle of this run in which this process computed its first command
-  std::uint64_t zero_requests =
-      0;  ///< zero velocities accepted since first_cycle while no other sender requested motion
+  std::uint64_t first_cycle = 0;     ///< cycle of this run in which this process computed its first command
+  std::uint64_t zero_requests = 0;   ///< zero velocities accepted since first_cycle without another sender's motion
   std::uint64_t zero_requested = 0;  ///< 1: since the last of these zeros no other message was received
-  std::uint64_t silent_cycles =
-      0;  ///< cycles since the last message of any sender, accepted or refused, or since first_cycle
+  std::uint64_t silent_cycles = 0;   ///< since the last message of any sender, accepted or refused, or first_cycle
   std::uint64_t silence_needed = 0;  ///< cycles without a message after which no sender counts as requesting motion
 
   WheeledCommand wheeled;  ///< only wheeled machines fill it

@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-#include "signals/legged/legged_command.h"
+#include "signals/contact.h"
 
 namespace robot_control {
 
@@ -30,7 +30,7 @@ enum GateReason : std::uint64_t {
   kGateEffortClamped = 1u << 10,    ///< |effort| above the joint's limit.
   kGateWrongJointCount = 1u << 11,  ///< The command is for another number of joints.
   kGateControllerBrake = 1u << 12,  ///< The command itself requests the brake of every joint.
-  kGateUnknownMode = 1u << 13,      ///< A mode outside JointMode, or a permit action outside PermitAction.
+  kGateUnknownMode = 1u << 13,      ///< A mode, a stop profile or a permit action that does not exist.
   kGateRampTooLong = 1u << 14,      ///< Ramp permits have lasted longer than any ramp may.
   kGateRateClamped = 1u << 15,      ///< The effort, or the velocity for a drive's own loop, changed too fast.
   kGateSpeedClamped = 1u << 16,     ///< Effort towards more speed, or a target speed, near or above the speed limit.
@@ -48,7 +48,7 @@ struct GateReport {
   std::uint64_t missed = 0;         ///< Ticks of this run that braked because no command was available, except tick 0.
   std::uint64_t late_permits = 0;   ///< Ticks of this run whose permit was older than k-1, except tick 0.
   std::uint64_t refused = 0;        ///< Frames refused in this run for checksum, future, count, finiteness or mode.
-  FootStances stance{};  ///< LeggedCommand::stance of the command that this tick executed; 0 where it braked.
+  ContactSchedule contact_schedule{};  ///< That of the command which this tick executed; 0 where it braked.
 };
 
 }  // namespace robot_control

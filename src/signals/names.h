@@ -72,7 +72,7 @@ inline constexpr auto kGateReasonNames = std::to_array<BitName>({
     {kGateWrongJointCount, "wrong_joint_count", "the command is for another number of joints",
      "start every node with the same robot"},
     {kGateControllerBrake, "controller_brake", "the controller asks the brake of every joint", ""},
-    {kGateUnknownMode, "unknown_mode", "a joint mode or a permit action is unknown",
+    {kGateUnknownMode, "unknown_mode", "a joint mode, a stop profile or a permit action is unknown",
      "look for two builds on one bus"},
     {kGateRampTooLong, "ramp_too_long", "ramp permits have lasted longer than any ramp may",
      "read the cause in safety_status"},

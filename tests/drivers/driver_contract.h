@@ -195,7 +195,7 @@ TEST_P(DriverContract, AcceptsTheBrake) {
 TEST_P(DriverContract, AStopActionWhoseModeItAcceptsActsAtOnce) {
   for (const StopKind kind : {StopKind::kBrake, StopKind::kCoast, StopKind::kDamp}) {
     const JointCommand order =
-        JointStop({.kind = kind, .damping = GetParam().damping}).step(std::nullopt, GetParam().period);
+        JointStop().step({.kind = kind, .damping = GetParam().damping}, std::nullopt, GetParam().period);
     if (!driver_->accepts(order.mode)) continue;
     hold(all(velocity(3.0)), 1.0);
     hold(all(order), 2 * GetParam().period);

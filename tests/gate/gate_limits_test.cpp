@@ -369,7 +369,7 @@ class GateWithStopActions : public GateFixture {
  protected:
   GateWithStopActions()
       : GateFixture({.effort = kLimit},
-                    {.stops = {{.kind = StopKind::kCoast}, {.kind = StopKind::kDamp, .damping = 3}}}) {}
+                    {.profiles = {{{.kind = StopKind::kCoast}, {.kind = StopKind::kDamp, .damping = 3}}}}) {}
 
   void expect_stop() {
     step();
@@ -413,50 +413,51 @@ TEST_F(GateWithStopActions, DrivesAsEver) {
   EXPECT_EQ(joints_[0].effort, 1.5);
 }
 
-class GateWithAFold : public GateFixture {
+class GateWithAMove : public GateFixture {
  protected:
-  static constexpr StopAction kFold{
-      .kind = StopKind::kFold, .damping = 2, .stiffness = 60, .posture = 1.5, .time = 1.25};
-  GateWithAFold() : GateFixture({.effort = kLimit}, {.stops = {kFold, kFold}}) {}
+  static constexpr StopAction kMove{
+      .kind = StopKind::kMove, .damping = 2, .stiffness = 60, .target = 1.5, .time = 1.25, .brake_after = 1.5};
+  static constexpr StopAction kDamp{.kind = StopKind::kDamp, .damping = 3};
+  GateWithAMove() : GateFixture({.effort = kLimit}, {.profiles = {{kMove, kMove}, {kDamp, kDamp}}}) {}
 
   void brake() {
     permit_.action = PermitAction::kBrake;
     next();
   }
-  /// The order is that of a fold that begins now, `cycles` after the last tick.
+  /// The order is that of a move that begins now, `cycles` after the last tick.
   void expect_first_order(int cycles) {
-    const JointCommand first = JointStop(kFold).step(0.5, cycles * kPeriod);
+    const JointCommand first = JointStop().step(kMove, 0.5, cycles * kPeriod);
     EXPECT_EQ(std::memcmp(&joints_[0], &first, sizeof first), 0);
   }
 };
 
-TEST_F(GateWithAFold, FoldsByTheTimeBetweenTheTicks) {
+TEST_F(GateWithAMove, MovesByTheTimeBetweenTheTicks) {
   sensors_.joints[0].position = 0.5;
   next();
   tick_at(input_.cycle + 2);
   brake();
   expect_first_order(3);
-  JointStop fold(kFold);
-  fold.step(0.5, 3 * kPeriod);
+  JointStop move;
+  move.step(kMove, 0.5, 3 * kPeriod);
   brake();
-  const JointCommand second = fold.step(0.5, kPeriod);
+  const JointCommand second = move.step(kMove, 0.5, kPeriod);
   EXPECT_EQ(std::memcmp(&joints_[0], &second, sizeof second), 0);
 }
 
-TEST_F(GateWithAFold, GoesOnToFoldWhereTheCommandBrakesEveryJointAfterAStop) {
+TEST_F(GateWithAMove, GoesOnToMoveWhereTheCommandBrakesEveryJointAfterAStop) {
   sensors_.joints[0].position = 0.5;
   brake();
-  JointStop fold(kFold);
-  fold.step(0.5, kPeriod);
+  JointStop move;
+  move.step(kMove, 0.5, kPeriod);
   permit_.action = PermitAction::kDrive;
   command_.joints[0].mode = command_.joints[1].mode = JointMode::kBrake;
   next();
   EXPECT_EQ(gate_.report().reasons, kGateControllerBrake);
-  const JointCommand second = fold.step(0.5, kPeriod);
+  const JointCommand second = move.step(kMove, 0.5, kPeriod);
   EXPECT_EQ(std::memcmp(&joints_[0], &second, sizeof second), 0);
 }
 
-TEST_F(GateWithAFold, BrakesWhereTheCommandBrakesEveryJointThatItMovedBefore) {
+TEST_F(GateWithAMove, BrakesWhereTheCommandBrakesEveryJointThatItMovedBefore) {
   next();
   command_.joints[0].mode = command_.joints[1].mode = JointMode::kBrake;
   next();
@@ -464,7 +465,7 @@ TEST_F(GateWithAFold, BrakesWhereTheCommandBrakesEveryJointThatItMovedBefore) {
   EXPECT_EQ(joints_[0].mode, JointMode::kBrake);
 }
 
-TEST_F(GateWithAFold, FoldsFromTheBeginningAfterACommandAndInANewRun) {
+TEST_F(GateWithAMove, MovesFromTheBeginningAfterACommandAndInANewRun) {
   for (int i = 0; i < 100; ++i) brake();
   sensors_.joints[0].position = 0.5;
   permit_.action = PermitAction::kDrive;
@@ -475,6 +476,39 @@ TEST_F(GateWithAFold, FoldsFromTheBeginningAfterACommandAndInANewRun) {
   gate_.enter_run();
   brake();
   expect_first_order(1);
+}
+
+TEST_F(GateWithAMove, StopsByTheProfileThatTheLastExecutedCommandNamed) {
+  sensors_.joints[0].position = 0.5;
+  command_.stop_profile = 1;
+  permit_.action = PermitAction::kBrake;
+  next();
+  EXPECT_EQ(joints_[0].mode, JointMode::kImpedance) << "no command was executed as yet";
+  permit_.action = PermitAction::kDrive;
+  next();
+  command_.stop_profile = 0;
+  brake();
+  EXPECT_EQ(joints_[0].mode, JointMode::kVelocity) << "the last command was not executed";
+  permit_.action = PermitAction::kDrive;
+  next();
+  brake();
+  expect_first_order(1);
+  command_.stop_profile = 1;
+  permit_.action = PermitAction::kDrive;
+  next();
+  gate_.enter_run();
+  brake();
+  expect_first_order(1);
+}
+
+TEST_F(GateWithAMove, BrakesOnAProfileThatTheRobotDoesNotHave) {
+  for (const std::uint64_t profile : {std::uint64_t{2}, ~std::uint64_t{0}}) {
+    command_.stop_profile = profile;
+    next();
+    EXPECT_EQ(verdict(), GateVerdict::kBrake);
+    EXPECT_EQ(reasons(), kGateUnknownMode);
+  }
+  EXPECT_EQ(gate_.report().refused, 2u);
 }
 
 // Construction.
@@ -508,18 +542,28 @@ TEST(GateConstruction, TakesSmallLimits) {
 
 TEST(GateConstruction, RefusesStopActionsThatAreNone) {
   const std::vector<JointLimits> limits(2);
-  EXPECT_NO_THROW(Gate(limits, {.stops = {{}, {.kind = StopKind::kDamp, .damping = 1}}}, kPeriod));
-  EXPECT_THROW(Gate(limits, {.stops = {{}}}, kPeriod), std::invalid_argument);
+  EXPECT_NO_THROW(Gate(limits, {.profiles = {{{}, {.kind = StopKind::kDamp, .damping = 1}}}}, kPeriod));
+  EXPECT_THROW(Gate(limits, {.profiles = {StopProfile(1)}}, kPeriod), std::invalid_argument);
   for (const double damping : {-1.0, kNaN, kInfinity}) {
-    EXPECT_THROW(Gate(limits, {.stops = {{}, {.damping = damping}}}, kPeriod), std::invalid_argument) << damping;
-    EXPECT_THROW(Gate(limits, {.stops = {{}, {.stiffness = damping}}}, kPeriod), std::invalid_argument) << damping;
-    EXPECT_THROW(Gate(limits, {.stops = {{}, {.time = damping}}}, kPeriod), std::invalid_argument) << damping;
+    EXPECT_THROW(Gate(limits, {.profiles = {{{}, {.damping = damping}}}}, kPeriod), std::invalid_argument) << damping;
+    EXPECT_THROW(Gate(limits, {.profiles = {{{}, {.stiffness = damping}}}}, kPeriod), std::invalid_argument) << damping;
+    EXPECT_THROW(Gate(limits, {.profiles = {{{}, {.time = damping}}}}, kPeriod), std::invalid_argument) << damping;
+    EXPECT_THROW(Gate(limits, {.profiles = {{{}, {.brake_after = damping}}}}, kPeriod), std::invalid_argument);
   }
   for (const double position : {kNaN, kInfinity, -kInfinity}) {
-    EXPECT_THROW(Gate(limits, {.stops = {{}, {.posture = position}}}, kPeriod), std::invalid_argument) << position;
-    EXPECT_THROW(Gate(limits, {.stops = {{}, {.upright = position}}}, kPeriod), std::invalid_argument) << position;
+    EXPECT_THROW(Gate(limits, {.profiles = {{{}, {.target = position}}}}, kPeriod), std::invalid_argument) << position;
+    EXPECT_THROW(Gate(limits, {.profiles = {{{}, {.start = position}}}}, kPeriod), std::invalid_argument) << position;
   }
-  EXPECT_NO_THROW(Gate(limits, {.stops = {{}, {.posture = -1, .upright = -2}}}, kPeriod));
+  EXPECT_NO_THROW(Gate(limits, {.profiles = {{{}, {.target = -1, .start = -2}}}}, kPeriod));
+}
+
+TEST(GateConstruction, RefusesAWrongProfileBehindARightOneAndTooManyProfiles) {
+  const std::vector<JointLimits> limits(2);
+  const std::vector<StopProfile> most(Gate::kMaxProfiles, StopProfile(2));
+  EXPECT_NO_THROW(Gate(limits, {.profiles = most}, kPeriod));
+  EXPECT_THROW(Gate(limits, {.profiles = {StopProfile(2), StopProfile(3)}}, kPeriod), std::invalid_argument);
+  EXPECT_THROW(Gate(limits, {.profiles = std::vector(Gate::kMaxProfiles + 1, StopProfile(2))}, kPeriod),
+               std::length_error);
 }
 
 TEST(GateConstruction, RefusesMoreJointsThanAFrameHoldsAndNoPeriod) {

@@ -58,6 +58,7 @@ TEST_F(GateGarbage, NeverMovesAJointBeyondItsLimitsOrWithoutAPermit) {
     command_.head.run = word(random, kRun);
     command_.head.cycle = word(random, 99);
     command_.joint_count = word(random, 2);
+    command_.stop_profile = word(random, 0);
     sensors_.joint_count = word(random, 2);
     for (JointSample& sample : sensors_.joints) {
       sample = {.position = number(random), .velocity = number(random), .effort = number(random)};

@@ -30,13 +30,13 @@ TEST_F(GateTest, ReportsTheCommandThatItFindsWhateverThePermitSays) {
   EXPECT_EQ(gate_.report().command_cycle, 0u);
 }
 
-TEST_F(GateTest, ReportsWhatTheExecutedCommandAsksOfTheFeet) {
-  command_.legged.stance = {0.25, 0, 0, 0.25};
+TEST_F(GateTest, ReportsTheContactScheduleOfTheExecutedCommand) {
+  command_.contact_schedule = {0.25, 0, 0, 0.25};
   step();
-  EXPECT_EQ(gate_.report().stance, command_.legged.stance);
+  EXPECT_EQ(gate_.report().contact_schedule, command_.contact_schedule);
   permit_.action = PermitAction::kBrake;
   step();
-  EXPECT_EQ(gate_.report().stance, FootStances{});
+  EXPECT_EQ(gate_.report().contact_schedule, ContactSchedule{});
 }
 
 // 1. Is the permit alive?

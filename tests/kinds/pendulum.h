@@ -2,7 +2,8 @@
 /// A second robot kind: a pendulum on a base. It shows that plant, bus, gate, monitor, log and replay know no wheels.
 ///
 /// One driven joint turns a pole about the y axis; at angle 0 the pole hangs. `angular.z` of a request is the speed of
-/// the joint in rad/s, at most kMaxSpeed. The stop action moves the pole down within kDownTime.
+/// the joint in rad/s, at most kMaxSpeed. The stop action moves the pole down within kDownTime
+/// and brakes it after kBrakeTime.
 
 #include <algorithm>
 #include <cmath>
@@ -16,12 +17,13 @@
 
 namespace robot_control {
 
-inline constexpr double kMaxSpeed = 2.0;  // rad/s
-inline constexpr double kDownTime = 0.4;  // s
-inline constexpr double kGain = 10;       // N·m·s/rad, of the velocity loop
-inline constexpr double kDamping = 1.0;   // N·m·s/rad, of the stop action
-inline constexpr double kStiffness = 40;  // N·m/rad, of the stop action
-inline constexpr double kWindow = 0.01;   // rad, within which a joint stands
+inline constexpr double kMaxSpeed = 2.0;    // rad/s
+inline constexpr double kDownTime = 0.4;    // s
+inline constexpr double kBrakeTime = 0.48;  // s
+inline constexpr double kGain = 10;         // N·m·s/rad, of the velocity loop
+inline constexpr double kDamping = 1.0;     // N·m·s/rad, of the stop action
+inline constexpr double kStiffness = 40;    // N·m/rad, of the stop action
+inline constexpr double kWindow = 0.01;     // rad, within which a joint stands
 
 inline constexpr const char* kPendulumUrdf = R"(<robot name="pendulum">
   <link name="base">
@@ -132,9 +134,11 @@ class Pendulum final : public Robot {
     return {.modes = {JointMode::kBrake, JointMode::kVelocity}, .inputs = {MachineInput::kJointMotion}};
   }
   GateParameters gate() const override {
-    return {
-        .stops = {
-            {.kind = StopKind::kFold, .damping = kDamping, .stiffness = kStiffness, .posture = 0, .time = kDownTime}}};
+    return {.profiles = {{{.kind = StopKind::kMove,
+                           .damping = kDamping,
+                           .stiffness = kStiffness,
+                           .time = kDownTime,
+                           .brake_after = kBrakeTime}}}};
   }
 
  private:

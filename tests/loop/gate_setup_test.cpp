@@ -81,7 +81,9 @@ TEST(GateSetup, WheelsStopByTheUsersActionAndAnArmBrakes) {
   Parameters parameters;
   for (const StopKind kind : {StopKind::kBrake, StopKind::kCoast, StopKind::kDamp}) {
     parameters.loop.fail_action = kind;
-    const std::vector<StopAction> stops = DifferentialDrive(parameters, with_an_arm()).gate().stops;
+    const std::vector<StopProfile> profiles = DifferentialDrive(parameters, with_an_arm()).gate().profiles;
+    ASSERT_EQ(profiles.size(), 1u);
+    const StopProfile& stops = profiles[0];
     ASSERT_EQ(stops.size(), 3u);
     EXPECT_EQ(stops[0].kind, kind);
     EXPECT_EQ(stops[1].kind, kind);
@@ -141,7 +143,7 @@ TEST(DriverCycleAndGate, AStopActionThatTheDriverDoesNotImplementIsRefusedAtStar
   const auto refusal_of = [&](StopKind kind) {
     try {
       DriverCycle(machine, two_wheels(), {sensors.writer, truth.writer, &command.reader, &permit.reader}, kPeriodNs,
-                  nullptr, {.stops = {{}, {.kind = kind}}});
+                  nullptr, {.profiles = {StopProfile(2), {{}, {.kind = kind}}}});
     } catch (const DriverError& error) {
       return std::string(error.what());
     }

@@ -273,8 +273,6 @@ WINGS = ("control", "estimation", "safety/conditions")
 """Folders of three: what every kind may use, and one for each kind."""
 BESIDE_KINDS = ("gate", "machine", "signals")
 """In these, what every kind may use lies beside the folders of the kinds."""
-NAMES_A_KIND = ALL_KINDS | {"src/signals/gate_report.h"}
-"""The last one: FootStances of the command that the tick executed."""
 
 
 def test_laws_lie_in_the_wing_of_a_kind_or_in_common():
@@ -298,8 +296,27 @@ def test_what_every_kind_may_use_knows_no_kind():
         own = str(path.relative_to(ROOT))
         common = own.startswith(tuple(f"src/{name}/common/" for name in WINGS))
         beside = own.startswith(tuple(f"src/{name}/" for name in BESIDE_KINDS)) and not kinds_in(own)
-        if (common or beside) and own not in NAMES_A_KIND:
+        if (common or beside) and own not in ALL_KINDS:
             yield from filter(kinds_in, includes(path))
+
+    assert violations(rule) == []
+
+
+WORDS_OF_KINDS = re.compile(
+    r"(?<![A-Za-z])(?:leg(?!a)|stance|walk|fold|upright|foot|feet|gait|wheel)"
+    r"|Leg(?!a)|Stance|Walk|Fold|Upright|Foot|Feet|Gait|Wheel"
+)
+"""They begin a word, or stand within a name."""
+
+
+def test_the_gate_knows_no_kind():
+    """It obeys the stop profile of the command. Only the folder of a kind has a word of wheels or legs."""
+    assert all(WORDS_OF_KINDS.search(name) for name in ("legged.phase", "walks_", "kFold", "ContactStances"))
+    assert not WORDS_OF_KINDS.search("the distance, an instance")
+
+    def rule(path):
+        if folder(path) == "gate":
+            yield from (line.strip() for line in path.read_text().splitlines() if WORDS_OF_KINDS.search(line))
 
     assert violations(rule) == []
 

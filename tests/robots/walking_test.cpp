@@ -146,7 +146,7 @@ TEST(Walking, AnEmergencyStopFoldsFromAnyPhaseOfTheGait) {
 TEST(Walking, AZeroEndsAtTheEndOfTheStepWithAllFeetDown) {
   QuadrupedLoop robot = walking();
   while (robot.command().legged.phase == LegPhase::kWalking) robot.run(0.001, {});
-  for (const double stance : robot.command().legged.stance) EXPECT_EQ(stance, 0.5);
+  EXPECT_EQ(robot.command().contact_schedule, (ContactSchedule{0.5, 0.5, 0.5, 0.5}));
 }
 
 TEST(Walking, LiesDownOnlyAfterTheWalkHasEnded) {

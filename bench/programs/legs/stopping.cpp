@@ -1,6 +1,5 @@
 
 #include "bench/programs/legs/loop_rows.h"
-#include "gate/stop_action.h"
 
 namespace robot_control::bench {
 namespace {

@@ -178,7 +178,7 @@ void LegController::report(CommandFrame& out) const noexcept {
   out.legged.phase = state_.phase;
   out.legged.lifted = state_.phase >= LegPhase::kStanding && state_.lifted != kLegs ? state_.lifted + 1 : 0;
   if (state_.phase < LegPhase::kRising || state_.phase > LegPhase::kLowering) return;
-  for (std::size_t leg = 0; leg < kLegs; ++leg) out.legged.stance[leg] = state_.share[leg] > 0 ? 0.5 : 0;
+  for (std::size_t leg = 0; leg < kLegs; ++leg) out.contact_schedule[leg] = state_.share[leg] > 0 ? 0.5 : 0;
   if (state_.phase != LegPhase::kStanding) return;
   const std::array<double, 3> nominal{state_.home[0], state_.home[1], nominal_};
   for (std::size_t i = 0; i < state_.body.size(); ++i)

@@ -80,12 +80,12 @@ void LegController::begin_walk(const ControlInput& input) noexcept {
 }
 
 void LegController::walk(const ControlInput& input, const Request& request, CommandFrame& out) noexcept {
-  out.legged.phase = LegPhase::kWalking;
   if (!usable(input)) {
     out.reasons |= kReasonNoState;
-    out.legged.phase = LegPhase::kLying;
     return pause();
   }
+  out.legged.phase = LegPhase::kWalking;
+  out.stop_profile = kStopWalking;
   state_.gap = 0;
   const bool wanted = walks(request);
   if (request.mode == kStanceLie) state_.lies_next = 1;

@@ -26,7 +26,7 @@ double valid_effort(const JointSample& joint) noexcept {
 }  // namespace
 
 bool feet_asked(const SensorFrame& sensors) noexcept {
-  return std::any_of(sensors.gate.stance.begin(), sensors.gate.stance.end(), [](double part) { return part > 0; });
+  return std::ranges::any_of(sensors.gate.contact_schedule, [](double part) { return part > 0; });
 }
 
 FootContacts::FootContacts(const LegModel& robot) : dynamics_(robot), share_(dynamics_.mass() * kGravity / kLegs) {}
@@ -58,8 +58,8 @@ void FootContacts::step(const SensorFrame& sensors, const FeetMotion& feet, cons
       load = up.dot(feet.jacobian[leg].transpose().inverse() * missing);
     }
     state.loads[leg] = std::isfinite(load) ? load : 0;
-    state.lifted[leg] = asked && sensors.gate.stance[leg] <= 0 ? state.lifted[leg] + dt : 0;
-    const double bound = sensors.gate.stance[leg] > 0 ? kAsked : asked ? kSwings : kNotAsked;
+    state.lifted[leg] = asked && sensors.gate.contact_schedule[leg] <= 0 ? state.lifted[leg] + dt : 0;
+    const double bound = sensors.gate.contact_schedule[leg] > 0 ? kAsked : asked ? kSwings : kNotAsked;
     state.probability[leg] = std::clamp(0.5 + (state.loads[leg] / share_ - bound) / kBlur, 0.0, 1.0);
     if (state.lifted[leg] > 0 && state.lifted[leg] < kLift) state.probability[leg] = 0;
   }

@@ -37,7 +37,7 @@ std::array<bool, kLegs> feet_that_stand(const SensorFrame& sensors, const Legged
   for (std::size_t leg = 0; leg < kLegs; ++leg)
     stand[leg] = (FootContacts::bears(state.contacts.probability[leg]) ||
                   (state.bears[leg] != 0 && state.contacts.probability[leg] > 0)) &&
-                 (sensors.gate.stance[leg] > 0 || !asked);
+                 (sensors.gate.contact_schedule[leg] > 0 || !asked);
   return stand;
 }
 
@@ -179,7 +179,7 @@ void LeggedEstimator::filter(const SensorFrame& sensors, const FeetMotion& feet,
   LegFilter filter(state_.filter);
   std::array<double, kLegs> slide{};
   for (std::size_t leg = 0; leg < kLegs; ++leg) {
-    const double stance = sensors.gate.stance[leg];
+    const double stance = sensors.gate.contact_schedule[leg];
     const bool inside = stance > kEdge && stance < 1 - kEdge;
     slide[leg] = inside ? LegFilter::kSlide : LegFilter::kLandSlide;
   }

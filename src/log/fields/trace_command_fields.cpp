@@ -33,8 +33,8 @@ void add_legs(TraceFields& to) {
                 MEMBER(command.legged.body));
   field<C, u64>(to, "legged_gait", "GaitName", MEMBER(command.legged.gait)).shown();
   field<C, f64>(to, "legged_gait_phase", "0 to 1", MEMBER(command.legged.gait_phase)).shown();
-  field<C, f64>(to, "legged_stance", "by leg: part of the stance that was asked for; 0: it shall not bear",
-                MEMBER(command.legged.stance))
+  field<C, f64>(to, "contact_schedule", "by contact: part of its time on the ground; 0: it shall not bear",
+                MEMBER(command.contact_schedule))
       .shown({"front_left_stance", "front_right_stance", "rear_left_stance", "rear_right_stance"});
 }
 
@@ -73,6 +73,7 @@ void add_command(TraceFields& to) {
   number("command_permit_cycle", "of the permit used", MEMBER(command.permit_cycle));
   number("silent_cycles", "since the last message of any sender", MEMBER(command.silent_cycles));
   number("command_joint_count", "", MEMBER(command.joint_count));
+  number("stop_profile", "by which the gate stops after this command", MEMBER(command.stop_profile));
   shown("command_reasons", "CommandReason bits, and those of the kind of robot", MEMBER(command.reasons));
   add_legs(to);
   number("request_cycle", "in which the last command was received", MEMBER(command.request_cycle));

@@ -129,7 +129,7 @@ void add_driver(TraceFields& to) {
   field<D, u64>(to, "last_gate_missed", "of the last tick", MEMBER(sensors.gate.missed));
   field<D, u64>(to, "last_gate_late_permits", "of the last tick", MEMBER(sensors.gate.late_permits));
   field<D, u64>(to, "last_gate_refused", "of the last tick", MEMBER(sensors.gate.refused));
-  field<D, f64>(to, "last_gate_stance", "by leg, of the last tick", MEMBER(sensors.gate.stance));
+  field<D, f64>(to, "last_gate_contact_schedule", "of the last tick", MEMBER(sensors.gate.contact_schedule));
   field<D, u64>(to, "gate_cycle", "k", MEMBER(gate.cycle));
   field<D, u8>(to, "gate_verdict", "GateVerdict, of tick k", MEMBER(gate.verdict)).shown();
   field<D, u64>(to, "gate_reasons", "GateReason bits", MEMBER(gate.reasons)).shown();
@@ -155,7 +155,7 @@ void add_driver(TraceFields& to) {
 }
 
 void add_frame_only_gate(TraceFields& to) {
-  field<D, f64>(to, "gate_stance", "by leg", MEMBER(gate.stance));
+  field<D, f64>(to, "gate_contact_schedule", "of the command that tick k executed", MEMBER(gate.contact_schedule));
 }
 
 void add_truth(TraceFields& to) {

@@ -36,9 +36,8 @@ enum LeggedReason : std::uint64_t {
   kReasonTooSteep = 1u << 25,     ///< It lies on a slope on which it does not stand up.
 };
 
-/// These numbers say what is asked of each foot, by LegPlace. 0: it shall not bear. 0.5: it stands without a gait. Else
-/// it is the part of its stance that it has done at the end of this cycle, above 0 … 1.
-using FootStances = std::array<double, 4>;
+/// The values of CommandFrame::stop_profile: how the robot lies down if the gate stops it.
+enum LegStop : std::uint64_t { kStopStanding = 0, kStopWalking = 1 };
 
 struct LeggedCommand {
   LegPhase phase = LegPhase::kLying;
@@ -46,7 +45,6 @@ struct LeggedCommand {
   std::array<double, 6> body{};  ///< m and rad: x y height roll pitch yaw from the nominal pose, after limits
   std::uint64_t gait = 0;        ///< GaitName (control/legged/gait.h)
   double gait_phase = 0;         ///< 0 … 1
-  FootStances stance{};
 };
 
 }  // namespace robot_control

@@ -79,7 +79,7 @@ struct WalkingLegs {
  private:
   void follow() {
     for (std::size_t leg = 0; leg < kLegs; ++leg)
-      if (legs.out.legged.stance[leg] == 0 && leg != caught) feet[leg] = at() * legs.foot_in_base(leg);
+      if (legs.out.contact_schedule[leg] == 0 && leg != caught) feet[leg] = at() * legs.foot_in_base(leg);
     const Eigen::Vector3d moves(speed(0), speed(1), 0);
     heading += speed(2) * kCycle;
     const Eigen::Matrix3d turned = Eigen::AngleAxisd(heading, Eigen::Vector3d::UnitZ()).toRotationMatrix();
@@ -92,7 +92,7 @@ struct WalkingLegs {
     Eigen::Map<Eigen::Vector3d>(base.twist_base.linear.data()) = back * (moves + slides);
     Eigen::Map<Eigen::Vector3d>(base.twist_base.angular.data()) = back * Eigen::Vector3d(0, 0, speed(2));
     for (std::size_t leg = 0; leg < kLegs; ++leg) {
-      const bool bears = legs.out.legged.stance[leg] > 0 || leg == caught;
+      const bool bears = legs.out.contact_schedule[leg] > 0 || leg == caught;
       legs.estimate.contacts[leg].probability = bears ? 1 : 0;
       if (!bears) continue;
       feet[leg].z() = 0;  // the radius of the feet
@@ -123,10 +123,10 @@ TEST(LegWalk, FollowsATwistOnFeetThatAreBelowTheirHipsInTheMiddleOfTheirStance) 
   const NominalStance stance = nominal_stance(legs.robot());
   int middles = 0;
   for (int i = 0; i < 200; ++i) {
-    const FootStances before = legs.legs.out.legged.stance;
+    const ContactSchedule before = legs.legs.out.contact_schedule;
     legs.step();
     for (std::size_t leg = 0; leg < kLegs; ++leg) {
-      if (before[leg] == 0 || before[leg] >= 0.5 || legs.legs.out.legged.stance[leg] < 0.5) continue;
+      if (before[leg] == 0 || before[leg] >= 0.5 || legs.legs.out.contact_schedule[leg] < 0.5) continue;
       ++middles;
       EXPECT_LE((legs.at().inverse() * legs.feet[leg] - stance.feet[leg]).norm(), 0.005) << leg;
     }
@@ -224,7 +224,7 @@ TEST(LegWalk, EndsAfterAZeroOnFeetThatAreOnTheirPlaces) {
   for (std::size_t i = 0; i < kLegsJoints; ++i)
     EXPECT_NEAR(legs.legs.out.joints[i].position, legs.legs.before.joints[i].position, 1e-3) << i;
   EXPECT_NEAR(legs.legs.pose()[2], nominal_height(legs.robot()), 1e-3);
-  EXPECT_EQ(legs.legs.out.legged.stance, (FootStances{0.5, 0.5, 0.5, 0.5}));
+  EXPECT_EQ(legs.legs.out.contact_schedule, (ContactSchedule{0.5, 0.5, 0.5, 0.5}));
   legs.run(1, {});
   for (std::size_t i = 0; i < 6; ++i) EXPECT_NEAR(legs.legs.out.legged.body[i], 0, 1e-3) << i;
   EXPECT_EQ(legs.legs.out.reasons, 0u);

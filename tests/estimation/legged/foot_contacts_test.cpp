@@ -70,7 +70,7 @@ TEST(FootContacts, AreFoundWithinMillisecondsAndSoonerWhereTheyAreAskedFor) {
   for (const bool asked : {false, true}) {
     SwingingLegs legs;
     for (int k = 0; k < 100; ++k) legs.step(0);
-    if (asked) legs.sensors.gate.stance[0] = 0.01;
+    if (asked) legs.sensors.gate.contact_schedule[0] = 0.01;
     int found = 0;
     while (!FootContacts::bears(legs.state.probability[0]) && found < 100) legs.step(20), ++found;
     EXPECT_LE(found, asked ? 5 : 12);

@@ -24,7 +24,7 @@ struct Standing {
     sensors.contact_count = kLegs;
     for (std::size_t leg = 0; leg < kLegs; ++leg) {
       sensors.contacts[leg] = {.force = {0, 0, 31}, .valid = 1};
-      sensors.gate.stance[leg] = 0.5;
+      sensors.gate.contact_schedule[leg] = 0.5;
       for (std::size_t i = 0; i < kLegJoints; ++i) {
         JointSample& joint = sensors.joints[kLegJoints * leg + i];
         joint.valid = kValidMotion;

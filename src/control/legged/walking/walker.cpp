@@ -131,7 +131,7 @@ bool Walker::step(State& state, const WalkInput& input, CommandFrame& out) noexc
     const double part = gait.leg_phase(leg, state.phase) / gait.duty;
     const bool early = gait.duty < 1 && !gait.bears(leg, state.phase);
     const double done = gait.duty >= 1 ? 0.5 : early ? 0 : part;
-    out.legged.stance[leg] = bears ? std::max(done, period_) : 0;
+    out.contact_schedule[leg] = bears ? std::max(done, period_) : 0;
   }
   if (state.failures > 0) out.reasons |= kReasonNoPlan;
   return state.failures <= kFailures;

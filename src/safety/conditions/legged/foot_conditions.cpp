@@ -89,11 +89,12 @@ void FootConditions::enter_run() noexcept {
 
 void FootConditions::step(const MonitorInput& input, const Eigen::Vector3d& up, const Eigen::Vector3d& rate,
                           std::uint64_t elapsed, ActiveCauses& out) noexcept {
-  const LeggedCommand asked = input.command != nullptr ? input.command->legged : LeggedCommand{};
-  const bool stands = asked.phase == LegPhase::kStanding, walks = asked.phase == LegPhase::kWalking;
+  static constexpr CommandFrame kNoCommand;
+  const CommandFrame& asked = input.command != nullptr ? *input.command : kNoCommand;
+  const bool stands = asked.legged.phase == LegPhase::kStanding, walks = asked.legged.phase == LegPhase::kWalking;
   Feet judged{};
   for (std::size_t leg = 0; leg < kLegs; ++leg)
-    judged[leg] = stands ? leg + 1 != asked.lifted : walks && asked.stance[leg] > kEdge;
+    judged[leg] = stands ? leg + 1 != asked.legged.lifted : walks && asked.contact_schedule[leg] > kEdge;
   const bool begins = counts_ == std::array<std::size_t, kLegs>{};
   for (std::size_t leg = 0; leg < kLegs; ++leg) {
     if (!judged[leg]) counts_[leg] = 0;
@@ -111,13 +112,13 @@ void FootConditions::step(const MonitorInput& input, const Eigen::Vector3d& up, 
     sample(*input.sensors, asked, up, judged);
   }
   out.update(slip_, slipped_, elapsed);
-  const double share = weight_ / static_cast<double>(stands && asked.lifted != 0 ? kLegs - 1 : kLegs);
+  const double share = weight_ / static_cast<double>(stands && asked.legged.lifted != 0 ? kLegs - 1 : kLegs);
   out.update(load_, stands || walks ? lightest(*input.sensors, up, judged, share, walks) : kNothingMeasured, elapsed);
   out.update(sinking_, sunk_, elapsed);
   out.update(turning_, turned_, elapsed);
 }
 
-void FootConditions::sample(const SensorFrame& sensors, const LeggedCommand& asked, const Eigen::Vector3d& up,
+void FootConditions::sample(const SensorFrame& sensors, const CommandFrame& asked, const Eigen::Vector3d& up,
                             const Feet& judged) noexcept {
   std::array<double, kLegsJoints> angles{};
   for (std::size_t i = 0; i < kLegsJoints; ++i) {
@@ -134,8 +135,8 @@ void FootConditions::sample(const SensorFrame& sensors, const LeggedCommand& ask
     height -= up.dot(foot);
     ++count;
   }
-  height = height / count - asked.body[2];
-  if (asked.phase == LegPhase::kStanding) {
+  height = height / count - asked.legged.body[2];
+  if (asked.legged.phase == LegPhase::kStanding) {
     reference_ = height;
     stood_ = true;
   } else if (stood_) {
@@ -148,8 +149,8 @@ void FootConditions::sample(const SensorFrame& sensors, const LeggedCommand& ask
 }
 
 /// A foot whose stance ends bears little, and may leave the ground early.
-void FootConditions::compare(const Sample& now, const LeggedCommand& asked, const Eigen::Vector3d& up) noexcept {
-  const bool walks = asked.phase == LegPhase::kWalking;
+void FootConditions::compare(const Sample& now, const CommandFrame& asked, const Eigen::Vector3d& up) noexcept {
+  const bool walks = asked.legged.phase == LegPhase::kWalking;
   const auto ago = [&](std::size_t samples) -> const Sample& {
     return samples_[(next_ + kSamplesInWindow - samples) % kSamplesInWindow];
   };
@@ -170,7 +171,8 @@ void FootConditions::compare(const Sample& now, const LeggedCommand& asked, cons
       slips[a] += along;
       slips[b] += along;
     }
-    if (!walks || unbraked_ <= kWindow || std::max(asked.stance[a], asked.stance[b]) > 1 - kEdge) return;
+    if (!walks || unbraked_ <= kWindow || std::max(asked.contact_schedule[a], asked.contact_schedule[b]) > 1 - kEdge)
+      return;
     const Eigen::Vector3d middle = (first + last) / 2, change = last - first + turn_within(samples).cross(middle);
     const double rise = std::abs(change.dot(up)), yaw = std::abs(change.dot(up.cross(middle).normalized()));
     turn = std::max(turn, (std::max(rise, kOfYaw * yaw) - kOfSlip * along) / middle.norm());

@@ -60,9 +60,9 @@ class FootConditions {
     Vector3 turn{};                     ///< rad, of the gyro since the sample before
   };
 
-  void sample(const SensorFrame& sensors, const LeggedCommand& asked, const Eigen::Vector3d& up,
+  void sample(const SensorFrame& sensors, const CommandFrame& asked, const Eigen::Vector3d& up,
               const Feet& judged) noexcept;
-  void compare(const Sample& now, const LeggedCommand& asked, const Eigen::Vector3d& up) noexcept;
+  void compare(const Sample& now, const CommandFrame& asked, const Eigen::Vector3d& up) noexcept;
   ConditionMeasurement lightest(const SensorFrame& sensors, const Eigen::Vector3d& up, const Feet& judged, double share,
                                 bool walks) noexcept;
 

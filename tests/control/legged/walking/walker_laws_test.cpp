@@ -355,7 +355,7 @@ TEST_F(WalkerLaws, AStandingRobotWalksAtOnceAndCountsHowLongItStands) {
   for (int i = 0; i < 3; ++i) step();
   EXPECT_NEAR(state.lasted, 3 * kMillisecond, kExact);
   EXPECT_EQ(state.gait, 0u);
-  for (const double stance_part : out.legged.stance) EXPECT_EQ(stance_part, 0.5);
+  EXPECT_EQ(out.contact_schedule, (ContactSchedule{0.5, 0.5, 0.5, 0.5}));
   input.gait = GaitName::kTrot;
   step();
   EXPECT_EQ(out.legged.gait, static_cast<std::uint64_t>(GaitName::kTrot));
@@ -432,10 +432,10 @@ TEST_F(WalkerLaws, AFootSwingsFromWhereItIsWhenItsSwingBeginsUntilItsStance) {
   state.phase = gait().duty - gait().phase[1] - 1.5 * cycle;
   step();
   EXPECT_EQ(state.bears[1], 1u);
-  EXPECT_GT(out.legged.stance[1], 0.99);
+  EXPECT_GT(out.contact_schedule[1], 0.99);
   step();
   EXPECT_EQ(state.bears[1], 0u);
-  EXPECT_EQ(out.legged.stance[1], 0);
+  EXPECT_EQ(out.contact_schedule[1], 0);
   EXPECT_LE((vector(state.bore[1]) - foot(1)).norm(), kExact);
   state.phase = 1 - gait().phase[1] - 1.5 * cycle;
   step();
@@ -443,7 +443,7 @@ TEST_F(WalkerLaws, AFootSwingsFromWhereItIsWhenItsSwingBeginsUntilItsStance) {
   step();
   EXPECT_EQ(state.bears[1], 1u) << "it bears by the clock, with or without a contact";
   EXPECT_EQ(state.swings[1], 0u);
-  EXPECT_NEAR(out.legged.stance[1], 0.5 * cycle / gait().duty, kExact);
+  EXPECT_NEAR(out.contact_schedule[1], 0.5 * cycle / gait().duty, kExact);
 }
 
 TEST_F(WalkerLaws, AFootWhoseSwingWouldHaveBegunBeforeTheGaitStandsUntilItsNextOne) {
@@ -473,7 +473,7 @@ TEST_F(WalkerLaws, AFootThatMeetsTheGroundInTheSecondHalfOfItsSwingBearsFromThen
     EXPECT_EQ(state.bears[2], 0u) << "it has no contact";
     if (swung < 0.5) continue;
     EXPECT_LE(state.planned, 1u) << "other feet bear";
-    EXPECT_EQ(out.legged.stance[1], kMillisecond) << "its stance has not begun";
+    EXPECT_EQ(out.contact_schedule[1], kMillisecond) << "its stance has not begun";
     estimate.contacts[1].probability = 0;
     step();
     EXPECT_EQ(state.bears[1], 1u);
@@ -498,7 +498,7 @@ TEST_F(WalkerLaws, ReportsThePartOfTheStanceThatAFootHasDone) {
     EXPECT_EQ(out.legged.gait_phase, state.phase);
     for (std::size_t leg = 0; leg < kLegs; ++leg) {
       const bool bears = gait().bears(leg, state.phase);
-      EXPECT_NEAR(out.legged.stance[leg], bears ? gait().leg_phase(leg, state.phase) / gait().duty : 0, kExact);
+      EXPECT_NEAR(out.contact_schedule[leg], bears ? gait().leg_phase(leg, state.phase) / gait().duty : 0, kExact);
     }
   }
 }

@@ -430,7 +430,7 @@ class WalkingConditionsTest : public LeggedConditionsTest {
       for (std::size_t leg = 0; leg < kLegs; ++leg) {
         const double part = std::fmod(t / 0.4 + (leg == 0 || leg == 3 ? 0.5 : 0), 1.0) * 2;
         const bool bears = part < 1;
-        command_.legged.stance[leg] = bears ? std::max(part, 1e-3) : 0;
+        command_.contact_schedule[leg] = bears ? std::max(part, 1e-3) : 0;
         sensors_.contacts[leg].force[2] = bears ? robot_.mass * 9.81 / 2 : 0;
         const double lift = bears ? 0 : 0.3 * std::pow(std::sin(3.1416 * (part - 1)), 2);
         JointSample* joint = &sensors_.joints[kLegJoints * leg];
@@ -470,7 +470,7 @@ TEST_F(WalkingConditionsTest, AreNoneWhileItTrots) {
 TEST_F(WalkingConditionsTest, AreNoneWhileEachFootLeavesTheGroundALittleEarly) {
   const double seen = walk(2, [&](double) {
     for (std::size_t leg = 0; leg < kLegs; ++leg)
-      if (command_.legged.stance[leg] > 0.85) sensors_.contacts[leg].force = {};
+      if (command_.contact_schedule[leg] > 0.85) sensors_.contacts[leg].force = {};
   });
   EXPECT_EQ(seen, 2) << causes(Reaction::kWarn);
 }
