@@ -5,5 +5,5 @@ from setuptools import find_packages, setup
 
 packages = find_packages("python")
 data = {"robot_control": ["py.typed", "*.pyi"], "robot_control.watch.console": ["page/*"]}
-data["robot_control.fleet.v2"] = ["schemas/*"]
+data |= {"robot_control.fleet.v2": ["schemas/*"], "robot_control.ui": ["*.mplstyle"]}
 setup(**generate_distutils_setup(packages=packages, package_dir={"": "python"}, package_data=data))

@@ -16,8 +16,8 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from robot_control.data.render.scene import orientation, product
 from robot_control.loop.closed_loop import ClosedLoop
+from scipy.spatial.transform import Rotation
 
 from bench.drives.wheel_command import WHEEL_COMMANDS, for_drives
 
@@ -41,9 +41,9 @@ class Stop:
 
 def scene(slope: float, heading: float) -> str:
     """MJCF of a floor of `slope` [rad]; the robot starts at `heading` [rad] from uphill."""
-    floor = orientation(0.0, -slope, 0.0)
-    start = product(floor, orientation(0.0, 0.0, heading))
-    floor_text, start_text = (" ".join(map(repr, quat)) for quat in (floor, start))
+    floor = Rotation.from_euler("y", -slope)
+    start = floor * Rotation.from_euler("z", heading)
+    floor_text, start_text = (" ".join(map(repr, each.as_quat()[[3, 0, 1, 2]].tolist())) for each in (floor, start))
     return (
         '<mujoco><worldbody><geom name="floor" type="plane" size="50 50 1" friction="1 0.005 0.0001" '
         f'quat="{floor_text}"/><site name="start" quat="{start_text}"/></worldbody></mujoco>'

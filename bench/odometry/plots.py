@@ -36,7 +36,7 @@ def draw_all(runs: Sequence[Run], folder: Path) -> None:
     """Writes the pictures of all present runs: PNG, 110 dots per inch."""
     present = {run.scenario for run in runs}
     pictured = {run.scenario: run.picture for run in runs if run.picture is not None}
-    with mpl.rc_context(STYLE):
+    with plt.style.context(STYLE):
         if "umbmark" in present:
             _save(_umbmark(runs_of(runs, "umbmark")), folder / "umbmark.png")
         if "random" in present:

@@ -67,9 +67,8 @@ py::dict shape_dict(const RigidBody& body, const Shape& shape) {
                   "triangles"_a = hull_triangles(shape.points));
 }
 
-/// Adds what every robot has; `bodies` are those to be shown.
-void add_machine(const MachineModel& robot, const RigidBodies& bodies, const char* kind, const char* driven,
-                 py::dict& to) {
+/// Returns what every robot has; `bodies` are those to be shown.
+py::dict machine_dict(const MachineModel& robot, const RigidBodies& bodies, const char* kind, const char* driven) {
   using namespace py::literals;
   py::list joints, shapes, notes;
   for (const JointModel& joint : robot.joints) joints.append(joint_dict(robot, joint, driven));
@@ -81,16 +80,9 @@ void add_machine(const MachineModel& robot, const RigidBodies& bodies, const cha
   }
   const py::dict imu("link"_a = robot.imu_link, "position"_a = robot.imu_in_base.position,
                      "orientation"_a = robot.imu_in_base.orientation);
-  to["kind"] = kind;
-  to["name"] = robot.name;
-  to["source"] = robot.source;
-  to["base_link"] = robot.base_link;
-  to["mass"] = robot.mass;
-  to["centre_of_gravity"] = robot.centre_of_gravity_base;
-  to["imu"] = imu;
-  to["joints"] = joints;
-  to["shapes"] = shapes;
-  to["notes"] = notes;
+  return py::dict("kind"_a = kind, "name"_a = robot.name, "source"_a = robot.source, "base_link"_a = robot.base_link,
+                  "mass"_a = robot.mass, "centre_of_gravity"_a = robot.centre_of_gravity_base, "imu"_a = imu,
+                  "joints"_a = joints, "shapes"_a = shapes, "notes"_a = notes);
 }
 
 py::dict leg_dict(const LegModel& robot, std::size_t leg) {
@@ -111,8 +103,7 @@ py::dict leg_dict(const LegModel& robot, std::size_t leg) {
 py::dict describe_legs(const LegModel& robot) {
   std::map<std::string, double> lying;
   for (const JointModel& joint : robot.joints) lying[joint.name] = joint.rest_position;
-  py::dict result;
-  add_machine(robot, posed(*robot.bodies, lying), "legs", "leg", result);
+  py::dict result = machine_dict(robot, posed(*robot.bodies, lying), "legs", "leg");
   py::list legs;
   for (std::size_t leg = 0; leg < kLegs; ++leg) legs.append(leg_dict(robot, leg));
   result["belly"] = robot.belly;
@@ -124,10 +115,8 @@ py::dict describe_legs(const LegModel& robot) {
 }  // namespace
 
 py::dict describe(const MachineModel& robot) {
-  const auto* const legged = dynamic_cast<const LegModel*>(&robot);
-  if (legged != nullptr) return describe_legs(*legged);
-  py::dict result;
-  add_machine(robot, *robot.bodies, "wheels", "wheel", result);
+  if (const auto* const legged = dynamic_cast<const LegModel*>(&robot)) return describe_legs(*legged);
+  py::dict result = machine_dict(robot, *robot.bodies, "wheels", "wheel");
   describe_wheels(robot, result);
   return result;
 }

@@ -14,6 +14,8 @@ namespace py = pybind11;
 namespace robot_control {
 namespace {
 
+using namespace py::literals;
+
 using Angles = std::array<double, kLegsJoints>;
 using Feet = std::array<std::array<double, 3>, kLegs>;
 using Jacobians = std::array<std::array<std::array<double, 3>, 3>, kLegs>;
@@ -56,9 +58,9 @@ std::pair<Angles, std::vector<std::string>> angles_of(const LegModel& robot, con
 
 void bind_legs(py::module_& module) {
   py::class_<LegModel>(module, "LegModel")
-      .def("forward", &feet, py::arg("angles"))
-      .def("inverse", &angles_of, py::arg("feet"))
-      .def("jacobian", &jacobians, py::arg("angles"));
+      .def("forward", &feet, "angles"_a)
+      .def("inverse", &angles_of, "feet"_a)
+      .def("jacobian", &jacobians, "angles"_a);
 }
 
 }  // namespace robot_control

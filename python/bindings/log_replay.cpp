@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "bindings/layers.h"
 #include "bindings/loop_replay.h"
 #include "bindings/numpy_version.h"
 #include "configuration/live_parameters.h"
@@ -26,15 +27,10 @@ namespace py = pybind11;
 namespace robot_control {
 namespace {
 
-/// The path of a parameter file and the values that are laid over it.
-using Layers = std::pair<std::string, std::vector<std::pair<std::string, std::string>>>;
+using namespace py::literals;
 
-/// Reads the parameters of `layers`, laid over those of the file `base`.
-Parameters parameters_in(const Layers& layers, const std::string& base) {
-  std::vector<Overlay> overlays;
-  for (const auto& [key, text] : layers.second) overlays.push_back({.path = key, .text = text, .origin = "replay"});
-  return read_parameters(layers.first, overlays, base);
-}
+/// The path of a parameter file and the values that are laid over it.
+using Layers = std::pair<std::string, LayerValues>;
 
 /// VariedColumns holds the outputs of the laws, logged and with other parameters, by column of a log.
 class VariedColumns {
@@ -123,7 +119,7 @@ std::vector<std::string> header_differences(const LogHeader& logged, const LogHe
 /// `logged` are the parameters of the log, `varied` are other parameters or None.
 py::dict replay_log(const std::string& path, const Layers& logged, const std::optional<Layers>& varied) {
   check_numpy_version();
-  const Parameters parameters = parameters_in(logged, logged.first);
+  const Parameters parameters = read_layers(logged.first, logged.second, "replay", logged.first);
   const std::unique_ptr<Robot> composed = make_robot(parameters);
   const MachineModel& robot = composed->machine();
   Replay replay(*composed, parameters.loop.period());
@@ -131,7 +127,7 @@ py::dict replay_log(const std::string& path, const Layers& logged, const std::op
   std::unique_ptr<Robot> varied_robot;
   std::vector<std::string> live;  // values that the log leaves out but `varied` sets are included
   if (varied) {
-    const Parameters others = parameters_in(*varied, logged.first);
+    const Parameters others = read_layers(varied->first, varied->second, "replay", logged.first);
     if (others.loop.rate != parameters.loop.rate) {
       std::ostringstream text;
       text << "robot.rate is " << others.loop.rate << " Hz, that of the log " << parameters.loop.rate
@@ -162,8 +158,8 @@ py::dict replay_log(const std::string& path, const Layers& logged, const std::op
     }});
   }
   py::dict result = described(replay.report());
-  result["varied"] = columns.arrays();
   const LogHeader here = log_header(parameters, *composed);
+  result["varied"] = columns.arrays();
   result["doubts"] = doubts(header, here);
   result["header"] = header_differences(header, here);
   result["cut"] = cut;
@@ -177,7 +173,7 @@ py::dict replay_log(const std::string& path, const Layers& logged, const std::op
 
 void bind_log_replay(py::module_& module) {
   py::register_exception<ReplayError>(module, "ReplayError", PyExc_RuntimeError);
-  module.def("replay_log", &replay_log, py::arg("path"), py::arg("logged"), py::arg("varied"));
+  module.def("replay_log", &replay_log, "path"_a, "logged"_a, "varied"_a);
 }
 
 }  // namespace robot_control

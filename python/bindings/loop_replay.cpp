@@ -8,6 +8,7 @@
 namespace py = pybind11;
 
 namespace robot_control {
+using namespace py::literals;
 
 void LoopReplay::store(const ClosedLoop& loop) {
   for (const LawSnapshot* snapshot : loop.snapshots()) {
@@ -37,30 +38,21 @@ py::dict described(const ReplayReport& report) {
   py::dict laws;
   for (std::size_t i = 0; i < kLaws; ++i) {
     const LawReport& law = report.laws[i];
-    py::dict counts;
-    counts["compared"] = law.compared;
-    counts["different"] = law.different;
-    counts["not_compared"] = law.not_compared;
-    counts["missing"] = law.missing;
-    laws[py::str(name_of(static_cast<LawName>(i)))] = counts;
+    laws[py::str(name_of(static_cast<LawName>(i)))] =
+        py::dict("compared"_a = law.compared, "different"_a = law.different, "not_compared"_a = law.not_compared,
+                 "missing"_a = law.missing);
   }
   py::list differences, gaps;
   for (const ReplayDifference& difference : report.differences) differences.append(sentence(difference));
   for (const ReplayGap& gap : report.gaps) gaps.append(sentence(gap));
-  py::dict result;
-  result["exact"] = report.exact();
-  result["laws"] = laws;
-  result["rows"] = report.rows;
-  result["different_rows"] = report.different_rows;
-  result["damaged_snapshots"] = report.damaged_snapshots;
-  result["differences"] = differences;
-  result["gaps"] = gaps;
-  return result;
+  return py::dict("exact"_a = report.exact(), "laws"_a = laws, "rows"_a = report.rows,
+                  "different_rows"_a = report.different_rows, "damaged_snapshots"_a = report.damaged_snapshots,
+                  "differences"_a = differences, "gaps"_a = gaps);
 }
 
 void bind_loop_replay(py::module_& module) {
   py::class_<LoopReplay>(module, "LoopReplay")
-      .def(py::init<const ClosedLoop&>(), py::arg("loop"))
+      .def(py::init<const ClosedLoop&>(), "loop"_a)
       .def("check", &LoopReplay::check, py::call_guard<py::gil_scoped_release>())
       .def("report", &LoopReplay::report);
 }

@@ -10,12 +10,13 @@
 #include <cmath>
 #include <cstdint>
 #include <memory>
+#include <numeric>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "bindings/describe.h"
-#include "bindings/installed_file.h"
+#include "bindings/layers.h"
 #include "bindings/legs.h"
 #include "bindings/log_replay.h"
 #include "bindings/loop_replay.h"
@@ -48,6 +49,8 @@ namespace py = pybind11;
 
 namespace robot_control {
 namespace {
+
+using namespace py::literals;
 
 Twist planar(double linear, double lateral, double angular) {
   return {.linear = {linear, lateral, 0}, .angular = {0, 0, angular}};
@@ -137,23 +140,16 @@ py::dict stand(const Parameters& parameters) {
   plant.start();
   TruthFrame truth;
   plant.truth(truth);
-  double load = 0;
-  for (const double force : truth.normal_force) load += force;
+  const double load = std::accumulate(truth.normal_force.begin(), truth.normal_force.end(), 0.0);
   const Quaternion& q = truth.pose_world.orientation;
   const mjModel& model = *plant.model().model;
-  py::dict result;
-  result["lean"] = 2 * std::asin(std::min(1.0, std::hypot(q[0], q[1])));
-  result["carried"] = load / (model.body_subtreemass[plant.model().base_body] * mju_norm3(model.opt.gravity));
-  result["unloaded"] = plant.warning();
-  return result;
+  const double weight = model.body_subtreemass[plant.model().base_body] * mju_norm3(model.opt.gravity);
+  return py::dict("lean"_a = 2 * std::asin(std::min(1.0, std::hypot(q[0], q[1]))), "carried"_a = load / weight,
+                  "unloaded"_a = plant.warning());
 }
 
-using Values = std::vector<std::pair<std::string, std::string>>;
-
-Parameters parameters_from(const std::string& path, const Values& values) {
-  std::vector<Overlay> overlays;
-  for (const auto& [key, text] : values) overlays.push_back({.path = key, .text = text, .origin = "ClosedLoop"});
-  Parameters parameters = read_parameters(path, overlays, path.empty() ? "" : installed_parameters());
+Parameters parameters_from(const std::string& path, const LayerValues& values) {
+  Parameters parameters = read_layers(path, values, "ClosedLoop");
   for (const std::string& text : parameters.warnings) {
     if (PyErr_WarnEx(PyExc_UserWarning, text.c_str(), 1) != 0) throw py::error_already_set();
   }
@@ -161,7 +157,6 @@ Parameters parameters_from(const std::string& path, const Values& values) {
 }
 
 py::dict controller_parameters(const Parameters& parameters) {
-  using namespace py::literals;
   const SpeedLimits limits = speed_limits(parameters.controller);
   const auto axis = [](const MotionLimits& axis_limits) {
     return py::dict("speed"_a = axis_limits.speed, "acceleration"_a = axis_limits.acceleration,
@@ -180,7 +175,6 @@ py::list derived_wheel_loops(Parameters parameters) {
 }
 
 py::dict scan_of(const ClosedLoop& loop) {
-  using namespace py::literals;
   const LaserScan scan = loop.scan();
   if (scan.ranges.empty()) throw py::value_error("there is no laser: set laser.rate of the simulated machine");
   return py::dict("cycle"_a = scan.head.cycle, "stamp_ns"_a = scan.head.stamp_ns, "link"_a = scan.link,
@@ -217,8 +211,10 @@ void bind_parameters(py::module_& module) {
   const auto define = [&](const char* name, auto function) {
     module.def(
         name,
-        [function](const std::string& path, const Values& values) { return function(parameters_from(path, values)); },
-        py::arg("path"), py::arg("values"));
+        [function](const std::string& path, const LayerValues& values) {
+          return function(parameters_from(path, values));
+        },
+        "path"_a, "values"_a);
   };
   define("describe", [](const Parameters& parameters) { return describe(*machine_of(parameters)); });
   define("mjcf", [](const Parameters& parameters) {
@@ -241,24 +237,24 @@ void bind_spectral_radius(py::module_& module) {
         return wheel_loop_spectral_radius({.kp = kp, .ki = ki, .kd = kd, .model_inertia = model_inertia},
                                           {.inertia = inertia, .damping = damping}, period, bandwidth, delay);
       },
-      py::kw_only(), py::arg("kp"), py::arg("ki"), py::arg("kd"), py::arg("model_inertia"), py::arg("inertia"),
-      py::arg("damping"), py::arg("period"), py::arg("bandwidth"), py::arg("delay") = 0);
+      py::kw_only(), "kp"_a, "ki"_a, "kd"_a, "model_inertia"_a, "inertia"_a, "damping"_a, "period"_a, "bandwidth"_a,
+      "delay"_a = 0);
 }
 
 void bind_closed_loop(py::module_& module) {
   py::class_<ClosedLoop>(module, "ClosedLoop")
-      .def(py::init([](const std::string& path, const Values& values) {
+      .def(py::init([](const std::string& path, const LayerValues& values) {
              check_numpy_version();
              return ClosedLoop(parameters_from(path, values));
            }),
-           py::arg("path"), py::arg("values"))
+           "path"_a, "values"_a)
       .def(
           "command",
           [](ClosedLoop& loop, double linear, double angular, double lateral) {
             loop.command(planar(linear, lateral, angular));
           },
-          py::arg("linear"), py::arg("angular"), py::arg("lateral") = 0.0)
-      .def("choose_mode", &ClosedLoop::choose_mode, py::arg("mode"))
+          "linear"_a, "angular"_a, "lateral"_a = 0.0)
+      .def("choose_mode", &ClosedLoop::choose_mode, "mode"_a)
       .def(
           "request",
           [](ClosedLoop& loop, const std::array<double, 6>& pose, std::uint64_t mode,
@@ -269,18 +265,18 @@ void bind_closed_loop(py::module_& module) {
                           .mode = mode,
                           .joints = joints});
           },
-          py::arg("pose"), py::arg("mode"), py::arg("joints"))
+          "pose"_a, "mode"_a, "joints"_a)
       .def("e_stop", &ClosedLoop::e_stop)
       .def("e_stop_reset", &ClosedLoop::e_stop_reset)
       .def("heartbeat", &ClosedLoop::heartbeat)
-      .def("clearance", &ClosedLoop::clearance, py::arg("metres"))
+      .def("clearance", &ClosedLoop::clearance, "metres"_a)
       .def("reset", &ClosedLoop::reset)
-      .def("set_parameters", &ClosedLoop::set_parameters, py::arg("request"))
-      .def("inject_fault", &ClosedLoop::inject_fault, py::arg("component"), py::arg("kind"))
-      .def("run", &run, py::arg("cycles"), py::arg("command"), py::arg("replay") = nullptr)
-      .def("record", &record, py::arg("commands"))
+      .def("set_parameters", &ClosedLoop::set_parameters, "request"_a)
+      .def("inject_fault", &ClosedLoop::inject_fault, "component"_a, "kind"_a)
+      .def("run", &run, "cycles"_a, "command"_a, "replay"_a = nullptr)
+      .def("record", &record, "commands"_a)
       .def("scan", &scan_of)
-      .def("stop_distance", &distance_to_stop, py::arg("speed"), py::arg("emergency"))
+      .def("stop_distance", &distance_to_stop, "speed"_a, "emergency"_a)
       .def_property_readonly("smooth_speed", &smooth_speed_of)
       .def_property_readonly("period", [](const ClosedLoop& loop) { return loop.parameters().loop.period(); })
       .def_property_readonly("robot", [](const ClosedLoop& loop) { return describe(loop.robot().machine()); })
@@ -300,7 +296,7 @@ PYBIND11_MODULE(_robot_control, module) {
   py::register_exception<RobotError>(module, "RobotError", PyExc_ValueError);
   py::register_exception<DriverError>(module, "DriverError", PyExc_RuntimeError);
   module.attr("signal_names") = signal_names();
-  module.def("slip_detection", &slip_detection, py::arg("residual_level"));
+  module.def("slip_detection", &slip_detection, "residual_level"_a);
   module.attr("project_folder") = ROBOT_CONTROL_PROJECT;  // folder of the checkout, where PyPI's packages are installed
   bind_legs(module);
   bind_parameters(module);

@@ -23,6 +23,8 @@ namespace py = pybind11;
 namespace robot_control {
 namespace {
 
+using namespace py::literals;
+
 /// Converts to a Python text. Bytes that are not UTF-8 become U+FFFD, because a scene or a calibration file may contain
 /// some.
 py::str text_of(const std::string& bytes) {
@@ -32,7 +34,6 @@ py::str text_of(const std::string& bytes) {
 }
 
 py::dict header_of(const LogHeader& header) {
-  using namespace py::literals;
   const auto texts_of = [](const std::vector<std::string>& all) {
     py::list texts;
     for (const std::string& each : all) texts.append(text_of(each));
@@ -130,7 +131,6 @@ class Table {
 };
 
 py::dict read_run_bag(const std::string& path, const std::vector<std::string>& names) {
-  using namespace py::literals;
   check_numpy_version();
   constexpr std::uint64_t kLook = 1 << 16;  // rows between two checks for Ctrl-C
   std::optional<Table> table;
@@ -210,20 +210,19 @@ void bind_run_bag(py::module_& module) {
   py::register_exception<BagError>(module, "BagError", PyExc_ValueError);
   const py::object& trace_error = py::register_exception<TraceError>(module, "TraceError", PyExc_ValueError);
   py::register_exception<NoTraceError>(module, "NoTraceError", trace_error);
-  module.def("read_run_bag", read_run_bag, py::arg("path"), py::arg("names"));
+  module.def("read_run_bag", read_run_bag, "path"_a, "names"_a);
   module.def(
-      "read_run_header", [](const std::string& path) { return header_of(TraceReader(path).header()); },
-      py::arg("path"));
-  module.def("each_part_of_run_bag", each_part_of_run_bag, py::arg("path"), py::arg("use"));
+      "read_run_header", [](const std::string& path) { return header_of(TraceReader(path).header()); }, "path"_a);
+  module.def("each_part_of_run_bag", each_part_of_run_bag, "path"_a, "use"_a);
   module.def(
       "save_black_box",
       [](const std::string& path, const std::string& bag) {
         const SavedBlackBox saved = save_black_box(path, bag);
         return py::make_tuple(saved.rows, saved.newest_ns, saved.missing);
       },
-      py::arg("path"), py::arg("bag"));
-  module.def("log_into", log_into, py::arg("loop"), py::arg("directory"));
-  module.def("end_log", end_log, py::arg("loop"));
+      "path"_a, "bag"_a);
+  module.def("log_into", log_into, "loop"_a, "directory"_a);
+  module.def("end_log", end_log, "loop"_a);
 }
 
 }  // namespace robot_control

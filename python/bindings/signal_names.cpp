@@ -43,31 +43,19 @@ py::list states(int count) {
 }  // namespace
 
 py::dict signal_names() {
-  py::dict all;
-  py::list roles;
+  using namespace py::literals;
+  py::list roles, kinds;
   for (const RoleNames& row : kRoles) roles.append(py::make_tuple(std::string(row.role), std::string(row.program)));
-  all["Role"] = roles;
-  py::list kinds;
   for (const KindNames& row : kKinds) kinds.append(py::make_tuple(std::string(row.kind), std::string(row.controller)));
-  all["RobotKind"] = kinds;
-  all["StopCause"] = bits(kStopCauseNames);
-  all["CommandReason"] = bits(kCommandReasonNames);
-  all["RequestPart"] = bits(kRequestPartNames);
-  all["GateReason"] = bits(kGateReasonNames);
-  all["StateFlag"] = bits(kStateFlagNames);
-  all["SlipReason"] = bits(kSlipReasonNames);
-  all["DegradedReason"] = bits(kDegradedReasonNames);
-  all["DriverFault"] = bits(kDriverFaultNames);
-  all["SupervisorState"] = states<SupervisorState>(6);
-  all["PermitAction"] = states<PermitAction>(3);
-  all["GateVerdict"] = states<GateVerdict>(5);
-  all["DriverState"] = states<DriverState>(5);
-  all["JointMode"] = states<JointMode>(kJointModes);
-  all["LegPhase"] = states<LegPhase>(7);
-  all["SensorIndex"] = words(kStateSensorNames);
-  all["FaultComponent"] = words(kFaultComponentNames);
-  all["FaultKind"] = words(kFaultKindNames);
-  return all;
+  return py::dict("Role"_a = roles, "RobotKind"_a = kinds, "StopCause"_a = bits(kStopCauseNames),
+                  "CommandReason"_a = bits(kCommandReasonNames), "RequestPart"_a = bits(kRequestPartNames),
+                  "GateReason"_a = bits(kGateReasonNames), "StateFlag"_a = bits(kStateFlagNames),
+                  "SlipReason"_a = bits(kSlipReasonNames), "DegradedReason"_a = bits(kDegradedReasonNames),
+                  "DriverFault"_a = bits(kDriverFaultNames), "SupervisorState"_a = states<SupervisorState>(6),
+                  "PermitAction"_a = states<PermitAction>(3), "GateVerdict"_a = states<GateVerdict>(5),
+                  "DriverState"_a = states<DriverState>(5), "JointMode"_a = states<JointMode>(kJointModes),
+                  "LegPhase"_a = states<LegPhase>(7), "SensorIndex"_a = words(kStateSensorNames),
+                  "FaultComponent"_a = words(kFaultComponentNames), "FaultKind"_a = words(kFaultKindNames));
 }
 
 }  // namespace robot_control

@@ -32,10 +32,8 @@ def _without_its_compiled_part() -> str:
             f"robot_control.{built[0].name} in {here} is not for this Python {sys.version_info[0]}."
             f"{sys.version_info[1]}, {sys.executable}: call /usr/bin/python3, for which ROS is built"
         )
-    return (
-        f"the compiled part of robot_control is not in {here}: build it (scripts/demo or colcon build in the "
-        "checkout), then `source install/setup.bash` in this terminal"
-    )
+    what = f"the compiled part of robot_control is not in {here}: build it"
+    return f"{what} (scripts/demo or colcon build in the checkout), then `source install/setup.bash` in this terminal"
 
 
 def _load(name: str) -> Any:

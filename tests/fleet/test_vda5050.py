@@ -9,10 +9,11 @@ import pytest
 import yaml
 from robot_control.fleet.machine import size_of
 from robot_control.fleet.memory import BLOCK, Memory
-from robot_control.fleet.settings import Settings, SettingsError, read_settings
+from robot_control.fleet.settings import Settings, read_settings
 from robot_control.fleet.v2.messages import Error, RefusedError, decoded, is_time, schema, time_text
 from robot_control.fleet.v2.state import factsheet, visualization
 from robot_control.installed_files import share_file
+from robot_control.settings.files import SettingsError
 from robot_control.setup.description import describe
 
 from bench.fleet.messages import MANUFACTURER, SERIAL, action, header, order, unknown_names

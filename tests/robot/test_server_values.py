@@ -7,7 +7,6 @@ from types import SimpleNamespace
 import pytest
 import rosgraph
 import rospy
-from robot_control.drive.pad.main import ParameterError
 from robot_control.drive.pad.main import parameters as pad_parameters
 from robot_control.robot import running_robot
 from robot_control.robot.server_values import ServerValueError, server_text, server_tree
@@ -79,7 +78,7 @@ def test_a_tool_that_drives_the_robot_begins_with_no_such_value(server, monkeypa
 @pytest.mark.parametrize("value", NO_TREE)
 def test_the_pad_has_no_such_parameters(server, value):
     server["~"] = value
-    with pytest.raises(ParameterError, match="must be a group of parameters"):
+    with pytest.raises(ServerValueError, match="must be a group of parameters"):
         pad_parameters()
 
 

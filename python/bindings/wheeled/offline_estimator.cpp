@@ -9,7 +9,7 @@
 #include <limits>
 #include <stdexcept>
 
-#include "bindings/installed_file.h"
+#include "bindings/layers.h"
 #include "bindings/numpy_version.h"
 #include "configuration/parameters.h"
 #include "configuration/wheeled/calibration_file.h"
@@ -21,14 +21,10 @@ namespace py = pybind11;
 namespace robot_control {
 namespace {
 
+using namespace py::literals;
+
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr std::size_t kSensors = kStateSensorNames.size();
-
-Parameters parameters_of(const std::string& path, const OfflineEstimator::Values& values) {
-  std::vector<Overlay> overlays;
-  for (const auto& [key, text] : values) overlays.push_back({.path = key, .text = text, .origin = "Estimator"});
-  return read_parameters(path, overlays, path.empty() ? "" : installed_parameters());
-}
 
 /// Returns a robot with two wheels on one axle, whose middle is base_link.
 DriveTrain two_wheels(const DriveTrainParameters& given) {
@@ -100,10 +96,12 @@ using Numbers = std::vector<Output<double>>;
 using Counts = std::vector<Output<std::int64_t>>;
 using S = StateFrame;
 
-void add_motion(Numbers& to, py::ssize_t rows) {
+Numbers all_numbers(py::ssize_t rows, bool covariance) {
+  Numbers all;
   const auto add = [&](const char* name, std::vector<py::ssize_t> shape, Output<double>::Fill fill) {
-    to.emplace_back(name, std::move(shape), rows, fill);
+    all.emplace_back(name, std::move(shape), rows, fill);
   };
+  constexpr auto kCount = static_cast<py::ssize_t>(kSensors);
   add("x", {}, [](const S& s, double* cell) { *cell = s.base.pose_odom.position[0]; });
   add("y", {}, [](const S& s, double* cell) { *cell = s.base.pose_odom.position[1]; });
   add("z", {}, [](const S& s, double* cell) { *cell = s.base.pose_odom.position[2]; });
@@ -120,13 +118,6 @@ void add_motion(Numbers& to, py::ssize_t rows) {
   add("wheel_yaw", {}, [](const S& s, double* cell) { *cell = s.wheeled.odometry.yaw; });
   add("wheel_linear", {}, [](const S& s, double* cell) { *cell = s.wheeled.odometry.linear; });
   add("wheel_angular", {}, [](const S& s, double* cell) { *cell = s.wheeled.odometry.angular; });
-}
-
-void add_knowledge(Numbers& to, py::ssize_t rows, bool covariance) {
-  const auto add = [&](const char* name, std::vector<py::ssize_t> shape, Output<double>::Fill fill) {
-    to.emplace_back(name, std::move(shape), rows, fill);
-  };
-  constexpr auto kCount = static_cast<py::ssize_t>(kSensors);
   if (covariance) {
     add("pose_covariance", {6, 6}, [](const S& s, double* cell) { copy(s.base.pose_covariance, 36, cell); });
     add("twist_covariance", {6, 6}, [](const S& s, double* cell) { copy(s.base.twist_covariance, 36, cell); });
@@ -143,17 +134,20 @@ void add_knowledge(Numbers& to, py::ssize_t rows, bool covariance) {
   add("residual_level", {}, [](const S& s, double* cell) { *cell = s.wheeled.residual_level; });
   add("confidence", {kCount}, [](const S& s, double* cell) { copy(s.wheeled.confidence, kSensors, cell); });
   add("nis", {kCount}, [](const S& s, double* cell) { copy(s.wheeled.nis, kSensors, cell); });
+  return all;
 }
 
-void add_counts(Counts& to, py::ssize_t rows) {
+Counts all_counts(py::ssize_t rows) {
+  Counts all;
   const auto add = [&](const char* name, std::vector<py::ssize_t> shape, Output<std::int64_t>::Fill fill) {
-    to.emplace_back(name, std::move(shape), rows, fill);
+    all.emplace_back(name, std::move(shape), rows, fill);
   };
   constexpr auto kCount = static_cast<py::ssize_t>(kSensors);
   add("rejected", {kCount}, [](const S& s, std::int64_t* cell) { copy(s.wheeled.rejected, kSensors, cell); });
   add("flags", {}, [](const S& s, std::int64_t* cell) { *cell = static_cast<std::int64_t>(s.base.flags); });
   add("slip", {}, [](const S& s, std::int64_t* cell) { *cell = static_cast<std::int64_t>(s.wheeled.slip); });
   add("degraded", {}, [](const S& s, std::int64_t* cell) { *cell = static_cast<std::int64_t>(s.base.degraded); });
+  return all;
 }
 
 /// A Mark keeps its flag true while it lives.
@@ -182,9 +176,9 @@ struct OfflineEstimator::Rows {
   Table time, left, right, gyro, accel;
 };
 
-OfflineEstimator::OfflineEstimator(const std::string& path, const Values& values, bool use_two_wheels) {
+OfflineEstimator::OfflineEstimator(const std::string& path, const LayerValues& values, bool use_two_wheels) {
   check_numpy_version();
-  const Parameters parameters = parameters_of(path, values);
+  const Parameters parameters = read_layers(path, values, "Estimator");
   robot_ = use_two_wheels ? two_wheels(parameters.robot)
                           : read_drive_train(load_description(parameters.urdf), parameters.robot);
   given_ = parameters_ = parameters.estimator;
@@ -265,11 +259,8 @@ py::dict OfflineEstimator::process(const Array& time, const Array& left, const A
 
   py::array_t<double> times(outputs);
   double* next_time = times.mutable_data();
-  Numbers numbers;
-  add_motion(numbers, outputs);
-  add_knowledge(numbers, outputs, covariance);
-  Counts counts;
-  add_counts(counts, outputs);
+  Numbers numbers = all_numbers(outputs, covariance);
+  Counts counts = all_counts(outputs);
 
   const auto step = [&](py::ssize_t row) {
     const double now = rows.time.data[row];
@@ -300,7 +291,6 @@ py::dict OfflineEstimator::process(const Array& time, const Array& left, const A
 }
 
 py::dict OfflineEstimator::describe() const {
-  using namespace py::literals;
   py::list wheels;
   for (const WheelModel& wheel : robot_.wheels) {
     wheels.append(py::dict("joint"_a = robot_.joints.at(wheel.joint).name,
@@ -316,13 +306,11 @@ py::dict OfflineEstimator::describe() const {
 
 void bind_offline_estimator(py::module_& module) {
   py::class_<OfflineEstimator>(module, "OfflineEstimator")
-      .def(py::init<const std::string&, const OfflineEstimator::Values&, bool>(), py::arg("path"), py::arg("values"),
-           py::arg("two_wheels"))
-      .def("begin", &OfflineEstimator::begin, py::arg("period"))
-      .def("process", &OfflineEstimator::process, py::arg("time"), py::arg("left"), py::arg("right"), py::arg("gyro"),
-           py::arg("accel"), py::kw_only(), py::arg("rounding"), py::arg("every"), py::arg("covariance"),
-           py::arg("pose"))
-      .def("save_calibration", &OfflineEstimator::save_calibration, py::arg("path"))
+      .def(py::init<const std::string&, const LayerValues&, bool>(), "path"_a, "values"_a, "two_wheels"_a)
+      .def("begin", &OfflineEstimator::begin, "period"_a)
+      .def("process", &OfflineEstimator::process, "time"_a, "left"_a, "right"_a, "gyro"_a, "accel"_a, py::kw_only(),
+           "rounding"_a, "every"_a, "covariance"_a, "pose"_a)
+      .def("save_calibration", &OfflineEstimator::save_calibration, "path"_a)
       .def_property_readonly("period", &OfflineEstimator::period)
       .def_property_readonly("loop_period", &OfflineEstimator::loop_period)
       .def_property_readonly("last_time", &OfflineEstimator::last_time)

@@ -16,9 +16,8 @@
 #include <memory>
 #include <optional>
 #include <string>
-#include <utility>
-#include <vector>
 
+#include "bindings/layers.h"
 #include "estimation/wheeled/estimator.h"
 #include "machine/wheeled/drive_train.h"
 
@@ -26,13 +25,12 @@ namespace robot_control {
 
 class OfflineEstimator {
  public:
-  using Values = std::vector<std::pair<std::string, std::string>>;
   using Array = pybind11::array_t<double, pybind11::array::c_style | pybind11::array::forcecast>;
 
   /// Reads parameters as ClosedLoop does, and their calibration_file as the node does. With `two_wheels` no URDF is
   /// read: the robot consists of robot.wheel_radius, wheel_base, imu_position and imu_orientation, with base_link in
   /// the middle of the axle. Throws ParameterError, RobotError, std::invalid_argument.
-  OfflineEstimator(const std::string& path, const Values& values, bool two_wheels);
+  OfflineEstimator(const std::string& path, const LayerValues& values, bool two_wheels);
 
   /// Begins a new run with this period [s]. Throws std::invalid_argument.
   void begin(double period);

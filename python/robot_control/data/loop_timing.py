@@ -18,6 +18,29 @@ class Distribution:
 
 
 @dataclass(frozen=True)
+class Latency:
+    """Time from one stamp of a cycle to another; an empty `begin` stands for that of the cycle before."""
+
+    name: str
+    meaning: str
+    begin: str = ""
+    end: str = ""
+
+
+def _published(begin: str, end: str) -> Latency:
+    meaning = f"from the published {begin} to the published {end}"
+    return Latency(f"{begin}_to_{end}", meaning, f"{begin}_published_ns", f"{end}_published_ns")
+
+
+WOKE, COMMANDED = "driver_woke_ns", "command_published_ns"
+PERIOD = Latency("period", "from one wake-up of the driver to the next")
+WAKE_UP = Latency("wake_up", "from the driver's deadline to its wake-up")
+TO_COMMAND = Latency("sensors_to_command", "from the driver's wake-up to the published command", WOKE, COMMANDED)
+CHAIN = (_published("sensors", "state"), _published("state", "command"), _published("sensors", "permit"))
+LATENCIES = (PERIOD, WAKE_UP, *CHAIN, TO_COMMAND)
+
+
+@dataclass(frozen=True)
 class LoopTiming:
     """Timing of one wall-clock run. A deadline is missed when a tick finds no fresh command or permit, or ends late."""
 
@@ -42,16 +65,11 @@ class LoopTiming:
 def loop_timing(log: Log) -> LoopTiming:
     """Reads the columns of kind kTiming, which only wall-clock runs have, and the gate's counters."""
     log = while_all_ran(log)
-    follows = np.diff(log["cycle"]) == 1
-    woke = log["driver_woke_ns"]
-    # The wake-up is logged relative to the time at which the cycle was due: its stamp, later by what has slipped so
-    # far. The tick that slips begins the new grid itself, and was late by what slipped in it.
-    slipped = np.diff(log["slipped_ns"])
-    period = (np.diff(log["stamp_ns"]) + slipped + np.diff(woke))[follows]
+    period, wake_up, to_command = (distribution(durations_ns(log, each)) for each in (PERIOD, WAKE_UP, TO_COMMAND))
     return LoopTiming(
-        period=distribution(period),
-        wake_up=distribution(woke[1:] + slipped),
-        sensors_to_command=distribution(log["command_published_ns"] - woke),
+        period=period,
+        wake_up=wake_up,
+        sensors_to_command=to_command,
         cycles=int(np.nanmax(log["cycle"]) + 1),
         held=_count(log["held"]),
         missed=_count(log["missed"]),
@@ -61,9 +79,28 @@ def loop_timing(log: Log) -> LoopTiming:
     )
 
 
+def durations_ns(log: Log, latency: Latency) -> FloatArray:
+    """Durations by row of the log; NaN where a cycle does not hold them."""
+    unknown = np.full(log["time"].shape, np.nan)
+    if not np.any(np.nan_to_num(log.get(COMMANDED, unknown))):  # a loop in one process reads no clock
+        return unknown
+    # The wake-up is logged relative to the time at which the cycle was due: its stamp, later by what has slipped so
+    # far. The tick that slips begins the new grid itself, and was late by what slipped in it.
+    woke, slipped = log.get(WOKE, unknown), np.diff(log.get("slipped_ns", unknown), prepend=np.nan)
+    duration: FloatArray
+    if latency is WAKE_UP:
+        duration = woke + slipped
+    elif latency is PERIOD:
+        duration = np.diff(log.get("stamp_ns", unknown), prepend=np.nan) + slipped + np.diff(woke, prepend=np.nan)
+        duration[np.diff(log["cycle"], prepend=np.nan) != 1] = np.nan
+    else:
+        duration = log.get(latency.end, unknown) - log.get(latency.begin, unknown)
+    return duration
+
+
 def while_all_ran(log: Log) -> Log:
     """Without the tail in which the nodes end one after the other: no deadline is missed there."""
-    together = ~np.isnan(log["command_published_ns"]) & ~np.isnan(log["permit_published_ns"])
+    together = ~np.isnan(log[COMMANDED]) & ~np.isnan(log["permit_published_ns"])
     if not together.any():
         return log
     rows = int(np.flatnonzero(together)[-1]) + 1

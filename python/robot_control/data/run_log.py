@@ -57,13 +57,8 @@ class RunLog:
     @property
     def notes(self) -> list[str]:
         """Sentences that name the part of the file that was read, if it is not all of it."""
-        parts = [part for part in (self.header.get("missing"), self.cut) if part]
-        return [*parts, *notes_on_runs(self.runs)]
-
-
-def notes_on_runs(runs: int) -> list[str]:
-    """The note for a file with several runs, of which the last one was read."""
-    return [f"{runs} runs in the file; this is the last one"] if runs > 1 else []
+        several = f"{self.runs} runs in the file; this is the last one" if self.runs > 1 else ""
+        return [part for part in (self.header.get("missing"), self.cut, several) if part]
 
 
 def is_bag(path: Path) -> bool:

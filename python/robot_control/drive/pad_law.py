@@ -15,7 +15,7 @@ One pad is one sender. While messages of another sender arrive within joy_timeou
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 
 from robot_control.loop.roles import NO_LATERAL
 from robot_control.robot.command import Command
@@ -46,11 +46,6 @@ class PadParameters:
     deadzone: float = 0.1  # share of an axis around its middle that counts as the middle
     max_hold: float = 30.0  # s
     joy_timeout: float = 0.5  # s without an answer of the device, or a message on joy
-
-    @classmethod
-    def names(cls) -> tuple[str, ...]:
-        """Names of the private ROS parameters."""
-        return tuple(field.name for field in fields(cls))
 
 
 class Pad:

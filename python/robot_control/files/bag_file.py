@@ -1,13 +1,15 @@
 """Messages of a ROS bag that another program wrote. A process of its own reads it with rosbag (read_bag.py)."""
 
+import contextlib
 import json
 import os
 import subprocess
 import sys
+import weakref
 from collections.abc import Iterable, Iterator
 from io import BytesIO
 from pathlib import Path
-from typing import Any
+from typing import IO, Any, cast
 
 from robot_control.files.files import MAX_TABLE, check_input, printable, utf8
 from robot_control.files.read_bag import END, ERROR, FRAME
@@ -42,7 +44,9 @@ class BagFile:
         with path.open("rb"):
             pass
         self._path = path
-        head: dict[str, Any] = json.loads(next(self._read([]))[2])
+        self._reader: subprocess.Popen[bytes] | None = None
+        ((_, _, data),) = self._read([])
+        head: dict[str, Any] = json.loads(data)
         self.cut = head["cut"]
         if self.cut and head["count"] == 0:
             raise BagFileError(f"{path} holds no message that can be read: {self.cut}")
@@ -58,9 +62,7 @@ class BagFile:
         Raises:
             BagFileError: the bag is not sound, or its reader has reached a limit.
         """
-        messages = self._read(list(topics))
-        next(messages)
-        yield from messages
+        yield from self._read(list(topics))
 
     def messages(self, topic: str) -> Iterator[tuple[Any, int]]:
         """Message and time of reception [ns].
@@ -84,26 +86,38 @@ class BagFile:
             yield message, time_ns
 
     def _read(self, topics: list[str]) -> Iterator[tuple[int, int, bytes]]:
-        """The messages that read_bag.py writes, without the end."""
-        command = [sys.executable, "-P", "-m", "robot_control.files.read_bag", utf8(self._path), *topics]
+        """The answer of the reader; without topics the description of the bag. One reader serves answers that are read
+        to their ends, for to begin means to read the whole index.
+        """
+        reader, self._reader = self._reader or self._started(), None
+        request, answer = cast(IO[bytes], reader.stdin), cast(IO[bytes], reader.stdout)
+        try:
+            with contextlib.suppress(BrokenPipeError):  # then there is no answer either
+                request.write(json.dumps(topics).encode() + b"\n")
+                request.flush()
+            while len(frame := answer.read(FRAME.size)) == FRAME.size:
+                number, time_ns, size = FRAME.unpack(frame)
+                data = answer.read(size)
+                if number == ERROR:
+                    reason = printable(data.decode(errors="replace"))
+                    raise BagFileError(f"{self._path} is no ROS 1 bag that can be read: {reason}")
+                if number == END:
+                    self._reader = reader
+                    return
+                yield number, time_ns, data
+            raise BagFileError(f"{self._path} cannot be read: its reader ended, at a limit of memory or time")
+        finally:
+            if self._reader is not reader:
+                reader.kill()
+                reader.communicate()
+
+    def _started(self) -> subprocess.Popen[bytes]:
+        command = [sys.executable, "-P", "-m", "robot_control.files.read_bag", utf8(self._path)]
         environment = os.environ | {"PYTHONPATH": os.pathsep.join(sys.path)}
-        with subprocess.Popen(
-            command, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, env=environment
-        ) as process:
-            try:
-                output: Any = process.stdout
-                while len(frame := output.read(FRAME.size)) == FRAME.size:
-                    number, time_ns, size = FRAME.unpack(frame)
-                    data = output.read(size)
-                    if number == ERROR:
-                        reason = printable(data.decode(errors="replace"))
-                        raise BagFileError(f"{self._path} is no ROS 1 bag that can be read: {reason}")
-                    if number == END:
-                        return
-                    yield number, time_ns, data
-            finally:
-                process.kill()
-        raise BagFileError(f"{self._path} cannot be read: its reader ended, at a limit of memory or time")
+        pipe, quiet = subprocess.PIPE, subprocess.DEVNULL
+        reader = subprocess.Popen(command, stdin=pipe, stdout=pipe, stderr=quiet, env=environment)
+        weakref.finalize(self, reader.communicate)  # it ends with its input
+        return reader
 
     def _class_of(self, topic: str) -> Any:  # noqa: ANN401 (a generated class)
         from roslib.message import get_message_class
@@ -117,7 +131,6 @@ class BagFile:
             raise BagFileError(f"{self._path}: {printable(topic)} is of {printable(name)}, which is not installed")
         sums = [md5sum for of, _, md5sum, _ in self.connections.values() if of == topic]
         if any(md5sum != kind._md5sum for md5sum in sums):  # noqa: SLF001 (genpy's name)
-            raise BagFileError(
-                f"{self._path}: {printable(topic)} has another definition of {name} than the installed one"
-            )
+            why = f"{self._path}: {printable(topic)} has another definition of {name} than the installed one"
+            raise BagFileError(why)
         return kind

@@ -2,13 +2,13 @@
 
 import contextlib
 import os
+import re
 import shutil
 import stat
 import sys
 import tempfile
 from collections.abc import Iterable, Iterator
 from pathlib import Path
-from types import TracebackType
 from typing import Self
 
 MAX_TABLE = 16 << 30
@@ -24,13 +24,10 @@ CALLER_FOLDER = "ROBOT_CONTROL_CALLER_FOLDER"
 _given: dict[str, str] = {}
 """The given text of every resolved path that differs from it"""
 
-_KINDS = (
-    (stat.S_ISDIR, "a folder"),
-    (stat.S_ISFIFO, "a FIFO"),
-    (stat.S_ISSOCK, "a socket"),
-    (stat.S_ISCHR, "a device"),
-    (stat.S_ISBLK, "a device"),
-)
+_KINDS = {stat.S_IFDIR: "a folder", stat.S_IFIFO: "a FIFO", stat.S_IFSOCK: "a socket"}
+"""of what is no regular file; anything else is a device"""
+_PARTS = re.compile("\"[^\"]*\"|'[^']*'|[^ ]+| ")
+"""of a line: quoted ones, words, blanks"""
 
 
 class InputFileError(ValueError):
@@ -67,11 +64,15 @@ def in_words(error: Exception) -> str:
 
 @contextlib.contextmanager
 def one_message(program: str, *kinds: type[Exception]) -> Iterator[None]:
-    """An error of these kinds ends the program with its message and exit code 1."""
+    """An error of these kinds, or a lack of memory, ends the program with its message and exit code 1."""
     try:
         yield
+    except BrokenPipeError:  # the reader of the output has left: ui/program.py
+        raise
     except kinds as error:
         sys.exit(f"{program}: {fit_for_message(in_words(error))}")
+    except MemoryError:
+        sys.exit(f"{program}: the input needs more memory than there is; cut it into pieces")
 
 
 def problems_of(setting: str, path: Path, *, secret: bool, remedy: str = "") -> Iterator[str]:
@@ -92,9 +93,9 @@ def check_input(path: Path, max_size: int) -> None:
         OSError: it is not there, or may not be looked at.
     """
     status = path.stat()
-    for is_kind, kind in _KINDS:
-        if is_kind(status.st_mode):
-            raise InputFileError(file_error(path, f"is {kind}; only a regular file is read"))
+    if not stat.S_ISREG(status.st_mode):
+        kind = _KINDS.get(stat.S_IFMT(status.st_mode), "a device")
+        raise InputFileError(file_error(path, f"is {kind}; only a regular file is read"))
     if status.st_size > max_size:
         raise InputFileError(file_error(path, f"has {status.st_size} bytes; at most {max_size} are read"))
 
@@ -139,24 +140,12 @@ def fit_for_message(sentence: str) -> str:
 
 
 def _fit_line(line: str) -> str:
-    result, at = "", 0
-    while at < len(line):
+    result = ""
+    for part in _PARTS.finditer(line):
         if len(result) > MAX_MESSAGE:
             return result + " …"
-        if line[at] == " ":
-            result += " "
-            at += 1
-            continue
-        end = _end_of_part(line, at)
-        result += printable(line[at:end])
-        at = end
+        result += printable(part[0])
     return result
-
-
-def _end_of_part(line: str, at: int) -> int:
-    close = line.find(line[at], at + 1) if line[at] in "\"'" else -1
-    blank = line.find(" ", at)
-    return close + 1 if close >= 0 else blank if blank >= 0 else len(line)
 
 
 class NewFiles:
@@ -190,11 +179,9 @@ class NewFiles:
     def __enter__(self) -> Self:
         return self
 
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
+    def __exit__(self, _kind: object, error: BaseException | None, _trace: object) -> None:
         try:
-            if kind is None:
+            if error is None:
                 for partial, target in self._names:
                     _put(partial, target)
         except OSError as failure:

@@ -20,9 +20,8 @@ def check_outputs(outputs: Sequence[Path | None], inputs: Sequence[Path | None] 
         _check_place(path)
         for given in inputs:
             if given is not None and path.exists() and given.exists() and path.samefile(given):
-                raise ValueError(
-                    f"{path} is an input of this program, which stays as it is; give the output another name"
-                )
+                why = f"{path} is an input of this program, which stays as it is; give the output another name"
+                raise ValueError(why)
         name = os.path.realpath(path)
         if name in seen and not (path.exists() and not path.is_file()):
             raise ValueError(f"{path} is named for two outputs; give each a name of its own")

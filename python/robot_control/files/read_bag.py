@@ -1,9 +1,11 @@
-"""Writes the messages of a ROS bag to standard output: python3 -m robot_control.files.read_bag FILE [TOPIC …].
+"""Reads a ROS bag for another process: python3 -m robot_control.files.read_bag FILE.
 
 Debian's rosbag trusts a bag: 11 kB of bz2 inflate to 6.4 GB. So it reads in this process, which has limits of memory
 and of processor time. As far as the kernel permits it uses no network, changes no file and starts no program.
-bag_file.py starts it. Each message is `FRAME` (number of its connection, time of reception in ns, bytes) and its data.
-The first one is HEAD, the last one END or ERROR.
+
+bag_file.py starts it. For each answer it writes a list of topics in JSON as a line of standard input. A message in the
+answer is `FRAME` (number of its connection, time of reception in ns, bytes) and its data. For an empty list it is HEAD.
+The last one is END, or ERROR, which also ends the process.
 """
 
 import contextlib
@@ -42,7 +44,7 @@ def _open(rosbag: Any, path: str) -> tuple[Any, str]:  # noqa: ANN401 (a module 
     return bag, f"{cut}{chunks} whole chunks"
 
 
-def _read(path: str, topics: list[str]) -> None:
+def _serve(path: str) -> None:
     try:
         import rosbag  # noqa: PLC0415 (only this process needs it)
     except ImportError as error:
@@ -55,21 +57,25 @@ def _read(path: str, topics: list[str]) -> None:
     number_of = {id(each.header): number for number, each in connections.items()}
     fields = ("topic", "datatype", "md5sum", "msg_def")
     known = {number: [getattr(each, field) for field in fields] for number, each in connections.items()}
-    _give(HEAD, 0, json.dumps({"cut": cut, "connections": known, "count": bag.get_message_count()}).encode())
-    if topics:
-        for message in bag.read_messages(topics, raw=True, return_connection_header=True):
-            number = number_of[id(message.connection_header)]
-            _give(number, message.timestamp.to_nsec(), message.message[1])
+    head = json.dumps({"cut": cut, "connections": known, "count": bag.get_message_count()}).encode()
+    for line in sys.stdin:
+        if topics := json.loads(line):
+            for message in bag.read_messages(topics, raw=True, return_connection_header=True):
+                number = number_of[id(message.connection_header)]
+                _give(number, message.timestamp.to_nsec(), message.message[1])
+        else:
+            _give(HEAD, 0, head)
+        _give(END, 0, b"")
+        sys.stdout.flush()
 
 
 def main() -> None:
     """Exits with 0; an error is the last message."""
-    path, *topics = sys.argv[1:]
+    (path,) = sys.argv[1:]
     limit(resource.RLIMIT_AS, MAX_MEMORY)
     limit(resource.RLIMIT_CPU, MIN_TIME + Path(path).stat().st_size // SPEED)
     try:
-        _read(path, topics)
-        _give(END, 0, b"")
+        _serve(path)
     except Exception as error:
         _give(ERROR, 0, f"{type(error).__name__}: {error}".encode(errors="replace"))
     sys.stdout.flush()

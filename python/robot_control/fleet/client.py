@@ -218,9 +218,10 @@ class Client:
                 self._outbox.append(("factsheet", factsheet(self.machine)))
                 state.end(FINISHED)
 
-    def pause(self) -> None:
-        """startPause at the robot, in any thread."""
+    def pause(self) -> str:
+        """startPause at the robot, in any thread; empty, for nothing stands against it."""
         self._requests.append(lambda: setattr(self.vehicle, "paused", True))
+        return ""
 
     def resume(self) -> str:
         """stopPause at the robot, in any thread; why it does not go on, empty if it does."""

@@ -76,12 +76,12 @@ class Actions:
             self._topics[name].send(Bool(data=False))
         return True
 
-    def trigger(self) -> bool:
-        """Ends every waitForTrigger; False if there is none."""
+    def trigger(self) -> str:
+        """Ends every waitForTrigger; why not, empty if there is one."""
         waiting = [action_id for action_id, (_, name) in list(self._ends.items()) if not name]
         for action_id in waiting:
             self._results.put((action_id, FINISHED, "triggered"))
-        return bool(waiting)
+        return "" if waiting else "no waitForTrigger runs"
 
     def results(self) -> list[Result]:
         """Those that ended since the last call."""

@@ -18,7 +18,7 @@ import paho.mqtt.client as mqtt
 from robot_control.files.kept_file import digest_of
 from robot_control.fleet.memory import Memory
 from robot_control.fleet.settings import Settings
-from robot_control.fleet.v2.messages import INBOUND, MAX_BYTES, Message, encoded, time_text
+from robot_control.fleet.v2.messages import INBOUND, MAX_BYTES, Message, headed
 from robot_control.robot.boundary import UnfitError, boundary
 
 RETRY = (1, 30)
@@ -86,14 +86,8 @@ class Link:
         return f"{self._settings.topic}/{name}"
 
     def _bytes(self, topic: str, message: Message) -> bytes:
-        header = {
-            "headerId": self._memory.header_id(topic),
-            "timestamp": time_text(time.time()),
-            "version": self._settings.version,
-            "manufacturer": self._settings.manufacturer,
-            "serialNumber": self._settings.serial_number,
-        }
-        payload = encoded({**header, **message})
+        given, number = self._settings, self._memory.header_id(topic)
+        payload = headed(number, given.version, given.manufacturer, given.serial_number, message)
         if topic == "connection":
             self._own.append(digest_of(payload))
             self._memory.save(connection=list(self._own))

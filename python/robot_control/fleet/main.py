@@ -8,7 +8,6 @@ from pathlib import Path
 from typing import Any
 
 import rospy
-from std_srvs.srv import Trigger, TriggerResponse
 
 from robot_control._robot_control import ParameterError, RobotError
 from robot_control.files.files import InputFileError, fit_for_message, given_path, in_words, one_message
@@ -21,7 +20,7 @@ from robot_control.fleet.v2.messages import Error
 from robot_control.fleet.v2.vehicle import Vehicle
 from robot_control.installed_files import share_file
 from robot_control.robot.boundary import boundary
-from robot_control.robot.ros_node import running_node
+from robot_control.robot.ros_node import running_node, serve
 from robot_control.robot.server_values import ServerValueError
 from robot_control.robot.topic_sender import Signals
 from robot_control.settings.files import SettingsError
@@ -35,7 +34,7 @@ SAVE_AGAIN = 1.0
 """s after which a file that could not be written is tried again"""
 END = 3.0
 """s for the robot to stop when the program is ended"""
-MISSING = "needs Debian's python3-paho-mqtt: scripts/setup --fleet"
+MISSING = "needs Debian's python3-paho-mqtt and python3-jsonschema: scripts/setup --fleet"
 
 
 class Node:
@@ -54,8 +53,9 @@ class Node:
         self._saved: object = None
         self._save_at = -math.inf
         self._reason = ""
-        for name in ("pause", "resume", "trigger"):
-            rospy.Service(f"~{name}", Trigger, getattr(self, f"_{name}"))
+        serve("~pause", self.client.pause, "paused; goes on after ~resume or stopPause")
+        serve("~resume", self.client.resume, "goes on")
+        serve("~trigger", self.robot.actions.trigger)
         self.robot.stop_all()
 
     def run(self, signals: Signals) -> None:
@@ -108,18 +108,6 @@ class Node:
             self._saved = vehicle.revision, position
         return why
 
-    def _pause(self, _request: object) -> TriggerResponse:
-        self.client.pause()
-        return TriggerResponse(success=True, message="paused; goes on after ~resume or stopPause")
-
-    def _resume(self, _request: object) -> TriggerResponse:
-        why = self.client.resume()
-        return TriggerResponse(success=not why, message=why or "goes on")
-
-    def _trigger(self, _request: object) -> TriggerResponse:
-        triggered = self.robot.actions.trigger()
-        return TriggerResponse(success=triggered, message="" if triggered else "no waitForTrigger runs")
-
 
 def recalled(memory: Memory) -> tuple[Vehicle, list[Any] | None]:
     """The vehicle and the position of the program before; new ones where the file holds no such. Raises OSError."""
@@ -149,9 +137,10 @@ def arguments(given: list[str]) -> argparse.Namespace:
 
 def main() -> None:
     """Entry point of scripts/vda5050.py."""
-    given = arguments([each for each in rospy.myargv(sys.argv)[1:] if each])
+    given = arguments([each for each in rospy.myargv()[1:] if each])
     try:
-        import paho.mqtt.client  # noqa: F401 (a missing module is one message, before anything runs)
+        import jsonschema  # noqa: F401 (a missing module is one message, before anything runs)
+        import paho.mqtt.client  # noqa: F401
 
         shipped = Path(share_file("config/fleet.yaml"))
         settings = read_settings(shipped, *([given.config] if given.config else []))

@@ -8,11 +8,11 @@ import sys
 import time
 import uuid
 from collections.abc import Iterator
+from itertools import pairwise
 from typing import Any
 
-from robot_control.fleet.v2.messages import encoded, time_text
+from robot_control.fleet.v2.messages import Message, headed
 
-Message = dict[str, Any]
 PATIENCE = 120.0
 """s for one order"""
 
@@ -42,14 +42,8 @@ class Master:
         """With its header."""
         _, _, manufacturer, serial = self._topic.split("/")
         self._numbers[topic] += 1
-        header = {
-            "headerId": self._numbers[topic],
-            "timestamp": time_text(time.time()),
-            "version": self._version,
-            "manufacturer": manufacturer,
-            "serialNumber": serial,
-        }
-        self._client.publish(f"{self._topic}/{topic}", encoded({**header, **content}))
+        payload = headed(self._numbers[topic], self._version, manufacturer, serial, content)
+        self._client.publish(f"{self._topic}/{topic}", payload)
 
     def act(self, kind: str, action_id: str = "", /, **parameters: object) -> str:
         """Sends an instant action, again if its id is given; its actionId."""
@@ -80,28 +74,15 @@ def square(size: float, map_id: str, speed: float) -> list[tuple[list[Message], 
     """Nodes and edges of a square: the first two sides, then each further one as an update."""
     corners = [(0.0, 0.0), (size, 0.0), (size, size), (0.0, size), (0.0, 0.0)]
     nodes: list[Message] = [
-        {
-            "nodeId": f"corner{number % 4}",
-            "sequenceId": 2 * number,
-            "released": True,
-            "nodePosition": {"x": x, "y": y, "mapId": map_id},
-            "actions": [],
-        }
+        {"nodeId": f"corner{number % 4}", "nodePosition": {"x": x, "y": y, "mapId": map_id}}
         for number, (x, y) in enumerate(corners)
     ]
     nodes[-1]["nodePosition"]["theta"] = 0.0
-    edges: list[Message] = [
-        {
-            "edgeId": f"side{number}",
-            "sequenceId": 2 * number + 1,
-            "released": True,
-            "startNodeId": f"corner{number}",
-            "endNodeId": f"corner{(number + 1) % 4}",
-            "maxSpeed": speed,
-            "actions": [],
-        }
-        for number in range(4)
-    ]
+    ends = [{"startNodeId": before["nodeId"], "endNodeId": after["nodeId"]} for before, after in pairwise(nodes)]
+    edges: list[Message] = [{"edgeId": f"side{number}", "maxSpeed": speed, **end} for number, end in enumerate(ends)]
+    for first, elements in ((0, nodes), (1, edges)):
+        for number, element in enumerate(elements):
+            element |= {"sequenceId": 2 * number + first, "released": True, "actions": []}
     return [(nodes[0:3], edges[0:2]), (nodes[2:4], edges[2:3]), (nodes[3:5], edges[3:4])]
 
 
@@ -160,12 +141,15 @@ def main() -> None:
         description="A small master of VDA 5050, to try vda5050.py: it says where the robot is (initPosition), sends a "
         "square as an order with two updates, and prints every state. Exit code 0: it was driven.",
     )
-    parser.add_argument("--host", default="127.0.0.1", help="of the broker (default %(default)s)")
-    parser.add_argument("--port", type=int, default=1883, help="of the broker (default %(default)s)")
-    parser.add_argument("--topic", default="uagv/v2/robot_control/r1", help="of the robot (default %(default)s)")
-    parser.add_argument("--map", default="hall", help="mapId (default %(default)s)")
-    parser.add_argument("--size", type=float, default=2.0, help="m, side of the square (default %(default)s)")
-    parser.add_argument("--speed", type=float, default=0.4, help="m/s, maxSpeed of its edges (default %(default)s)")
+    for name, default, meaning in (
+        ("--host", "127.0.0.1", "of the broker"),
+        ("--port", 1883, "of the broker"),
+        ("--topic", "uagv/v2/robot_control/r1", "of the robot"),
+        ("--map", "hall", "mapId"),
+        ("--size", 2.0, "m, side of the square"),
+        ("--speed", 0.4, "m/s, maxSpeed of its edges"),
+    ):
+        parser.add_argument(name, type=type(default), default=default, help=f"{meaning} (default %(default)s)")
     given = parser.parse_args()
     try:
         master = Master(given.host, given.port, given.topic)

@@ -21,12 +21,11 @@ from robot_control.fleet.custom import Actions
 from robot_control.fleet.settings import CustomAction, Settings
 from robot_control.fleet.v2.leg import PathPoint
 from robot_control.fleet.v2.messages import Error
-from robot_control.fleet.v2.order import Action
 from robot_control.fleet.v2.state import Facts
 from robot_control.msg import FollowPathAction, FollowPathFeedback, FollowPathGoal, SafetyStatus
 from robot_control.robot.boundary import guard_action, unsealed
 from robot_control.robot.diagnosis.state import SILENCE
-from robot_control.robot.pose import pose_of, turned
+from robot_control.robot.pose import Pose, pose_of, turned
 from robot_control.robot.safety_states import DRIVABLE, STOPPED
 from robot_control.robot.safety_watch import CATCH_UP, LATE
 from robot_control.robot.view import View
@@ -50,8 +49,9 @@ class RosRobot:
         """`saved`: `position` of the program before; None: the position is not initialized."""
         self.progress, self._goal = Progress(), 0
         self._settings, self.actions = settings, Actions({**settings.actions, "stopPause": RESUME})
+        self.begin, self.end, self.results = self.actions.begin, self.actions.end, self.actions.results
         self._odometry: Odometry | None = None
-        self._feedback_at = self._asked_at = -math.inf
+        self._feedback_at = self._called_at = -math.inf
         self._held_by = ""
         self._saved, self._run = saved, 0
         self.map_odom: list[Any] | None = None  # mapId, x, y, yaw of odom in the map, if this program sets it
@@ -64,25 +64,13 @@ class RosRobot:
         self._client = actionlib.ActionClient(ACTION, FollowPathAction)
         self._handles: list[actionlib.ClientGoalHandle] = []  # of goals that have not ended, the present one last
 
-    def begin(self, action: Action) -> None:
-        """Its end comes with `results`."""
-        self.actions.begin(action)
-
-    def end(self, action_id: str) -> bool:
-        """True if the action was interrupted."""
-        return self.actions.end(action_id)
-
-    def results(self) -> list[tuple[str, str, str]]:
-        """Actions that ended since the last call."""
-        return self.actions.results()
-
     # facts
 
     def facts(self) -> Facts:
         """As measured now. After a late call the receiving threads first take what waits for them."""
-        if time.monotonic() - self._asked_at > LATE:
+        if time.monotonic() - self._called_at > LATE:
             time.sleep(CATCH_UP)
-        self._asked_at = now = time.monotonic()
+        self._called_at = now = time.monotonic()
         (odometry, _), (safety, _), (battery, _) = map(self._view.newest, ("odom", "safety_status", "battery_state"))
         self._follow(odometry, safety)
         fresh, speaks, status = (self._view.fresh(topic, now) for topic in ("odom", "safety_status", "robot_status"))
@@ -93,12 +81,10 @@ class RosRobot:
         transform = self._map_odom()
         result: dict[str, Any] = {}
         if odometry is not None and transform is not None:
-            map_id, x, y, yaw = transform
-            pose = pose_of(odometry)
-            result["x"] = x + math.cos(yaw) * pose.x - math.sin(yaw) * pose.y
-            result["y"] = y + math.sin(yaw) * pose.x + math.cos(yaw) * pose.y
-            result["theta"] = turned(pose.yaw + yaw)
-            result["map_id"] = map_id if fresh else ""
+            map_id, *origin = transform
+            pose, in_map = pose_of(odometry), Pose(*origin)
+            result["x"], result["y"] = in_map.holding(pose.x, pose.y)
+            result |= {"theta": turned(pose.yaw + in_map.yaw), "map_id": map_id if fresh else ""}
         if odometry is not None:
             spread = odometry.pose.covariance[0] + odometry.pose.covariance[7]
             result["deviation"] = math.sqrt(spread) if 0 <= spread < math.inf else None
@@ -150,7 +136,7 @@ class RosRobot:
             return "there is no odometry"
         pose = pose_of(self._odometry)
         yaw = turned(theta - pose.yaw)
-        dx, dy = math.cos(yaw) * pose.x - math.sin(yaw) * pose.y, math.sin(yaw) * pose.x + math.cos(yaw) * pose.y
+        dx, dy = Pose(0.0, 0.0, yaw).holding(pose.x, pose.y)
         self.map_odom = [map_id, x - dx, y - dy, yaw]
         self.publish_map()
         return ""
@@ -250,16 +236,13 @@ def _silent(what: str, topic: str) -> Error:
 
 def _errors(safety: SafetyStatus) -> list[Error]:
     """Latched causes need a person at the robot; warnings and what is waited for end by themselves."""
+    columns = safety.causes, safety.sentences, safety.remedies, safety.actors, safety.details
     causes = [
         Error(name, f"{sentence} {detail}".strip(), (("actor", actor),), remedy, fatal=True)
-        for name, sentence, remedy, actor, detail in zip(
-            safety.causes, safety.sentences, safety.remedies, safety.actors, safety.details, strict=False
-        )
+        for name, sentence, remedy, actor, detail in zip(*columns, strict=False)
     ]
-    warnings = [
-        Error(name, sentence) for name, sentence in zip(safety.warnings, safety.warning_sentences, strict=False)
-    ]
-    waits = [Error("nodeMissing", f"{name} does not run", (), f"start {name}") for name in safety.missing]
+    warnings = list(map(Error, safety.warnings, safety.warning_sentences))
+    awaited = [Error("nodeMissing", f"{name} does not run", (), f"start {name}") for name in safety.missing]
     if safety.awaiting_zero_request:
-        waits.append(Error("awaitingZeroRequest", "no zero velocity was requested since the start"))
-    return [*causes[:MAX_ERRORS], *warnings[:MAX_ERRORS], *waits[:MAX_ERRORS]]
+        awaited.append(Error("awaitingZeroRequest", "no zero velocity was requested since the start"))
+    return [*causes[:MAX_ERRORS], *warnings[:MAX_ERRORS], *awaited[:MAX_ERRORS]]

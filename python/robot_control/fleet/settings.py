@@ -10,7 +10,7 @@ from robot_control.files.files import given_path, printable, problems_of
 from robot_control.fleet.v2.capability import STANDARD, ActionKind
 from robot_control.fleet.v2.messages import VERSIONS
 from robot_control.settings.addresses import is_loopback
-from robot_control.settings.files import SettingsError, list_of, matching, number, overlaid, rules_of, wrong_values
+from robot_control.settings.files import list_of, matching, number, rules_of, settings_of, wrong_values
 
 
 @dataclass(frozen=True)
@@ -107,17 +107,16 @@ def read_settings(*paths: Path) -> Settings:
         SettingsError: with all problems.
         OSError: a file cannot be read.
     """
-    values, problems = overlaid(paths, _wrong_values)
+    return settings_of(paths, _wrong_values, _made, _together)
+
+
+def _made(values: dict[str, Any]) -> Settings:
     custom = {
         str(name): CustomAction(**{**each, "scopes": tuple(each.get("scopes", CustomAction.scopes))})
         for name, each in values.pop("actions", {}).items()
     }
     names = (name for name, value in values.items() if name.endswith("_file") and value)
-    settings = Settings(**(values | {name: str(given_path(values[name])) for name in names}), actions=custom)
-    problems += _together(settings)
-    if problems:
-        raise SettingsError("; ".join(problems))
-    return settings
+    return Settings(**(values | {name: str(given_path(values[name])) for name in names}), actions=custom)
 
 
 def _wrong_values(tree: Any) -> Iterator[str]:

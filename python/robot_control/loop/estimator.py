@@ -208,17 +208,8 @@ class Estimator:
         if not self._begun:
             self._estimator.begin(self._period or self._median_period(stamps, rounding))
             self._begun = True
-        out: Estimate = self._estimator.process(
-            stamps,
-            left,
-            right,
-            rates,
-            forces,
-            rounding=rounding,
-            every=int(every),
-            covariance=bool(covariance),
-            pose=self._pose,
-        )
+        options = {"rounding": rounding, "every": int(every), "covariance": bool(covariance)}
+        out: Estimate = self._estimator.process(stamps, left, right, rates, forces, pose=self._pose, **options)
         self._pose = None
         out["valid"] = (out["flags"] & FLAGS["valid"]) != 0
         return out
@@ -243,8 +234,7 @@ class Estimator:
         `radius`), `wheel_base`, `wheel_base_multiplier`, `effective_wheel_base`, `imu` (`link`, `position`,
         `orientation` x y z w), `base_link`, `name`, `source`.
         """
-        description: dict[str, Any] = self._estimator.robot
-        return description
+        return self._estimator.robot
 
     def _median_period(self, stamps: FloatArray, rounding: float) -> float:
         """The median step; where rounded stamps cannot be distinguished from those of robot.rate, its exact period."""
@@ -276,10 +266,8 @@ def _axes(name: str, given: ArrayLike | None, count: int) -> FloatArray:
         return np.empty((0, 3))
     values = _numbers(name, given)
     if values.shape != (count, 3):
-        raise ValueError(
-            f"{name} has the shape {values.shape}; with {count} times it must be ({count}, 3), in IMU axes, or None. "
-            "Of a gyro with one axis the other two are 0."
-        )
+        what = f"{name} has the shape {values.shape}; with {count} times it must be ({count}, 3), in IMU axes, or None"
+        raise ValueError(f"{what}. Of a gyro with one axis the other two are 0.")
     return values
 
 
@@ -311,14 +299,10 @@ def _check_increasing(stamps: FloatArray, last: float | None) -> None:
     if unknown.size:
         raise ValueError(f"time[{unknown[0]}] is {stamps[unknown[0]]}; every row needs a finite time: drop the row")
     if last is not None and stamps[0] <= last:
-        raise ValueError(
-            f"time[0] is {stamps[0]!r} s, not after {last!r} s, where the last process() ended; call reset() to "
-            "start again"
-        )
+        what = f"time[0] is {stamps[0]!r} s, not after {last!r} s, where the last process() ended"
+        raise ValueError(f"{what}; call reset() to start again")
     back = np.flatnonzero(np.diff(stamps) <= 0)
     if back.size:
         row = int(back[0]) + 1
-        raise ValueError(
-            f"time[{row}] is {float(stamps[row])!r} s, time[{row - 1}] is {float(stamps[row - 1])!r} s; time must "
-            "strictly increase: sort the rows, and merge those of one time"
-        )
+        what = f"time[{row}] is {float(stamps[row])!r} s, time[{row - 1}] is {float(stamps[row - 1])!r} s"
+        raise ValueError(f"{what}; time must strictly increase: sort the rows, and merge those of one time")

@@ -74,8 +74,7 @@ class Kind:
 
     def node(self, role: str) -> str:
         """The node of a role: driver, estimator, controller or monitor."""
-        name: str = getattr(self, role)
-        return name
+        return str(getattr(self, role))
 
 
 class WheelsOnlyError(ValueError):

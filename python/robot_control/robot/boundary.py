@@ -77,9 +77,8 @@ class Boundary:
                 with contextlib.suppress(Exception):
                     stop()
             place = traceback.extract_tb(error.__traceback__)[-1]
-            self.drop(
-                source, f"{type(error).__name__}: {error} ({place.name}, line {place.lineno}); what moved is stopped"
-            )
+            why = f"{type(error).__name__}: {error} ({place.name}, line {place.lineno}); what moved is stopped"
+            self.drop(source, why)
 
 
 boundary = Boundary()

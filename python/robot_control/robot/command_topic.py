@@ -28,8 +28,7 @@ class CommandTopic:
     @property
     def name(self) -> str:
         """Absolute name of the topic that is used now."""
-        name: str = self._publishers[self._chosen()].resolved_name
-        return name
+        return str(self._publishers[self._chosen()].resolved_name)
 
     def send(self, command: Command, stamp: rospy.Time | None = None) -> None:
         """Sends it, stamped with the time of the request, which is now if it is not given."""

@@ -79,15 +79,15 @@ class Interruptions:
 
     def __init__(self, now: float, began: float | None = None) -> None:
         """`began`: s when the program did, where that is not `now`."""
-        self._looked = now
-        self._heard = now if began is None else began  # of the last message
+        self._stepped_at = now
+        self._received_at = now if began is None else began  # of the last message
         self._interrupted = self._stopped = (-math.inf, "")  # when last, why
         self.status: Status | None = None  # the newest message
         self.count = 0
 
     def step(self, now: float, statuses: Iterable[Status] = (), *, waited: bool = False) -> None:
         """One pass: notes how long there was none, unless the program `waited` or planned, and takes the messages."""
-        gap, self._looked = now - self._looked, now
+        gap, self._stepped_at = now - self._stepped_at, now
         if gap > GAP and not waited:
             self.interrupt(now, f"this program stood still for {gap:.1f} s")
         for status in statuses:
@@ -98,9 +98,9 @@ class Interruptions:
         why = self._change(status)
         if why:
             self.interrupt(now, why)
-        elif self._waits and not status.stopped and status.withdrawn >= self._heard:
+        elif self._awaits_permit and not status.stopped and status.withdrawn >= self._received_at:
             self.interrupt(min(now, status.withdrawn), UNSEEN)
-        self._heard = now
+        self._received_at = now
         if status.stopped:
             self._stopped = now, status.why()
         elif self.status is not None and self.status.stopped:
@@ -113,7 +113,7 @@ class Interruptions:
         self.count += 1
 
     @property
-    def _waits(self) -> bool:
+    def _awaits_permit(self) -> bool:
         """Until now for a first permission, as far as this program knows."""
         return self.status is None or self.status.state == "INIT"
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,11 +13,12 @@ from numpy.typing import NDArray
 if TYPE_CHECKING:
     from nav_msgs.msg import Odometry
 
+FloatArray = NDArray[np.float64]
 FARTHEST = 1e6
 """m, m/s, rad; a larger number in a path or in odometry is none: its square may overflow"""
 
 
-def rotation(quaternion: Sequence[float]) -> NDArray[np.float64]:
+def rotation(quaternion: Sequence[float]) -> FloatArray:
     """(3, 3), of x, y, z, w."""
     x, y, z, w = quaternion
     return np.array(
@@ -29,14 +30,7 @@ def rotation(quaternion: Sequence[float]) -> NDArray[np.float64]:
     )
 
 
-class _Quaternion(Protocol):
-    x: float
-    y: float
-    z: float
-    w: float
-
-
-def yaw_of(q: _Quaternion) -> float:
+def yaw_of(q: Any) -> float:  # noqa: ANN401 (geometry_msgs/Quaternion, or its like)
     """rad, of a unit quaternion, for instance of geometry_msgs."""
     return math.atan2(2 * (q.w * q.z + q.x * q.y), 1 - 2 * (q.y * q.y + q.z * q.z))
 
@@ -47,6 +41,22 @@ def turned(angle: float) -> float:
     return math.pi if rest <= -math.pi else rest
 
 
+def arcs_between(x: FloatArray, y: FloatArray, yaw: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """m and rad of the arc from each pose to the next one: a chord c that turns by φ is c·(φ/2)/sin(φ/2) long."""
+    turn = np.remainder(np.diff(yaw) + np.pi, 2 * np.pi) - np.pi
+    middle = yaw[:-1] + turn / 2
+    chord = np.diff(x) * np.cos(middle) + np.diff(y) * np.sin(middle)
+    return chord / np.sinc(turn / (2 * np.pi)), turn  # numpy's sinc(u) is sin(πu)/(πu)
+
+
+def along_arcs(lengths: FloatArray, turns: FloatArray) -> FloatArray:
+    """(n + 1, 3) x, y [m] and yaw [rad], not wrapped, from the origin over n arcs of these m and rad."""
+    yaw = np.concatenate([[0.0], np.cumsum(turns)])
+    chord, middle = lengths * np.sinc(turns / (2 * np.pi)), yaw[:-1] + turns / 2
+    steps = np.cumsum([chord * np.cos(middle), chord * np.sin(middle)], axis=1)
+    return np.column_stack([np.pad(steps, ((0, 0), (1, 0))).T, yaw])
+
+
 @dataclass(frozen=True)
 class Pose:
     """Pose of the robot in one frame, for instance odom."""
@@ -54,6 +64,11 @@ class Pose:
     x: float  # m
     y: float  # m
     yaw: float  # rad
+
+    def holding(self, x: float, y: float) -> tuple[float, float]:
+        """m, in the frame of this pose: the point that lies x ahead of and y to the left of it."""
+        cosine, sine = math.cos(self.yaw), math.sin(self.yaw)
+        return self.x + cosine * x - sine * y, self.y + sine * x + cosine * y
 
     def seen_from(self, start: Pose) -> tuple[float, float]:
         """m ahead of and to the left of `start`."""

@@ -14,12 +14,8 @@ ROLES = ("driver", "estimator", "controller", "monitor")
 def kind_of(message: RobotKind) -> Kind:
     """The content of a message. A role that it does not name keeps the node of a robot on wheels."""
     nodes = {role: node for role, node in zip(message.roles, message.nodes, strict=False) if role in ROLES and node}
-    return Kind(
-        name=message.kind,
-        **nodes,
-        fault_components=tuple(message.fault_components),
-        fault_kinds=tuple(message.fault_kinds),
-    )
+    fault_components = tuple(message.fault_components)
+    return Kind(name=message.kind, **nodes, fault_components=fault_components, fault_kinds=tuple(message.fault_kinds))
 
 
 @cache

@@ -1,43 +1,33 @@
 """The ROS master, with a time limit for its answers, and what its list of publishers says."""
 
-import http.client
 import sys
-import xmlrpc.client
 from collections.abc import Iterable, Sequence
 from typing import Any
 
 import rosgraph
 import rospy
 
+from robot_control.robot.timed_proxy import NO_ANSWER, timed_proxy
+
 TIMEOUT = 1.0
 """s for an answer of the master, which may hang"""
-NO_ANSWER = (OSError, xmlrpc.client.Error, http.client.HTTPException, ValueError)
-
-
-class _Transport(xmlrpc.client.Transport):
-    def make_connection(self, host: tuple[str, dict[str, str]] | str) -> http.client.HTTPConnection:
-        connection = super().make_connection(host)
-        connection.timeout = TIMEOUT
-        return connection
 
 
 def require_master() -> None:
     """Ends the program with a message where no ROS master answers."""
     if not rosgraph.is_master_online():
-        sys.exit(
-            f"no ROS master at {rosgraph.get_master_uri()}: start the robot first, for instance with "
-            "roslaunch robot_control sim.launch"
-        )
+        what = f"no ROS master at {rosgraph.get_master_uri()}"
+        sys.exit(f"{what}: start the robot first, for instance with roslaunch robot_control sim.launch")
 
 
 def living(node: str) -> bool:
     """True if a node of this name (absolute) is known to the master and answers."""
     try:
-        master: Any = xmlrpc.client.ServerProxy(rosgraph.get_master_uri(), transport=_Transport())
+        master: Any = timed_proxy(rosgraph.get_master_uri(), TIMEOUT)
         known, _, uri = master.lookupNode(node, node)
         if known != 1:
             return False
-        itself: Any = xmlrpc.client.ServerProxy(uri, transport=_Transport())
+        itself: Any = timed_proxy(uri, TIMEOUT)
         return bool(itself.getPid(node)[0] == 1)
     except NO_ANSWER:
         return False
@@ -49,7 +39,7 @@ class Master:
     def __init__(self, own: str) -> None:
         self.uri = rosgraph.get_master_uri()
         self._own = own
-        self._proxy = xmlrpc.client.ServerProxy(self.uri, transport=_Transport())
+        self._proxy = timed_proxy(self.uri, TIMEOUT)
 
     def state(self) -> Sequence[Any] | None:
         """Publishers, subscribers and servers; None if the master does not answer."""
@@ -66,7 +56,7 @@ class Master:
         The node itself knows its topics and takes their publishers as from the master (Slave API of ROS).
         """
         uri = rospy.get_node_uri()
-        itself: Any = xmlrpc.client.ServerProxy(uri, transport=_Transport())
+        itself: Any = timed_proxy(uri, TIMEOUT)
         try:
             for topic, kind in itself.getPublications(self._own)[2]:
                 self._proxy.registerPublisher(self._own, topic, kind, uri)

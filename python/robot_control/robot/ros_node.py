@@ -2,10 +2,11 @@
 
 import contextlib
 import sys
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 
 import rosgraph.names
 import rospy
+from std_srvs.srv import Trigger, TriggerResponse
 
 from robot_control.files.files import printable
 from robot_control.robot.ros_master import living, require_master
@@ -21,10 +22,8 @@ def begin_node(name: str, *, anonymous: bool = False) -> None:
     if not anonymous:
         own = _resolved(name)
         if living(own):
-            sys.exit(
-                f"{name}: a node {printable(own)} runs already. End it (rosnode kill {printable(own)}), or give this "
-                f"one a name of its own: __name:={name}_2"
-            )
+            what = f"{name}: a node {printable(own)} runs already. End it"
+            sys.exit(f"{what} (rosnode kill {printable(own)}), or give this one a name of its own: __name:={name}_2")
     try:
         rospy.init_node(name, anonymous=anonymous)
     except rospy.exceptions.ROSInitException:
@@ -40,6 +39,16 @@ def running_node(name: str) -> Iterator[Signals]:
     begin_node(name)
     with ended_by_signals() as signals:
         yield signals
+
+
+def serve(name: str, act: Callable[[], str], done: str = "") -> None:
+    """A service Trigger that calls `act`, which says why it is refused; empty: it answers `done`."""
+
+    def answer(_request: object) -> TriggerResponse:
+        why = act()
+        return TriggerResponse(success=not why, message=why or done)
+
+    rospy.Service(name, Trigger, answer)
 
 
 def _resolved(name: str) -> str:

@@ -40,10 +40,8 @@ def running_settings(tool: str, node: str, without_master: str, in_simulated_tim
         ServerValueError: the server holds one of them in another type.
     """
     if not rosgraph.is_master_online():
-        raise RefusedError(
-            f"no ROS master at {rosgraph.get_master_uri()}: start the robot (roslaunch robot_control sim.launch), "
-            f"{without_master}"
-        )
+        what = f"no ROS master at {rosgraph.get_master_uri()}"
+        raise RefusedError(f"{what}: start the robot (roslaunch robot_control sim.launch), {without_master}")
     begin_node(tool, anonymous=True)
     refuse_running_legs(f"{tool}.py")
     if rospy.get_param("/use_sim_time", default=False):

@@ -5,6 +5,7 @@ import threading
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
+from typing import Any
 
 from robot_control.msg import SafetyStatus
 from robot_control.robot.boundary import boundary, subscribe
@@ -22,22 +23,13 @@ CATCH_UP = 0.02
 def status_of(message: SafetyStatus) -> Status:
     """The status of a message, with the cause that came first; `withdrawn` on this process's monotonic clock."""
     first = message.causes.index(message.first_cause) if message.first_cause in message.causes else 0
-    sentence, detail, remedy = (
-        texts[first] if first < len(texts) else "" for texts in (message.sentences, message.details, message.remedies)
-    )
-    return Status(
-        state=message.state_name,
-        sentence=sentence,
-        detail=detail,
-        remedy=remedy,
-        causes=len(message.causes),
-        missing=tuple(message.missing),
-        awaiting_zero=message.awaiting_zero_request,
-        speed_limit=message.speed_limit,
-        withdrawals=message.withdrawals,
-        run=message.run,
-        withdrawn=time.monotonic() - (time.time() - message.withdrawn.to_sec()) if message.withdrawn else -math.inf,
-    )
+    columns = {"sentence": message.sentences, "detail": message.details, "remedy": message.remedies}
+    texts = {name: column[first] if first < len(column) else "" for name, column in columns.items()}
+    known: dict[str, Any] = {name: getattr(message, name) for name in ("speed_limit", "withdrawals", "run")} | texts
+    known |= {"missing": tuple(message.missing), "awaiting_zero": message.awaiting_zero_request}
+    if message.withdrawn:
+        known["withdrawn"] = time.monotonic() - (time.time() - message.withdrawn.to_sec())
+    return Status(message.state_name, causes=len(message.causes), **known)
 
 
 class SafetyWatch:

@@ -62,17 +62,14 @@ def parse_plan(arguments: list[str]) -> SendPlan:
 
     NaN and infinity are allowed as a velocity: the controller refuses them, and that can be seen with this tool.
     """
-    parser = argparse.ArgumentParser(
-        prog="send_cmd.py", description=f"Repeats one velocity command on cmd_vel. {START}", epilog=LOCKSTEP
-    )
+    about = f"Repeats one velocity command on cmd_vel. {START}"
+    parser = argparse.ArgumentParser(prog="send_cmd.py", description=about, epilog=LOCKSTEP)
     parser.add_argument("--linear", type=float, default=SendPlan.linear, help="m/s (default %(default)s)")
-    parser.add_argument(
-        "--lateral", type=float, default=SendPlan.lateral, help="m/s to the left, robots on legs (default %(default)s)"
-    )
+    meaning = "m/s to the left, robots on legs (default %(default)s)"
+    parser.add_argument("--lateral", type=float, default=SendPlan.lateral, help=meaning)
     parser.add_argument("--angular", type=float, default=SendPlan.angular, help="rad/s (default %(default)s)")
-    parser.add_argument(
-        "--period", type=positive, default=SendPlan.period, help="s between sends (default %(default)s)"
-    )
+    meaning = "s between sends (default %(default)s)"
+    parser.add_argument("--period", type=positive, default=SendPlan.period, help=meaning)
     end = parser.add_mutually_exclusive_group()
     end.add_argument("--count", type=number_of_sends, help="end after so many sends")
     end.add_argument("--seconds", type=positive, help="end after so many seconds")

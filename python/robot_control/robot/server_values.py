@@ -74,6 +74,5 @@ def _without_empty_texts(tree: dict[str, Any]) -> dict[str, Any]:
 
 def _wrong_type(name: str, value: object, rule: str) -> ServerValueError:
     full = rospy.resolve_name(name).rstrip("/")
-    return ServerValueError(
-        f"{full} = {printable(str(value))}: must be {rule}; set it, or remove it: `rosparam delete {full}`"
-    )
+    why = f"{full} = {printable(str(value))}: must be {rule}; set it, or remove it: `rosparam delete {full}`"
+    return ServerValueError(why)

@@ -50,10 +50,8 @@ def in_words(answer: Answer, facts: Facts) -> str:
     causes = () if safety is None else safety.causes
     if not answer.accepted and any(cause.name == "e_stop_topic" and cause.active for cause in causes):
         command = f"rostopic pub -1 {facts.path('e_stop')} std_msgs/Bool false"
-        return (
-            f"reset REFUSED: the topic e_stop still says true; once its reason is gone, by its publisher's false, or "
-            f"if that has ended: {command}, then the reset again"
-        )
+        what = "reset REFUSED: the topic e_stop still says true; once its reason is gone"
+        return f"{what}, by its publisher's false, or if that has ended: {command}, then the reset again"
     return f"reset {'accepted' if answer.accepted else 'REFUSED'}: {answer.text}"
 
 

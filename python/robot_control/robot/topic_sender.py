@@ -14,7 +14,6 @@ import threading
 import time
 from collections.abc import Callable, Iterator
 from types import FrameType
-from typing import Any, Protocol
 
 import rospy
 
@@ -27,21 +26,10 @@ POLL_PERIOD = 0.005
 NUMBERS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 
 
-class Publisher(Protocol):
-    """The part of rospy.Publisher that is used; `impl.get_stats()[2]`: (id, bytes, messages written, connected) of
-    each.
-    """
-
-    impl: Any
-
-    def publish(self, message: object) -> None:
-        """Queues it for all subscribers."""
-
-
 class Sender:
     """Publishes until the node is shut down, for whatever reason; the last message is then `last`."""
 
-    def __init__(self, publisher: Publisher, last: object, said: Callable[[int], None] = lambda _: None) -> None:
+    def __init__(self, publisher: rospy.Publisher, last: object, said: Callable[[int], None] = lambda _: None) -> None:
         """`said` is called after the last message with the number of subscribers that were not sent it."""
         self._publisher, self._last, self._said = publisher, last, said
         self._lock = threading.Lock()
@@ -104,12 +92,12 @@ def ended_by_signals() -> Iterator[Signals]:
                 signal.signal(number, signal.SIG_DFL)
 
 
-def written(publisher: Publisher) -> dict[int, int]:
+def written(publisher: rospy.Publisher) -> dict[int, int]:
     """Number of messages handed to the kernel, by open connection."""
     return {connection: messages for connection, _, messages, is_open in publisher.impl.get_stats()[2] if is_open}
 
 
-def publish_last(publisher: Publisher, message: object, limit: float = LIMIT) -> int:
+def publish_last(publisher: rospy.Publisher, message: object, limit: float = LIMIT) -> int:
     """Publishes, waits until all present subscribers were sent it, and returns how many were not within `limit`
     seconds.
 
@@ -129,7 +117,7 @@ def publish_last(publisher: Publisher, message: object, limit: float = LIMIT) ->
     return 0
 
 
-def _behind(publisher: Publisher, before: dict[int, int], messages: int) -> int:
+def _behind(publisher: rospy.Publisher, before: dict[int, int], messages: int) -> int:
     """Number of connections that were open then, are still open, and have written fewer messages since."""
     now = written(publisher)
     return sum(now[connection] < count + messages for connection, count in before.items() if connection in now)

@@ -4,7 +4,7 @@ import re
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import fields
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 import yaml  # type: ignore[import-untyped]
 
@@ -14,6 +14,7 @@ MAX_OPENED = 200
 """brackets of a kind in a file; of settings that have a meaning, less than ten"""
 
 
+Made = TypeVar("Made")
 Check = Callable[[Any], bool]
 """True for a value that may be used"""
 Rule = tuple[str, Check]
@@ -47,7 +48,9 @@ def list_of(rule: Rule) -> Rule:
 
 TEXT: Rule = ("a text of characters that print", lambda value: isinstance(value, str) and value.isprintable())
 FLAG: Rule = ("true or false", lambda value: isinstance(value, bool))
-BY_DEFAULT = {bool: FLAG, str: TEXT, tuple: list_of(TEXT)}
+NUMBER: Rule = ("a number", in_range(-1e308, 1e308))
+WHOLE: Rule = ("a whole number", in_range(-1e308, 1e308, int))
+BY_DEFAULT = {bool: FLAG, int: WHOLE, float: NUMBER, str: TEXT, tuple: list_of(TEXT)}
 
 
 def rules_of(settings: type, **own: Rule) -> dict[str, Rule]:
@@ -78,11 +81,16 @@ def redacted(place: str) -> str:
     return printable(place if place.startswith("/") else re.sub(r"(?s)(,|//).*", r"\1…", place))
 
 
-def overlaid(paths: Iterable[Path], problems_of: Callable[[Any], Iterable[str]]) -> tuple[dict[str, Any], list[str]]:
-    """The values of all files without a problem, and the problems of the others, each with the file.
+def settings_of(
+    paths: Iterable[Path],
+    problems_of: Callable[[Any], Iterable[str]],
+    make: Callable[[dict[str, Any]], Made],
+    together: Callable[[Made], Iterable[str]] = lambda _: (),
+) -> Made:
+    """The settings that `make` gives of all files, each laid over the one before; `together`: the rules across values.
 
     Raises:
-        SettingsError: a file is no YAML.
+        SettingsError: with all problems.
         OSError: a file cannot be read.
     """
     values, problems = dict[str, Any](), list[str]()
@@ -98,7 +106,11 @@ def overlaid(paths: Iterable[Path], problems_of: Callable[[Any], Iterable[str]])
         found = [f"{path}: {problem}" for problem in problems_of(tree)]
         problems += found
         values |= {} if found else tree
-    return values, problems
+    made = make(values)
+    problems += together(made)
+    if problems:
+        raise SettingsError("; ".join(problems))
+    return made
 
 
 def _place_of(error: Exception) -> str:

@@ -17,8 +17,7 @@ def describe(urdf: str | PathLike[str], params: str | PathLike[str] | Mapping[st
         RobotError: it cannot be driven, and why.
         ParameterError: the YAML file is wrong.
     """
-    description: Description = _robot_control.describe(*_arguments(urdf, params))
-    return description
+    return _robot_control.describe(*layered(params, urdf))
 
 
 def mjcf(urdf: str | PathLike[str], params: str | PathLike[str] | None = None) -> str:
@@ -28,8 +27,7 @@ def mjcf(urdf: str | PathLike[str], params: str | PathLike[str] | None = None) -
         RobotError, ParameterError: as `describe`.
         DriverError: the scene does not compile.
     """
-    text: str = _robot_control.mjcf(*_arguments(urdf, params))
-    return text
+    return _robot_control.mjcf(*layered(params, urdf))
 
 
 def stand(urdf: str | PathLike[str], params: str | PathLike[str] | None = None) -> dict[str, Any]:
@@ -40,11 +38,4 @@ def stand(urdf: str | PathLike[str], params: str | PathLike[str] | None = None) 
         RobotError, ParameterError: as `describe`.
         DriverError: it falls over, does not come to rest, or its wheels do not reach the ground.
     """
-    standing: dict[str, Any] = _robot_control.stand(*_arguments(urdf, params))
-    return standing
-
-
-def _arguments(
-    urdf: str | PathLike[str], params: str | PathLike[str] | Mapping[str, Any] | None
-) -> tuple[str, list[tuple[str, str]]]:
-    return layered(params, urdf)
+    return _robot_control.stand(*layered(params, urdf))

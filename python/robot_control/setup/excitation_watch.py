@@ -22,16 +22,16 @@ STANDING = 0.01
 class Observation:
     """The robot's present state; None stands for a message that was never received."""
 
-    pose: Pose | None
-    linear: float  # m/s
-    angular: float  # rad/s
-    pose_age: float  # s
-    state: str  # of SafetyStatus; empty: never received
-    status_age: float  # s
-    sentences: Sequence[str]  # reasons why it is stopped
-    missing: Sequence[str]
-    speed_limit: float  # m/s
-    senders: Sequence[str]  # others on cmd_vel
+    pose: Pose | None = None
+    linear: float = 0.0  # m/s
+    angular: float = 0.0  # rad/s
+    pose_age: float = math.inf  # s
+    state: str = ""  # of SafetyStatus; empty: never received
+    status_age: float = math.inf  # s
+    sentences: Sequence[str] = ()  # reasons why it is stopped
+    missing: Sequence[str] = ()
+    speed_limit: float = math.inf  # m/s
+    senders: Sequence[str] = ()  # others on cmd_vel
     revoked: str = ""  # why what was requested does not begin, or go on
 
 
@@ -53,10 +53,8 @@ def hindrance(observed: Observation) -> str:
     if moves(observed):
         return f"the robot moves ({observed.linear:.2f} m/s, {observed.angular:.2f} rad/s); wait until it stands"
     if math.isfinite(observed.speed_limit):
-        return (
-            f"the speed is limited to {observed.speed_limit:.2g} m/s by warnings or `clearance`; rosrun robot_control "
-            "why.py says by which. What is limited is not driven as planned"
-        )
+        what = f"the speed is limited to {observed.speed_limit:.2g} m/s by warnings or `clearance`"
+        return f"{what}; rosrun robot_control why.py says by which. What is limited is not driven as planned"
     return _stopped(observed)
 
 
@@ -97,10 +95,8 @@ def _astray(observed: Observation, start: Pose, reach: float, unanswered: float)
         return ""
     ahead, left = observed.pose.seen_from(start)
     if not (-MARGIN <= ahead <= reach + MARGIN and abs(left) <= MARGIN):
-        return (
-            f"the robot is {ahead:.2f} m ahead and {left:.2f} m to the left of its start, beyond the plan's "
-            f"{reach:.2f} m ± {MARGIN:g} m"
-        )
+        what = f"the robot is {ahead:.2f} m ahead and {left:.2f} m to the left of its start"
+        return f"{what}, beyond the plan's {reach:.2f} m ± {MARGIN:g} m"
     return ignored(unanswered)
 
 

@@ -1,9 +1,12 @@
 """YAML that is laid over the parameters."""
 
-from collections.abc import Iterable, Iterator, Mapping
+import json
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
+
+import yaml  # type: ignore[import-untyped]
 
 from robot_control.files.files import escaped, write_text
 
@@ -25,20 +28,6 @@ class Outcome:
 
 def to_yaml(lines: Iterable[str], tree: Mapping[str, Any]) -> str:
     """The numbers of the tree, below `lines` as comments."""
-    return "".join(f"# {line}".rstrip() + "\n" for line in lines) + "".join(_yaml_lines(tree, ""))
-
-
-def _yaml_lines(tree: Mapping[str, Any], indent: str) -> Iterator[str]:
-    for key, value in tree.items():
-        if isinstance(value, Mapping):
-            yield f"{indent}{key}:\n"
-            yield from _yaml_lines(value, indent + "  ")
-        else:
-            yield f"{indent}{key}: {_float(value)}\n"
-
-
-def _float(value: float) -> str:
-    """A number that YAML 1.1, ROS' own, reads as a real one: 1.0e-05, not 1e-05."""
-    text = repr(float(value))
-    mantissa, exponent, power = text.partition("e")
-    return mantissa + (".0" if exponent and "." not in mantissa else "") + exponent + power
+    plain = json.loads(json.dumps(tree))  # numbers of numpy are none for PyYAML
+    text: str = yaml.safe_dump(plain, sort_keys=False)
+    return "".join(f"# {line}".rstrip() + "\n" for line in lines) + text

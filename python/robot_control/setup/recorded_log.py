@@ -1,10 +1,7 @@
 """The log of every cycle of a running robot, written by its telemetry, else by one that is started here."""
 
 import contextlib
-import os
 import shutil
-import signal
-import subprocess
 import tempfile
 import time
 from collections.abc import Callable, Iterator
@@ -15,6 +12,7 @@ import rospy
 from std_srvs.srv import SetBool
 
 from robot_control.data.run_log import FloatArray, LogError, read_log, read_run
+from robot_control.ui.child import Child
 
 NODE = "identify_telemetry"
 START_LIMIT = 20.0
@@ -102,42 +100,30 @@ def recording(running: RunningTelemetry | None, config: str, going_on: Callable[
             log.end()
         return
     folder = Path(tempfile.mkdtemp(prefix="identify-"))
-    with (folder / "telemetry.txt").open("wb") as output:
-        process = subprocess.Popen(_command(folder, config), stdin=subprocess.DEVNULL, stdout=output, stderr=output)
-        try:
-            path = _first_rows(folder, process, going_on)
-            yield Recording(path, rospy.resolve_name(NODE), records=True)
-        finally:
-            _end(process)
-            with contextlib.suppress(KeyError, rospy.ROSException, OSError):  # private parameters outlive their node
-                rospy.delete_param(NODE)
-            shutil.rmtree(folder, ignore_errors=True)
+    telemetry = Child(_command(folder, config), folder / "telemetry.txt")
+    try:
+        path = _first_rows(folder, telemetry, going_on)
+        yield Recording(path, rospy.resolve_name(NODE), records=True)
+    finally:
+        telemetry.end(END_LIMIT)
+        with contextlib.suppress(KeyError, rospy.ROSException, OSError):  # private parameters outlive their node
+            rospy.delete_param(NODE)
+        shutil.rmtree(folder, ignore_errors=True)
 
 
 def _command(folder: Path, config: str) -> list[str]:
     telemetry = ["rosrun", "robot_control", "telemetry", f"__name:={NODE}", f"__ns:={rospy.get_namespace()}"]
-    # A shell starts its background jobs deaf to SIGINT, and that would be inherited.
-    return ["env", "--default-signal=INT", *telemetry, f"_directory:={folder}", f"_config:={config}", "_record:=always"]
+    return [*telemetry, f"_directory:={folder}", f"_config:={config}", "_record:=always"]
 
 
-def _first_rows(folder: Path, process: subprocess.Popen[bytes], going_on: Callable[[], bool]) -> Path:
+def _first_rows(folder: Path, telemetry: Child, going_on: Callable[[], bool]) -> Path:
     deadline = time.monotonic() + START_LIMIT
-    while time.monotonic() < deadline and process.poll() is None and going_on():
+    while time.monotonic() < deadline and telemetry.running and going_on():
         # A namespace has a folder of its own in it.
         for path in folder.rglob("run.bag"):
             with contextlib.suppress(LogError):  # it has no rows yet
                 read_log(path, ["cycle"])
                 return path
         time.sleep(0.1)
-    said = (folder / "telemetry.txt").read_text(errors="replace").strip().splitlines()
+    said = telemetry.output.read_text(errors="replace").strip().splitlines()
     raise RecordingError("telemetry gives no rows: " + (said[-1] if said else f"nothing within {START_LIMIT:g} s"))
-
-
-def _end(process: subprocess.Popen[bytes]) -> None:
-    if process.poll() is None:
-        process.send_signal(signal.SIGINT)
-        try:
-            process.wait(END_LIMIT)
-        except subprocess.TimeoutExpired:
-            os.kill(process.pid, signal.SIGKILL)
-            process.wait()

@@ -23,15 +23,13 @@ def triangles_in_base(shape: dict[str, Any]) -> Array:
     """Array of shape (n, 3, 3): n triangles of three corners, m, base axes; none for a flat mesh."""
     local: Array = {"sphere": _sphere, "cylinder": _cylinder, "box": _box, "mesh": _mesh}[shape["type"]](shape)
     pose = np.asarray(shape["in_base"], dtype=float)
-    result: Array = local @ pose[:3, :3].T + pose[:3, 3]
-    return result
+    return np.asarray(local @ pose[:3, :3].T + pose[:3, 3])
 
 
 def _mesh(shape: dict[str, Any]) -> Array:
     if not shape["triangles"]:
         return np.empty((0, 3, 3))
-    corners: Array = np.asarray(shape["points"], dtype=float)[np.asarray(shape["triangles"], dtype=int)]
-    return corners
+    return np.asarray(np.asarray(shape["points"], dtype=float)[np.asarray(shape["triangles"], dtype=int)])
 
 
 def _box(shape: dict[str, Any]) -> Array:

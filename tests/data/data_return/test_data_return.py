@@ -23,10 +23,11 @@ from robot_control.data.data_return.parts import (
 )
 from robot_control.data.data_return.plan import Entry, Part, deletable, next_entry, reason_to_wait
 from robot_control.data.data_return.queue_file import QueueError, QueueFile
-from robot_control.data.data_return.settings import Settings, SettingsError, read_settings
+from robot_control.data.data_return.settings import Settings, read_settings
 from robot_control.files import files as common_files
 from robot_control.files.files import write_durably
 from robot_control.files.kept_file import digest_of
+from robot_control.settings.files import SettingsError
 from support.data_return_system import (
     DAY,
     OPEN_BAG,

@@ -14,7 +14,8 @@ from robot_control.data.data_return.parts import MANIFEST, MAX_FILE, GapError, p
 from robot_control.data.data_return.queue_file import QueueFile
 from robot_control.data.data_return.remote import Remote, RemoteError, listed
 from robot_control.data.data_return.sender import Sender
-from robot_control.data.data_return.settings import Settings, SettingsError, read_settings, redacted
+from robot_control.data.data_return.settings import Settings, read_settings, redacted
+from robot_control.settings.files import SettingsError
 from support.data_return_system import DAY, WHOLE_BAG, write
 
 from bench.console.process import program

@@ -71,7 +71,7 @@ def test_the_last_complete_row_of_a_growing_file_is_found(tmp_path):
     assert demo._last_row(log) is None
     loop.run(2.5, (0.5, 0.2))
     assert 1990 <= demo._last_row(log)["cycle"] <= 2010, "whole seconds are in the file"
-    assert demo._commanded(demo._last_row(log))
+    assert demo._last_row(log)["requested_linear"] == demo.LINEAR
     loop.end_log()
     assert demo._last_row(log)["cycle"] == 2499
 

@@ -14,7 +14,7 @@ import pytest
 from robot_control import ClosedLoop
 from robot_control.data.render.main import main
 from robot_control.data.render.run import moments_of, read_moments
-from robot_control.data.render.scene import Scene, orientation, rotated
+from robot_control.data.render.scene import Scene
 from robot_control.data.run_log import LogError
 
 ROOT = Path(__file__).parents[3]
@@ -101,11 +101,6 @@ def test_keyframes_hold_the_joints_in_the_models_order_and_the_pose_by_the_start
     assert [float(number) for number in key.get("qpos").split()] == pytest.approx(expected, abs=1e-5)
     wheel = model.find(".//geom[@name='robot_control/wheel/0']")
     assert (wheel.get("type"), wheel.get("size")) == ("cylinder", "0.1 0.02")
-
-
-def test_a_turn_turns_x_towards_y_and_a_pitch_towards_down():
-    assert rotated(orientation(0, 0, math.pi / 2), (1.0, 0.0, 0.0)) == pytest.approx((0.0, 1.0, 0.0))
-    assert rotated(orientation(0, math.pi / 2, 0), (1.0, 0.0, 0.0)) == pytest.approx((0.0, 0.0, -1.0))
 
 
 def test_an_unknown_scene_and_a_wrong_size_end_with_a_message(tmp_path, capsys):

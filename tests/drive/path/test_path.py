@@ -3,6 +3,7 @@
 import math
 from pathlib import Path
 
+import geometry_msgs.msg as geometry_msgs
 import pytest
 from robot_control.drive.drive_path.main import main
 from robot_control.drive.path.follower import Follower, FollowParameters, Motion, State
@@ -185,15 +186,19 @@ def test_a_file_that_is_not_there_is_named_beside_the_shapes(monkeypatch, tmp_pa
 NO_ORIENTATION, LEFT = (0.0, 0.0, 0.0, 0.0), (0.0, 0.0, math.sin(math.pi / 4), math.cos(math.pi / 4))
 
 
+def pose_at(x, orientation):
+    return geometry_msgs.Pose(geometry_msgs.Point(x, 0.0, 0.0), geometry_msgs.Quaternion(*orientation))
+
+
 def test_a_path_message_without_orientations_is_driven_along_itself():
-    points = from_poses([(0.0, 0.0, NO_ORIENTATION), (1.0, 0.0, LEFT)])
+    points = from_poses([pose_at(0.0, NO_ORIENTATION), pose_at(1.0, LEFT)])
     assert points == [Waypoint(0.0, 0.0), Waypoint(1.0, 0.0, yaw=pytest.approx(math.pi / 2))]
-    thrice = from_poses([(0.0, 0.0, tuple(3 * part for part in LEFT))])
+    thrice = from_poses([pose_at(0.0, (3 * part for part in LEFT))])
     assert thrice[0].yaw == pytest.approx(math.pi / 2)
 
 
 def test_an_orientation_that_is_not_finite_is_refused():
-    points = from_poses([(0.0, 0.0, (math.nan,) * 4), (1.0, 0.0, NO_ORIENTATION)])
+    points = from_poses([pose_at(0.0, (math.nan,) * 4), pose_at(1.0, NO_ORIENTATION)])
     assert "not finite" in refusal(points)
 
 
@@ -228,7 +233,7 @@ def test_poses_across_a_segment_do_not_turn_it_round(yaw):
 
 
 def test_a_placed_path_begins_at_the_pose():
-    points = placed([Waypoint(0.0, 0.0), Waypoint(1.0, 0.0, yaw=0.5)], 2.0, 3.0, math.pi / 2)
+    points = placed([Waypoint(0.0, 0.0), Waypoint(1.0, 0.0, yaw=0.5)], Pose(2.0, 3.0, math.pi / 2))
     assert (points[0].x, points[0].y) == (2.0, 3.0)
     assert (points[1].x, points[1].y, points[1].yaw) == pytest.approx((2.0, 4.0, 0.5 + math.pi / 2))
 

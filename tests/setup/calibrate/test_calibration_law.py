@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 import pytest
+from robot_control.robot.pose import arcs_between
 from robot_control.setup.calibrate.law import (
     NotCalibratedError,
     Square,
@@ -16,7 +17,6 @@ from robot_control.setup.calibrate.law import (
     replay,
     return_errors,
     sides,
-    steps,
     umbmark,
 )
 from support.recordings.square_path import square_path
@@ -70,12 +70,12 @@ def test_a_turn_on_the_spot_turns_by_scale_over_base():
 
 def test_steps_are_arcs_and_know_backwards_and_full_turns():
     quarter = np.array([[0, 0, math.pi - 0.1], [0, 0, -math.pi + 0.1]])
-    advance, turn = steps(quarter)
+    advance, turn = arcs_between(*quarter.T)
     assert turn[0] == pytest.approx(0.2, abs=ROUNDING)
     assert advance[0] == pytest.approx(0, abs=ROUNDING)
     arc = np.array([[0, 0, 0], [math.sin(1.0), 1 - math.cos(1.0), 1.0]])  # of radius 1
-    assert steps(arc)[0][0] == pytest.approx(1.0, abs=ROUNDING)
-    assert steps(line(-2.0, 2))[0][0] == pytest.approx(-2.0, abs=ROUNDING)
+    assert arcs_between(*arc.T)[0][0] == pytest.approx(1.0, abs=ROUNDING)
+    assert arcs_between(*line(-2.0, 2).T)[0][0] == pytest.approx(-2.0, abs=ROUNDING)
 
 
 def test_the_axle_of_a_frame_ahead_of_it_turns_about_itself():

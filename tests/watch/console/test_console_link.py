@@ -4,8 +4,9 @@ import math
 import random
 
 import pytest
+from robot_control.settings.files import SettingsError
 from robot_control.watch.console.link import FALL, RISE, Excess, RoundTrips, SpeedCap
-from robot_control.watch.console.settings import Settings, SettingsError, read_settings
+from robot_control.watch.console.settings import Settings, read_settings
 
 
 def measured(*round_trips, period=0.1):

@@ -4,7 +4,7 @@ import argparse
 import sys
 from pathlib import Path
 
-from robot_control._robot_control import RunLogError, TraceError, save_black_box
+from robot_control._robot_control import save_black_box
 from robot_control.data.black_box import LOGS, incidents_of, ring_of
 from robot_control.files.files import escaped, escaped_lines, fit_for_message, given_path, in_words, utf8
 
@@ -26,7 +26,7 @@ def main(arguments: list[str] | None = None) -> None:
         if bag.exists():
             raise FileExistsError(f"{bag} exists; name another folder: --out OUT")
         rows, _, missing = save_black_box(utf8(ring), utf8(bag))
-    except (RunLogError, TraceError, OSError, ValueError, RuntimeError) as error:
+    except (OSError, ValueError, RuntimeError) as error:
         sys.exit(f"blackbox.py: {fit_for_message(in_words(error))}{_beside(given)}")
     print(escaped_lines(f"{rows} cycles of {ring} in {bag}{_beside(given)}".split("\n")))
     if missing:
@@ -44,18 +44,8 @@ def _parser() -> argparse.ArgumentParser:
         epilog=EPILOG,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
-    parser.add_argument(
-        "input",
-        nargs="?",
-        type=given_path,
-        default=str(LOGS),
-        help="folder of the logs (default: %(default)s), or a folder black_box/ring",
-    )
-    parser.add_argument(
-        "--out",
-        type=given_path,
-        default=Path("blackbox"),
-        metavar="OUT",
-        help="folder for run.bag (default: %(default)s)",
-    )
+    meaning = "folder of the logs (default: %(default)s), or a folder black_box/ring"
+    parser.add_argument("input", nargs="?", type=given_path, default=str(LOGS), help=meaning)
+    meaning = "folder for run.bag (default: %(default)s)"
+    parser.add_argument("--out", type=given_path, default=Path("blackbox"), metavar="OUT", help=meaning)
     return parser

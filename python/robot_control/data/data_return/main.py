@@ -20,7 +20,7 @@ from robot_control.settings.files import SettingsError
 
 def main() -> int:
     """Entry point of scripts/data_return.py."""
-    given = _parser().parse_args([each for each in rospy.myargv(sys.argv)[1:] if each])
+    given = _parser().parse_args([each for each in rospy.myargv()[1:] if each])
     with one_message("data_return.py", SettingsError, QueueError, RemoteError, OSError):
         if given.command in ("fetch", "verify"):
             return 0 if verify(given.source, given.rclone_config, getattr(given, "out", None)) else 1
@@ -63,9 +63,8 @@ def _parser() -> argparse.ArgumentParser:
     commands = parser.add_subparsers(dest="command", required=True)
     for name, text in (("run", "the node on the robot: sends"), ("status", "what waits and what has returned")):
         command = commands.add_parser(name, help=text, description=text)
-        command.add_argument(
-            "--config", type=given_path, help="YAML file, laid over the installed config/data_return.yaml"
-        )
+        meaning = "YAML file, laid over the installed config/data_return.yaml"
+        command.add_argument("--config", type=given_path, help=meaning)
     for name, text in (
         ("verify", "checks every part that robots have sent; exit code 1: there is a gap"),
         ("fetch", "verify, and puts each file together that is whole"),

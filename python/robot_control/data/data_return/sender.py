@@ -6,16 +6,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import suppress
 from typing import NamedTuple
 
-from robot_control.data.data_return.parts import (
-    MANIFEST,
-    MAX_FILE,
-    GapError,
-    manifest,
-    opened,
-    packed,
-    read_manifest,
-    remove,
-)
+from robot_control.data.data_return import parts
 from robot_control.data.data_return.plan import GB, Entry, Part, deletable, next_entry, next_parts, progress, wait_after
 from robot_control.data.data_return.queue_file import QueueFile
 from robot_control.data.data_return.remote import InterruptedCallError, Remote, RemoteError
@@ -109,10 +100,10 @@ class Sender:
     def _delete(self, entry: Entry) -> None:
         """Deletes a file that the remote still has; another one is sent again."""
         path = self._settings.logs / entry.path
-        with opened(path, entry.key) as file:  # no other file gets its inode meanwhile
+        with parts.opened(path, entry.key) as file:  # no other file gets its inode meanwhile
             before = os.fstat(file)
             if len(self._proven(entry, self._known(entry.target))) == entry.count:
-                remove(path, before)
+                parts.remove(path, before)
                 del self._queue.entries[entry.key]
             else:
                 entry.returned = False
@@ -144,18 +135,18 @@ class Sender:
 
     def _known(self, target: str) -> dict[int, Part]:
         """The parts of the whole file that a folder of the remote holds; empty: it holds none."""
-        there = self._remote.files(target, [MANIFEST]).get(MANIFEST)
-        with suppress(GapError):
-            if there is not None and there.size <= MAX_FILE:
-                content = read_manifest(self._remote.read(f"{target}/{MANIFEST}", there.size))
+        there = self._remote.files(target, [parts.MANIFEST]).get(parts.MANIFEST)
+        with suppress(parts.GapError):
+            if there is not None and there.size <= parts.MAX_FILE:
+                content = parts.read_manifest(self._remote.read(f"{target}/{parts.MANIFEST}", there.size))
                 return dict(enumerate(content["parts"]))
         return {}
 
     def _packed(self, entry: Entry, numbers: Iterable[int]) -> Iterator[tuple[int, Part, bytes]]:
         """Parts of the local file. Raises OSError, and ChangedError at the end."""
-        with opened(self._settings.logs / entry.path, entry.key) as file:
+        with parts.opened(self._settings.logs / entry.path, entry.key) as file:
             for number in numbers:
-                yield number, *packed(file, number)
+                yield number, *parts.packed(file, number)
 
     def _proven(self, entry: Entry, known: Mapping[int, Part]) -> set[int]:
         """Numbers of the parts that are as they were sent, here, and on the remote by its hash, else by its size."""
@@ -168,11 +159,11 @@ class Sender:
 
     def _send_parts(self, entry: Entry, numbers: list[int]) -> None:
         """A part that arrived otherwise is removed there; the remote's hash shows it, else reading back."""
-        parts = list(self._packed(entry, numbers))
-        self._reserve(sum(part.size for _, part, _ in parts))
-        self._put(entry.target, {part.name: data for _, part, data in parts})
-        arrived = self._remote.files(entry.target, [part.name for _, part, _ in parts])
-        for number, part, data in parts:
+        sent = list(self._packed(entry, numbers))
+        self._reserve(sum(part.size for _, part, _ in sent))
+        self._put(entry.target, {part.name: data for _, part, data in sent})
+        arrived = self._remote.files(entry.target, [part.name for _, part, _ in sent])
+        for number, part, data in sent:
             name, there = f"{entry.target}/{part.name}", arrived.get(part.name)
             if there and there.holds(data) and (there.kind or self._remote.read(name, part.size) == data):
                 entry.parts[number] = part
@@ -200,9 +191,9 @@ class Sender:
             entry.parts = {number: entry.parts[number] for number in proven}
             self._queue.save()
             return
-        content = manifest(entry)
-        self._put(entry.target, {MANIFEST: content})
-        name = f"{entry.target}/{MANIFEST}"
+        content = parts.manifest(entry)
+        self._put(entry.target, {parts.MANIFEST: content})
+        name = f"{entry.target}/{parts.MANIFEST}"
         if self._remote.read(name, len(content)) != content:
             self._remote.remove(name)
             raise RemoteError(f"{name}: arrived with another content")
@@ -217,7 +208,6 @@ class Sender:
             self._used = self._remote.used()
         if self._used + size > quota:
             self._used = None
-            raise RemoteError(
-                f"the far side holds far_quota ({self._settings.far_quota:g} GB) of this robot: delete there"
-            )
+            why = f"the far side holds far_quota ({self._settings.far_quota:g} GB) of this robot: delete there"
+            raise RemoteError(why)
         self._used += size

@@ -4,11 +4,13 @@ import re
 import socket
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
+from typing import Any
 
 from robot_control.data.black_box import LOGS
 from robot_control.files.files import given_path, printable, problems_of
-from robot_control.settings.files import SettingsError, number, overlaid, redacted, rules_of, wrong_values
+from robot_control.settings.files import number, redacted, rules_of, settings_of, wrong_values
 
 RCLONE_CONFIG = "~/.config/rclone/rclone.conf"
 """rclone's own place for it"""
@@ -67,13 +69,12 @@ def read_settings(*paths: Path) -> Settings:
         SettingsError: with all problems.
         OSError: a file cannot be read.
     """
-    values, problems = overlaid(paths, lambda tree: wrong_values(tree, RULES))
-    values = {name: tuple(value) if isinstance(value, list) else value for name, value in values.items()}
-    settings = Settings(**values)
-    problems += _together(settings)
-    if problems:
-        raise SettingsError("; ".join(problems))
-    return settings
+
+    def made(values: dict[str, Any]) -> Settings:
+        lists = {name: tuple(value) for name, value in values.items() if isinstance(value, list)}
+        return Settings(**values | lists)
+
+    return settings_of(paths, partial(wrong_values, rules=RULES), made, _together)
 
 
 def _together(settings: Settings) -> Iterator[str]:

@@ -15,18 +15,11 @@ def parse(arguments: Sequence[str] | None = None) -> argparse.Namespace:
     parser = argparse.ArgumentParser(prog="scripts/demo", description="Drives the simulated robot and judges the run.")
     parser.add_argument("--seconds", type=_seconds, default=10.0, help="of driving (default %(default)g)")
     parser.add_argument("--out", type=_folder, default="demo_out", help="folder (default ./demo_out)")
-    parser.add_argument(
-        "--robot",
-        choices=("diffbot", LEGGED_ROBOT),
-        default="diffbot",
-        help="on wheels or on legs (default %(default)s)",
-    )
+    meaning = "on wheels or on legs (default %(default)s)"
+    parser.add_argument("--robot", choices=("diffbot", LEGGED_ROBOT), default="diffbot", help=meaning)
     parser.add_argument("--drives", choices=tuple(DRIVES), help="the motors stand behind such simulated drives")
-    parser.add_argument(
-        "--wheel-command",
-        choices=("torque", "velocity"),
-        help="what the drives take (default torque, or what --drives takes alone)",
-    )
+    meaning = "what the drives take (default torque, or what --drives takes alone)"
+    parser.add_argument("--wheel-command", choices=("torque", "velocity"), help=meaning)
     given = parser.parse_args(arguments)
     if given.drives and given.robot == LEGGED_ROBOT:
         parser.error(f"--drives move wheels alone, and {LEGGED_ROBOT} stands on legs: leave one of both out")

@@ -5,13 +5,12 @@ import os
 import re
 import shutil
 import signal
-import subprocess
 import sys
 import time
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator
+from functools import partial
 from pathlib import Path
 from types import FrameType
-from typing import IO
 
 from robot_control.data.csv_table import write_csv
 from robot_control.data.demo.arguments import LEGGED_ROBOT, parse
@@ -24,6 +23,7 @@ from robot_control.installed_files import share_file
 from robot_control.loop.drives import DRIVES
 from robot_control.loop.roles import DRIVER, LEGGED, LOOP, TELEMETRY, WHEELED, Kind
 from robot_control.loop.signal_names import number_of
+from robot_control.ui.child import Child
 from robot_control.ui.program import run
 
 LINEAR, ANGULAR = 0.5, 0.2
@@ -36,21 +36,15 @@ PERIOD = 1e-3
 """s, of the package's parameters"""
 RAMP_TIME = 1.5
 """s between the sender's zero and the end of the log: 0.5 s of ramp at 1 m/s², tripled."""
-END_LIMIT = 20.0
-"""s for an orderly end after SIGINT; roslaunch itself gives its nodes 15 s."""
 BUS = f"demo_{os.getpid()}"
 """The bus belongs to this demo alone, which removes it: 12 MB that outlive the nodes would fill a small /dev/shm."""
 SHOWN = (
-    "cycle",
-    "requested_linear",
-    "limited_linear",
-    "legged_phase",
-    "truth_x",
-    "truth_y",
-    "truth_linear",
-    "truth_angular",
+    *("cycle", "requested_linear", "limited_linear", "legged_phase"),
+    *("truth_x", "truth_y", "truth_linear", "truth_angular"),
 )
 """columns that show how far the run is"""
+Row = dict[str, float]
+"""column → value"""
 OUTPUTS = ("run.bag", "run.csv", "summary.json", "run.png", "launch.log", "send_cmd.log", "set_posture.log")
 EVERY_CYCLE = "telemetry: {record: always}\n"
 """parameters laid over the package's"""
@@ -61,44 +55,6 @@ SIMULATED_VELOCITY = f"{DRIVER}: {{drive: velocity}}\n"
 
 class DemoError(RuntimeError):
     """Something did not start, or died; the message names the file with the reason."""
-
-
-class Child:
-    """A program of ours in a process group of its own, its output in a file."""
-
-    def __init__(self, command: Sequence[str], output: Path) -> None:
-        self.output = output
-        self._file: IO[bytes] = output.open("wb")
-        # A shell starts its background jobs with SIGINT ignored, and children would inherit that.
-        hearing = ("env", "--default-signal=INT", *command)
-        self._process = subprocess.Popen(
-            hearing, stdin=subprocess.DEVNULL, stdout=self._file, stderr=subprocess.STDOUT, start_new_session=True
-        )
-
-    @property
-    def running(self) -> bool:
-        """True while it has not ended."""
-        return self._process.poll() is None
-
-    def end(self, limit: float = END_LIMIT) -> bool:
-        """SIGINT; after `limit` seconds SIGTERM, then SIGKILL to its group. True when SIGINT was enough."""
-        orderly = True
-        if self.running:
-            self._process.send_signal(signal.SIGINT)
-            orderly = self._wait(limit)
-        for harder in (signal.SIGTERM, signal.SIGKILL):
-            if self.running:
-                os.killpg(self._process.pid, harder)
-                self._wait(5.0)
-        self._file.close()
-        return orderly
-
-    def _wait(self, limit: float) -> bool:
-        try:
-            self._process.wait(limit)
-        except subprocess.TimeoutExpired:
-            return False
-        return True
 
 
 def run_demo(seconds: float, out: Path, robot: str, drives: Path | None = None, *, velocity: bool = False) -> int:
@@ -128,9 +84,8 @@ def run_demo(seconds: float, out: Path, robot: str, drives: Path | None = None, 
     summary = summarize(log, LINEAR, ANGULAR, driven, stolen, legged=robot == LEGGED_ROBOT)
     (out / "summary.json").write_text(to_json(summary))
     verdict = "tracked" if summary.passed else "NOT TRACKED"
-    draw_run(
-        log, summary, f"{robot}, {LINEAR} m/s and {ANGULAR} rad/s, wall clock, 1 ms cycles: {verdict}", out / "run.png"
-    )
+    title = f"{robot}, {LINEAR} m/s and {ANGULAR} rad/s, wall clock, 1 ms cycles: {verdict}"
+    draw_run(log, summary, title, out / "run.png")
     print(f"\n{to_table(summary)}\n\n{verdict}; see {printable(str(out))}/summary.json, run.bag, run.csv, run.png")
     return 0 if summary.passed else 1
 
@@ -172,13 +127,15 @@ def _drive(seconds: float, out: Path, robot: str, drives: Path | None, parameter
             out / "launch.log",
         )
         children.append(launch)
-        _wait_until(lambda: _rested(_last_row(log)), f"rest of {REST_TIME:g} s", launch)
+        wait_until = partial(_wait_until, log)
+        wait_until(lambda row: row["cycle"] * PERIOD >= REST_TIME, f"rest of {REST_TIME:g} s", launch)
         print(f"sending {LINEAR} m/s and {ANGULAR} rad/s for {seconds:g} s")
         sender = Child(["rosrun", "robot_control", "send_cmd.py"], out / "send_cmd.log")
         children.append(sender)
-        _wait_until(lambda: _commanded(_last_row(log)), "command", launch, sender)
+        wait_until(lambda row: row["requested_linear"] == LINEAR, "command", launch, sender)
         if robot == LEGGED_ROBOT:
-            _wait_until(lambda: _walks(_last_row(log)), "walk at full speed", launch, sender)
+            fast = lambda row: _is(row, "walking") and row["limited_linear"] == LINEAR  # noqa: E731
+            wait_until(fast, "walk at full speed", launch, sender)
         start, due = time.monotonic(), 0.0
         while (driven := time.monotonic() - start) < seconds:
             time.sleep(max(0.0, min(1.0, seconds - driven)))
@@ -198,10 +155,10 @@ def _drive(seconds: float, out: Path, robot: str, drives: Path | None, parameter
 
 
 def _lie_down(log: Path, launch: Child, children: list[Child], out: Path) -> None:
-    _wait_until(lambda: _is(_last_row(log), "standing"), "standing robot", launch)
+    _wait_until(log, lambda row: _is(row, "standing"), "standing robot", launch)
     print("lying down")
     children.append(Child(["rosservice", "call", "set_posture", "lying"], out / "set_posture.log"))
-    _wait_until(lambda: _is(_last_row(log), "lying"), "lying robot", launch)
+    _wait_until(log, lambda row: _is(row, "lying"), "lying robot", launch)
 
 
 @contextlib.contextmanager
@@ -217,10 +174,10 @@ def _ended_at_the_end() -> Iterator[list[Child]]:
             left.unlink(missing_ok=True)
 
 
-def _wait_until(condition: Callable[[], bool], what: str, *children: Child) -> None:
-    """Polls; raises when one of the children dies or START_LIMIT has passed without a `what`."""
+def _wait_until(log: Path, condition: Callable[[Row], bool], what: str, *children: Child) -> None:
+    """Polls the last row; raises when one of the children dies or START_LIMIT has passed without a `what`."""
     deadline = time.monotonic() + START_LIMIT
-    while not condition():
+    while (row := _last_row(log)) is None or not condition(row):
         _see_alive(*children)
         if time.monotonic() > deadline:
             raise DemoError(f"no {what} within {START_LIMIT:g} s:\n{_tail(children[0].output)}")
@@ -241,7 +198,7 @@ def _progress(log: Path, driven: float) -> str:
     return f"{driven:5.1f} s  true: {speed:6.3f} m/s {turn:6.3f} rad/s at ({x:.2f}, {y:.2f}) m"
 
 
-def _last_row(log: Path) -> dict[str, float] | None:
+def _last_row(log: Path) -> Row | None:
     """Columns of the last complete row of a run.bag that is being written, a second old at most."""
     try:
         columns = read_log(log, SHOWN)
@@ -250,20 +207,8 @@ def _last_row(log: Path) -> dict[str, float] | None:
     return {name: float(values[-1]) for name, values in columns.items()} if columns["cycle"].size else None
 
 
-def _rested(row: dict[str, float] | None) -> bool:
-    return row is not None and row["cycle"] * PERIOD >= REST_TIME
-
-
-def _commanded(row: dict[str, float] | None) -> bool:
-    return row is not None and row["requested_linear"] == LINEAR
-
-
-def _walks(row: dict[str, float] | None) -> bool:
-    return _is(row, "walking") and row is not None and row["limited_linear"] == LINEAR
-
-
-def _is(row: dict[str, float] | None, posture: str) -> bool:
-    return row is not None and row["legged_phase"] == number_of("LegPhase", posture)
+def _is(row: Row, posture: str) -> bool:
+    return row["legged_phase"] == number_of("LegPhase", posture)
 
 
 def _print_refusals(launch_log: str) -> None:

@@ -32,7 +32,7 @@ JOINTS = ("#1f5fa8", "#c0392b", "#2e8b57", "#7d3c98")
 
 def draw_run(log: Log, summary: RunSummary, title: str, path: Path) -> None:
     """Writes a PNG of 1760 × 990 pixels."""
-    with mpl.rc_context(STYLE):
+    with plt.style.context(STYLE):
         figure = plt.figure(figsize=(16, 9), layout="constrained")
         figure.get_layout_engine().set(w_pad=0.12, h_pad=0.08)
         grid = figure.add_gridspec(3, 2, width_ratios=(1, 1.35))
@@ -50,7 +50,7 @@ def draw_run(log: Log, summary: RunSummary, title: str, path: Path) -> None:
             _draw_torques(below, log)
         for axes in (linear, angular, below):
             _mark_brakes(axes, summary.brakes)
-            _legend_beside(axes)
+            axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), fontsize=10)
         _name_brakes(linear, summary.brakes)
         for axes in (linear, angular):
             axes.tick_params(labelbottom=False)
@@ -63,14 +63,8 @@ def _draw_path(axes: Axes, log: Log, summary: RunSummary) -> None:
     x, y, _ = commanded_path(log)
     axes.plot(x, y, color=COMMANDED, linewidth=5, alpha=0.5, label="commanded")
     axes.plot(log["truth_x"], log["truth_y"], color=TRUE, linewidth=2, label="true")
-    axes.plot(
-        log["estimate_x"],
-        log["estimate_y"],
-        color=ESTIMATED_PATH,
-        linewidth=2,
-        linestyle=(0, (3, 2)),
-        label="estimated",
-    )
+    estimated = log["estimate_x"], log["estimate_y"]
+    axes.plot(*estimated, color=ESTIMATED_PATH, linewidth=2, linestyle=(0, (3, 2)), label="estimated")
     axes.plot(0, 0, "o", color="black", markersize=7)
     axes.annotate("start", (0, 0), xytext=(8, -14), textcoords="offset points")
     known = np.flatnonzero(~np.isnan(log["truth_x"]))
@@ -124,9 +118,8 @@ def _draw_speed(axes: Axes, log: Log, summary: RunSummary, component: str) -> No
 def _draw_torques(axes: Axes, log: Log) -> None:
     for joint, color in zip(joint_names(log), JOINTS, strict=False):
         name = joint.removesuffix("_joint").replace("_", " ")
-        axes.plot(
-            log["time"], log[f"{joint}_effort_command"], color=color, linewidth=5, alpha=0.3, label=f"{name}, commanded"
-        )
+        commanded = log[f"{joint}_effort_command"]
+        axes.plot(log["time"], commanded, color=color, linewidth=5, alpha=0.3, label=f"{name}, commanded")
         measured = log[f"{joint}_effort"]
         if np.isfinite(measured).any():  # some drives measure no torque
             axes.plot(log["time"], measured, color=color, linewidth=1.2, label=f"{name}, actual")
@@ -169,11 +162,6 @@ def _name_brakes(axes: Axes, brakes: tuple[Brake, ...]) -> None:
         at = min(max(brake.begin, begin), end - width)
         if at < free:
             continue
-        axes.text(
-            at, 1.01, text, color=BRAKED, fontsize=9, va="bottom", transform=axes.get_xaxis_transform(), clip_on=False
-        )
+        transform = axes.get_xaxis_transform()
+        axes.text(at, 1.01, text, color=BRAKED, fontsize=9, va="bottom", transform=transform, clip_on=False)
         free = at + width
-
-
-def _legend_beside(axes: Axes) -> None:
-    axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), fontsize=10)

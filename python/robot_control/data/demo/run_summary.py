@@ -94,11 +94,9 @@ def summarize(
 def safety(log: Log) -> Safety:
     """States and causes in the log."""
     numbers = log["supervisor_state"]
-    return Safety(
-        state=_name(last(numbers), "SupervisorState"),
-        states=entered(numbers, "SupervisorState"),
-        causes=tuple(causes_in(log["permit_causes"])),
-    )
+    state = _name(last(numbers), "SupervisorState")
+    causes = tuple(causes_in(log["permit_causes"]))
+    return Safety(state=state, states=entered(numbers, "SupervisorState"), causes=causes)
 
 
 def entered(numbers: FloatArray, kind: str) -> tuple[str, ...]:

@@ -23,7 +23,7 @@ import numpy as np
 from robot_control.data.brakes import GATE_BRAKE
 from robot_control.data.run_log import BoolArray, FloatArray, Log
 from robot_control.loop.signal_names import mask_of
-from robot_control.robot.pose import Pose, turned
+from robot_control.robot.pose import Pose, along_arcs, turned
 
 EXCUSED_CYCLES = 50
 SETTLE = 0.5
@@ -123,10 +123,8 @@ def steady_rows(log: Log, linear: float, angular: float, rise: float = ON_WHEELS
         raise NotSteadyError("the limited command never reached the requested one")
     reached = first + int(np.argmax(limited))
     if time[reached] - time[first] > rise:
-        raise NotSteadyError(
-            f"the limited command reached the requested one after {time[reached] - time[first]:.1f} s, "
-            f"not within {rise:g} s"
-        )
+        what = f"the limited command reached the requested one after {time[reached] - time[first]:.1f} s"
+        raise NotSteadyError(f"{what}, not within {rise:g} s")
     begin = int(np.searchsorted(time, time[reached] + SETTLE))
     if begin >= final:
         raise NotSteadyError(f"the command ended within {SETTLE:g} s after it was reached")
@@ -142,8 +140,7 @@ def excused_rows(log: Log) -> BoolArray:
         return np.zeros(late.shape, dtype=bool)
     previous = np.searchsorted(braked, log["cycle"], side="right") - 1
     since = log["cycle"] - braked[np.maximum(previous, 0)]
-    excused: BoolArray = (previous >= 0) & (since <= EXCUSED_CYCLES)
-    return excused
+    return np.asarray((previous >= 0) & (since <= EXCUSED_CYCLES))
 
 
 def judge(log: Log, linear: float, angular: float, tolerances: Tolerances = ON_WHEELS) -> Tracking:
@@ -171,14 +168,8 @@ def judge(log: Log, linear: float, angular: float, tolerances: Tolerances = ON_W
         checks.append(Check(f"mean true {name} speed", float(error.mean()), tolerances.mean))
         if tolerances.cycle is not None:
             checks.append(Check(f"worst steady cycle, {name}", float(worst), tolerances.cycle))
-        axes.append(
-            Axis(
-                commanded,
-                float(truth.mean()),
-                float(np.nanmean(log[f"estimate_{name}"][rows])),
-                float(np.sqrt(np.mean(error**2)) * abs(commanded)),
-            )
-        )
+        estimate, rms = np.nanmean(log[f"estimate_{name}"][rows]), np.sqrt(np.mean(error**2)) * abs(commanded)
+        axes.append(Axis(commanded, float(truth.mean()), float(estimate), float(rms)))
 
     end = rows.start + int(np.flatnonzero(known & ~np.isnan(log["estimate_x"][rows]))[-1])
     true_pose, estimated_pose = _pose(log, "truth", end), _pose(log, "estimate", end)
@@ -209,20 +200,14 @@ def commanded_path(log: Log) -> tuple[FloatArray, FloatArray, FloatArray]:
     """
     v, w = np.nan_to_num(log["limited_linear"][:-1]), np.nan_to_num(log["limited_angular"][:-1])
     dt = np.diff(log["time"])
-    turn = w * dt
-    yaw = np.concatenate(([0.0], np.cumsum(turn)))
-    chord = v * dt * np.sinc(turn / (2 * np.pi))
-    x = np.concatenate(([0.0], np.cumsum(chord * np.cos(yaw[:-1] + turn / 2))))
-    y = np.concatenate(([0.0], np.cumsum(chord * np.sin(yaw[:-1] + turn / 2))))
+    x, y, yaw = along_arcs(v * dt, w * dt).T
     return x, y, yaw
 
 
 def _is_twist(log: Log, prefix: str, linear: float, angular: float) -> BoolArray:
     # 1e-9: the values are those that were sent, bit by bit; a different value is another command.
-    same: BoolArray = (np.abs(log[f"{prefix}_linear"] - linear) < 1e-9) & (
-        np.abs(log[f"{prefix}_angular"] - angular) < 1e-9
-    )
-    return same
+    off = np.abs([log[f"{prefix}_linear"] - linear, log[f"{prefix}_angular"] - angular])
+    return np.asarray((off < 1e-9).all(axis=0))
 
 
 def _integrate(log: Log, row: int) -> Pose:

@@ -185,9 +185,8 @@ class _Reader:
             return names[0]
         what = f"is of {self._types[names[0]]}" if names else "is not in it"
         candidates = sorted(name for name, kind in self._types.items() if kind in types)
-        raise InputError(
-            f"{self._path}: {wanted} {what}; topics of {' or '.join(types)}: {listed(candidates) or 'none at all'}"
-        )
+        why = f"{self._path}: {wanted} {what}; topics of {' or '.join(types)}: {listed(candidates) or 'none at all'}"
+        raise InputError(why)
 
     def _names_of(self, topic: str, robot: Robot, joints: tuple[str, str] | None) -> dict[str, list[str]] | None:
         """The joints of each side whose positions a topic holds; None if some are missing."""
@@ -211,7 +210,5 @@ class _Reader:
             return
         wanted = list(joints or (*wheel_joints(robot, "left"), *wheel_joints(robot, "right")))
         positions = "; ".join(f"{name}: {listed(sorted(self._positions_in(name))) or 'none'}" for name in states)
-        raise InputError(
-            f"{self._path}: no topic holds positions of the wheels {listed(wanted)}. Joints with a position: "
-            f"{positions}. Name two of them: --joints left=…,right=…"
-        )
+        what = f"{self._path}: no topic holds positions of the wheels {listed(wanted)}. Joints with a position"
+        raise InputError(f"{what}: {positions}. Name two of them: --joints left=…,right=…")

@@ -126,5 +126,4 @@ class _Problem:
     @staticmethod
     def _weights(residuals: FloatArray) -> FloatArray:
         scale = 1.4826 * float(np.median(np.abs(residuals))) + 1e-9
-        weights: FloatArray = np.minimum(1.0, HUBER * scale / np.maximum(np.abs(residuals), 1e-12))
-        return weights
+        return np.asarray(np.minimum(1.0, HUBER * scale / np.maximum(np.abs(residuals), 1e-12)))

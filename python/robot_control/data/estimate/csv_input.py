@@ -89,10 +89,8 @@ def _columns_of(table: _Table, form: CsvForm) -> dict[str, str]:
     columns = {name: form.columns.get(name, name) for name in NAMES}
     missing += [columns[name] for name in ("time", "left", "right") if columns[name] not in table.header]
     if missing:
-        raise InputError(
-            f"{table.path}: no column {', '.join(dict.fromkeys(missing))}; its header is {listed(table.header)}. "
-            "Say which ones are meant: --columns time=…,left=…,right=…,gyro_z=…"
-        )
+        what = f"{table.path}: no column {', '.join(dict.fromkeys(missing))}; its header is {listed(table.header)}"
+        raise InputError(f"{what}. Say which ones are meant: --columns time=…,left=…,right=…,gyro_z=…")
     found = {name: column for name, column in columns.items() if column in table.header}
     for group, needed in ((GYRO, ("gyro_z",)), (ACCEL, ACCEL)):
         present = [name for name in group if name in found]
@@ -128,10 +126,8 @@ class _Table:
         for line, row in self._rows():
             stamp = self._stamp(line, row[at], TIME_UNITS[unit])
             if stamps and stamp <= stamps[-1]:
-                raise InputError(
-                    f"{self.path}, line {line}: {time} is {row[at]}, not after the row before; time must strictly "
-                    "increase: sort the file, and give one row to each time"
-                )
+                what = f"{self.path}, line {line}: {time} is {row[at]}, not after the row before"
+                raise InputError(f"{what}; time must strictly increase: sort the file, and give one row to each time")
             stamps.append(stamp)
             rows.append([self._number(line, name, row[cell]) for name, cell in zip(names, cells, strict=True)])
         if not rows:
@@ -178,20 +174,16 @@ class _Table:
             if not stamp.is_finite():
                 raise InvalidOperation
         except InvalidOperation:
-            raise InputError(
-                f"{self.path}, line {line}: the time is {cell.strip()!r}; every row needs a finite number"
-            ) from None
+            why = f"{self.path}, line {line}: the time is {cell.strip()!r}; every row needs a finite number"
+            raise InputError(why) from None
         if abs(stamp) >= 2**62:  # so that a difference of two is a number of 64 bits
-            raise InputError(
-                f"{self.path}, line {line}: the time is {cell.strip()}, beyond 146 years; look at --time-unit"
-            )
+            why = f"{self.path}, line {line}: the time is {cell.strip()}, beyond 146 years; look at --time-unit"
+            raise InputError(why)
         return round(stamp)
 
     def _number(self, line: int, name: str, cell: str) -> float:
         try:
             return float(cell) if cell.strip() else math.nan
         except ValueError:
-            raise InputError(
-                f"{self.path}, line {line}, column {name}: {cell.strip()!r} is no number; leave the cell of an absent "
-                "sample empty"
-            ) from None
+            what = f"{self.path}, line {line}, column {name}: {cell.strip()!r} is no number"
+            raise InputError(f"{what}; leave the cell of an absent sample empty") from None

@@ -5,17 +5,8 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from robot_control.data.estimate import mounting
 from robot_control.data.estimate.clock import TurnFit, fit_turning
-from robot_control.data.estimate.mounting import (
-    AGREES,
-    BETTER,
-    GRAVITY,
-    OBLIQUE,
-    agreement,
-    fitting,
-    gravity_of,
-    tilt_of,
-)
 from robot_control.data.estimate.samples import FloatArray, InputError, Robot, Samples
 from robot_control.data.estimate.streams import Streams, streams_of
 
@@ -58,10 +49,8 @@ def check_angles(samples: Samples) -> None:
     """
     known = [table[~np.isnan(table)] for table in (samples.left, samples.right)]
     if all(table.size and np.all(table == np.round(table)) and np.unique(table).size >= COUNTS for table in known):
-        raise InputError(
-            "left and right are whole numbers: counts of an encoder, not radians. Say how many make a turn of the "
-            "wheel, gear included: --counts-per-turn N"
-        )
+        what = "left and right are whole numbers: counts of an encoder, not radians"
+        raise InputError(f"{what}. Say how many make a turn of the wheel, gear included: --counts-per-turn N")
 
 
 def check(samples: Samples, robot: Robot) -> Findings:
@@ -76,7 +65,7 @@ def check(samples: Samples, robot: Robot) -> Findings:
             raise InputError(f"the {side} wheel has not one angle in this recording: look at its column or its joint")
     streams = streams_of(samples, robot)
     findings = Findings()
-    gravity = gravity_of(streams)
+    gravity = mounting.gravity_of(streams)
     up = streams.base_from_imu[2]
     if gravity is not None and _check_gravity(streams, gravity, findings):
         up = gravity / np.linalg.norm(gravity)
@@ -106,35 +95,32 @@ def _check_gravity(streams: Streams, gravity: FloatArray, findings: Findings) ->
     """True if the accelerometer shows the vertical."""
     size = float(np.linalg.norm(gravity))
     if size < NO_GRAVITY:
-        findings.warnings.append(
-            f"the accelerometer shows no gravity ({size:.2g} m/s²): whatever took it out also took out the tilt. "
-            "Leave the accelerometer out, or record it as it is measured"
-        )
+        found = f"the accelerometer shows no gravity ({size:.2g} m/s²): whatever took it out also took out the tilt"
+        findings.warnings.append(f"{found}. Leave the accelerometer out, or record it as it is measured")
         return False
     if IN_G[0] < size < IN_G[1]:
         raise InputError(f"the accelerometer is in g: at rest it shows {size:.3g}. Say --accel-unit g")
-    if abs(size / GRAVITY - 1) > SCALE:
-        findings.warnings.append(
-            f"the accelerometer shows {size:.4g} m/s² at rest instead of {GRAVITY:.4g}: look at its unit and scale"
-        )
-    tilt = tilt_of(gravity, streams.base_from_imu)
-    candidates = fitting(streams, gravity)
-    plain = [mounting for mounting in candidates if not mounting.mirrored]
-    if tilt > OBLIQUE:
+    if abs(size / mounting.GRAVITY - 1) > SCALE:
+        what = f"the accelerometer shows {size:.4g} m/s² at rest instead of {mounting.GRAVITY:.4g}"
+        findings.warnings.append(f"{what}: look at its unit and scale")
+    tilt = mounting.tilt_of(gravity, streams.base_from_imu)
+    candidates = mounting.fitting(streams, gravity)
+    plain = [each for each in candidates if not each.mirrored]
+    if tilt > mounting.OBLIQUE:
         what = f"gravity is {math.degrees(tilt):.0f}° away from where the IMU's mounting says that it is"
         if not plain:
             findings.warnings.append(f"{what}, and on none of its axes: measure how it is mounted (--imu-orientation)")
-        elif plain[0].agreement < AGREES:
-            level = min(plain, key=lambda mounting: abs(mounting.rpy[2]))
+        elif plain[0].agreement < mounting.AGREES:
+            level = min(plain, key=lambda each: abs(each.rpy[2]))
             findings.warnings.append(
                 f"{what}: {level.option} has it upwards; the drive does not show where the IMU's x axis points"
             )
         else:
             findings.warnings.append(f"{what}: {plain[0].option} fits, with the forces of the drive")
         return True
-    given = agreement(streams)
+    given = mounting.agreement(streams)
     best = candidates[0] if candidates else None
-    if best is not None and best.agreement >= AGREES and best.agreement - given >= BETTER:
+    if best is not None and best.agreement >= mounting.AGREES and best.agreement - given >= mounting.BETTER:
         findings.warnings.append(
             "the accelerometer's horizontal axes do not fit the drive: "
             + (
@@ -178,14 +164,10 @@ def _check_turning(streams: Streams, turning: TurnFit, findings: Findings) -> No
     if DEGREES_INSTEAD[0] < in_degrees < DEGREES_INSTEAD[1]:
         raise InputError("the gyro is in °/s: it turns 57 times as fast as the wheels. Say --gyro-unit deg/s")
     if ratio < 0:
-        findings.warnings.append(
-            "the gyro turns against the wheels: its frame is left-handed or hangs upside down (change its signs, or "
-            "--imu-orientation), or left and right wheels are exchanged"
-        )
+        frame = "its frame is left-handed or hangs upside down (change its signs, or --imu-orientation)"
+        findings.warnings.append(f"the gyro turns against the wheels: {frame}, or left and right wheels are exchanged")
     elif not BASES[0] < ratio < BASES[1]:
-        findings.warnings.append(
-            f"by the gyro the effective wheel base is {turning.wheel_base:.3f} m, not {streams.wheel_base:.3f} m: give "
-            "that one, or look at radius, counts per turn and the gyro's unit"
-        )
+        what = f"by the gyro the effective wheel base is {turning.wheel_base:.3f} m, not {streams.wheel_base:.3f} m"
+        findings.warnings.append(f"{what}: give that one, or look at radius, counts per turn and the gyro's unit")
     if turning.offset_deviation < OFFSET_DEVIATION and abs(turning.offset) > max(OFFSET, 3 * turning.offset_deviation):
         findings.offset = turning.offset

@@ -24,10 +24,8 @@ def read_run_bag(path: Path, robot: Robot) -> Samples:
     missing = [name for side in sides for name in side if name not in run.columns]
     if missing:
         positions = [name for name in run.columns if name.endswith("_position")]
-        raise InputError(
-            f"{path} is a log of another robot: no column {', '.join(missing)}; it has {listed(positions)}. Give "
-            "the --urdf or --params that it was recorded with"
-        )
+        what = f"{path} is a log of another robot: no column {', '.join(missing)}"
+        raise InputError(f"{what}; it has {listed(positions)}. Give the --urdf or --params that it was recorded with")
     time_ns = np.rint(run.columns["time"] * 1e9).astype(np.int64)
     left, right, gyro, accel = (
         np.column_stack([run.columns[name] for name in names]) for names in (*sides, GYRO, ACCEL)

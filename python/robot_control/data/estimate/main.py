@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import yaml  # type: ignore[import-untyped]
 
-from robot_control._robot_control import ParameterError, RobotError, read_run_header
+from robot_control._robot_control import read_run_header
 from robot_control.data.estimate.bag_input import BagTopics, read_bag
 from robot_control.data.estimate.csv_input import ACCEL_UNITS, GYRO_UNITS, NAMES, TIME_UNITS, CsvForm, read_csv
 from robot_control.data.estimate.encoder import counts_per_turn
@@ -24,7 +24,7 @@ from robot_control.data.estimate.report import Summary
 from robot_control.data.estimate.samples import InputError, IntArray, Robot, Samples
 from robot_control.data.estimate.trust import Trust
 from robot_control.data.run_log import is_run_log, kind_in
-from robot_control.files.files import NewFiles, escaped, fit_for_message, given_path, in_words, utf8
+from robot_control.files.files import NewFiles, escaped, given_path, one_message, utf8
 from robot_control.files.output_files import check_outputs
 from robot_control.loop.estimator import Estimate, Estimator
 from robot_control.loop.roles import refuse_legs
@@ -54,15 +54,11 @@ but for a run.bag.
 """
 
 
+@one_message("estimate.py", ValueError, RuntimeError, OSError)
 def main(arguments: list[str] | None = None) -> None:
     """Estimates, writes, prints; exits with 1 and one message when something is refused."""
     options = _parser().parse_args(_with_negative_lists(sys.argv[1:] if arguments is None else arguments))
-    try:
-        print(estimate(options))
-    except (InputError, ParameterError, RobotError, ValueError, RuntimeError, OSError) as error:
-        sys.exit(f"estimate.py: {fit_for_message(in_words(error))}")
-    except MemoryError:
-        sys.exit("estimate.py: the recording needs more memory than there is; cut it into pieces")
+    print(estimate(options))
     for path in _outputs(options):
         print(escaped(f"wrote {path}"), file=sys.stderr)
 
@@ -159,16 +155,9 @@ def _check_robot(options: argparse.Namespace, samples: Samples) -> None:
 
 
 def _estimator(options: argparse.Namespace, encoder_counts: float | None) -> Estimator:
-    return Estimator(
-        options.params,
-        options.urdf,
-        wheel_radius=options.wheel_radius,
-        wheel_base=options.wheel_base,
-        imu_position=options.imu_position,
-        imu_orientation=options.imu_orientation,
-        encoder_counts=encoder_counts,
-        period=options.period,
-    )
+    names = ("wheel_radius", "wheel_base", "imu_position", "imu_orientation", "period")
+    given = {name: getattr(options, name) for name in names}
+    return Estimator(options.params, options.urdf, encoder_counts=encoder_counts, **given)
 
 
 def _blocks(estimator: Estimator, samples: Samples) -> Iterator[tuple[IntArray, Estimate]]:
@@ -176,13 +165,8 @@ def _blocks(estimator: Estimator, samples: Samples) -> Iterator[tuple[IntArray, 
     seconds = samples.seconds
     for first in range(0, seconds.size, BLOCK):
         some = slice(first, first + BLOCK)
-        rows = estimator.process(
-            seconds[some],
-            samples.left[some],
-            samples.right[some],
-            None if samples.gyro is None else samples.gyro[some],
-            None if samples.accel is None else samples.accel[some],
-        )
+        gyro, accel = (None if table is None else table[some] for table in (samples.gyro, samples.accel))
+        rows = estimator.process(seconds[some], samples.left[some], samples.right[some], gyro, accel)
         yield samples.time_ns[some], rows
 
 
@@ -202,24 +186,15 @@ def _read(options: argparse.Namespace, estimator: Estimator) -> Samples:
     if options.input.suffix == ".bag" and is_run_log(options.input):
         return read_run_bag(options.input, estimator.robot)
     if options.input.suffix == ".bag":
-        samples = read_bag(
-            options.input,
-            estimator.robot,
-            BagTopics(options.wheels, options.imu, _joints(options.joints), options.odometry),
-        )
+        topics = BagTopics(options.wheels, options.imu, _joints(options.joints), options.odometry)
+        samples = read_bag(options.input, estimator.robot, topics)
         if samples.gyro is not None:
-            samples.gyro *= GYRO_UNITS[options.gyro_unit or "rad/s"]
+            samples.gyro *= GYRO_UNITS[options.gyro_unit or CsvForm.gyro_unit]
         if samples.accel is not None:
-            samples.accel *= ACCEL_UNITS[options.accel_unit or "m/s2"]
+            samples.accel *= ACCEL_UNITS[options.accel_unit or CsvForm.accel_unit]
         return samples
-    form = CsvForm(
-        dict(options.columns or {}),
-        options.counts_per_turn or 2 * math.pi,
-        options.time_unit or "s",
-        options.gyro_unit or "rad/s",
-        options.accel_unit or "m/s2",
-    )
-    return read_csv(options.input, form)
+    given = {name: getattr(options, name) for name in (*OF_CSV, "gyro_unit", "accel_unit") if getattr(options, name)}
+    return read_csv(options.input, CsvForm(**given))
 
 
 def _picture(options: argparse.Namespace, samples: Samples) -> Picture | None:
@@ -273,56 +248,41 @@ def _parser() -> argparse.ArgumentParser:
         epilog=EPILOG,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
-    parser.add_argument("input", type=given_path, help="CSV, or rosbag (.bag)")
-    parser.add_argument(
-        "--csv", type=given_path, metavar="OUT.csv", help="write the estimate, a row per row of the input"
-    )
-    parser.add_argument("--bag", type=given_path, metavar="OUT.bag", help="write nav_msgs/Odometry on /odom, and /tf")
-    parser.add_argument("--plot", type=given_path, metavar="OUT.png", help="draw path, yaw, speeds, gyro bias, slip")
-    parser.add_argument(
-        "--calibration",
-        type=given_path,
-        metavar="OUT.yaml",
-        help="write what was learned, as the node's calibration_file",
-    )
-    parser.add_argument("--rate", type=positive, metavar="HZ", help=f"rows a second; bag: {BAG_RATE:g} unless given")
+    add = parser.add_argument
+    add("input", type=given_path, help="CSV, or rosbag (.bag)")
+    add("--csv", type=given_path, metavar="OUT.csv", help="write the estimate, a row per row of the input")
+    add("--bag", type=given_path, metavar="OUT.bag", help="write nav_msgs/Odometry on /odom, and /tf")
+    add("--plot", type=given_path, metavar="OUT.png", help="draw path, yaw, speeds, gyro bias, slip")
+    learned = "write what was learned, as the node's calibration_file"
+    add("--calibration", type=given_path, metavar="OUT.yaml", help=learned)
+    add("--rate", type=positive, metavar="HZ", help=f"rows a second; bag: {BAG_RATE:g} unless given")
 
-    robot = parser.add_argument_group("the robot")
-    robot.add_argument("--urdf", type=given_path, metavar="FILE", help="robot description, .xacro too")
-    robot.add_argument("--params", type=given_path, metavar="YAML", help="parameter file; installed: robot_params.yaml")
-    robot.add_argument("--wheel-radius", type=positive, metavar="M", help="every wheel")
-    robot.add_argument("--wheel-base", type=positive, metavar="M", help="between the left and the right wheels")
-    robot.add_argument("--imu-position", type=_numbers, metavar="X,Y,Z", help="m, in base_link")
-    robot.add_argument(
-        "--imu-orientation", type=_numbers, metavar="R,P,Y", help="rad, as in a URDF, or a quaternion x,y,z,w"
-    )
-    robot.add_argument(
-        "--encoder-counts", type=positive, metavar="N", help="a turn, gear included; else found, or 4096"
-    )
-    robot.add_argument("--gyro-unit", choices=GYRO_UNITS, help="of the recording; rad/s unless given")
-    robot.add_argument("--accel-unit", choices=ACCEL_UNITS, help="m/s2 unless given")
-    robot.add_argument(
-        "--imu-delay",
-        type=_finite,
-        metavar="S",
-        help="by which the IMU's stamps are later than the wheels'; else found by the turning of both",
-    )
-    robot.add_argument("--period", type=positive, metavar="S", help="between samples; else their median")
+    add = parser.add_argument_group("the robot").add_argument
+    add("--urdf", type=given_path, metavar="FILE", help="robot description, .xacro too")
+    add("--params", type=given_path, metavar="YAML", help="parameter file; installed: robot_params.yaml")
+    add("--wheel-radius", type=positive, metavar="M", help="every wheel")
+    add("--wheel-base", type=positive, metavar="M", help="between the left and the right wheels")
+    add("--imu-position", type=_numbers, metavar="X,Y,Z", help="m, in base_link")
+    add("--imu-orientation", type=_numbers, metavar="R,P,Y", help="rad, as in a URDF, or a quaternion x,y,z,w")
+    add("--encoder-counts", type=positive, metavar="N", help="a turn, gear included; else found, or 4096")
+    add("--gyro-unit", choices=GYRO_UNITS, help="of the recording; rad/s unless given")
+    add("--accel-unit", choices=ACCEL_UNITS, help="m/s2 unless given")
+    later = "by which the IMU's stamps are later than the wheels'; else found by the turning of both"
+    add("--imu-delay", type=_finite, metavar="S", help=later)
+    add("--period", type=positive, metavar="S", help="between samples; else their median")
 
-    table = parser.add_argument_group("a CSV")
-    table.add_argument("--columns", type=_pairs, metavar="time=t,left=…", help="the file's names of our columns")
-    table.add_argument(
-        "--counts-per-turn", type=positive, metavar="N", help="unit of left and right: 360 for degrees, 1 for turns"
-    )
-    table.add_argument("--time-unit", choices=TIME_UNITS)
+    add = parser.add_argument_group("a CSV").add_argument
+    add("--columns", type=_pairs, metavar="time=t,left=…", help="the file's names of our columns")
+    unit = "unit of left and right: 360 for degrees, 1 for turns"
+    add("--counts-per-turn", type=positive, metavar="N", help=unit)
+    add("--time-unit", choices=TIME_UNITS)
 
-    bag = parser.add_argument_group("a bag")
-    bag.add_argument("--wheels", metavar="TOPIC", help="of sensor_msgs/JointState or nav_msgs/Odometry")
-    bag.add_argument("--imu", metavar="TOPIC", help="of sensor_msgs/Imu; none: wheels alone")
-    bag.add_argument("--joints", type=_pairs, metavar="left=NAME,right=NAME", help="else those of the robot")
-    bag.add_argument(
-        "--odometry", choices=("pose", "twist"), help="what wheel odometry is read by; else its pose, where it moves"
-    )
+    add = parser.add_argument_group("a bag").add_argument
+    add("--wheels", metavar="TOPIC", help="of sensor_msgs/JointState or nav_msgs/Odometry")
+    add("--imu", metavar="TOPIC", help="of sensor_msgs/Imu; none: wheels alone")
+    add("--joints", type=_pairs, metavar="left=NAME,right=NAME", help="else those of the robot")
+    part = "what wheel odometry is read by; else its pose, where it moves"
+    add("--odometry", choices=("pose", "twist"), help=part)
     return parser
 
 

@@ -11,6 +11,7 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.spatial.transform import Rotation
 
 from robot_control.data.estimate.samples import FloatArray
 from robot_control.data.estimate.streams import Streams
@@ -60,19 +61,11 @@ def fitting(streams: Streams, gravity: FloatArray) -> list[Mounting]:
     """The four mountings on the axes in which gravity points up, plain and mirrored, the best one first; none where
     gravity lies between the axes.
     """
-    axis = int(np.argmax(np.abs(gravity)))
-    if abs(gravity[axis]) < math.cos(OBLIQUE) * float(np.linalg.norm(gravity)):
-        return []
-    level = _level(axis, float(np.sign(gravity[axis])))
-    motion = _motion(streams)
-    found = []
-    for quarter in range(4):
-        turned = _about_z(quarter * math.pi / 2) @ level
-        plain, mirrored = _agreements(streams, motion, turned)
-        found += [
-            Mounting(_rpy(turned), mirrored=False, agreement=plain),
-            Mounting(_rpy(turned), mirrored=True, agreement=mirrored),
-        ]
+    motion, found = _motion(streams), list[Mounting]()
+    for matrix in np.round(Rotation.create_group("O").as_matrix()):
+        if matrix[2] @ gravity >= math.cos(OBLIQUE) * float(np.linalg.norm(gravity)):
+            plain, mirrored = _agreements(streams, motion, matrix)
+            found += [Mounting(_rpy(matrix), False, plain), Mounting(_rpy(matrix), True, mirrored)]  # noqa: FBT003
     return sorted(found, key=lambda mounting: -mounting.agreement)
 
 
@@ -116,22 +109,6 @@ def _agreements(
     ahead, sideways = float(gained[:, 0] @ faster), float(gained[:, 1] @ aside)
     scale = math.sqrt(float((faster @ faster + aside @ aside) * np.sum(gained**2))) or 1.0
     return (ahead + sideways) / scale, (ahead - sideways) / scale
-
-
-def _level(axis: int, sign: float) -> FloatArray:
-    """The rotation on the axes that turns the IMU's axis with gravity upwards."""
-    if axis == 2:
-        return np.diag([1.0, sign, sign])
-    rows = np.zeros((3, 3))
-    rows[2, axis] = sign
-    rows[0, (axis + 1) % 3] = 1.0
-    rows[1] = np.cross(rows[2], rows[0])
-    return rows
-
-
-def _about_z(angle: float) -> FloatArray:
-    cosine, sine = round(math.cos(angle)), round(math.sin(angle))
-    return np.array([[cosine, -sine, 0.0], [sine, cosine, 0.0], [0.0, 0.0, 1.0]])
 
 
 def _rpy(matrix: FloatArray) -> tuple[float, float, float]:

@@ -56,10 +56,8 @@ class BagSink:
             from rospy import Time
             from tf2_msgs.msg import TFMessage
         except ImportError as error:
-            raise InputError(
-                f"a bag needs Debian's python3-rosbag, python3-nav-msgs and python3-tf2-msgs: {error}. Run it with "
-                "/usr/bin/python3, or write --csv"
-            ) from None
+            what = "a bag needs Debian's python3-rosbag, python3-nav-msgs and python3-tf2-msgs"
+            raise InputError(f"{what}: {error}. Run it with /usr/bin/python3, or write --csv") from None
         self._odometry, self._transform, self._transforms, self._time = Odometry, TransformStamped, TFMessage, Time
         self._base_frame = base_frame
         self._bag = rosbag.Bag(str(path), "w")

@@ -11,6 +11,7 @@ mpl.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.patches import Ellipse
+from scipy.ndimage import uniform_filter1d
 
 from robot_control.data.intervals import intervals
 from robot_control.loop.estimator import FLAGS, SENSORS, Estimate
@@ -60,7 +61,7 @@ class Picture:
         """Writes a picture of 1760 × 990 pixels, in the format that the name ends in."""
         rows = {name: np.concatenate([part[name] for part in self._parts]) for name in self._parts[0]}
         time, spans = rows["time"], self._spans()
-        with mpl.rc_context(STYLE):
+        with plt.style.context(STYLE):
             figure = plt.figure(figsize=(16, 9), layout="constrained")
             figure.get_layout_engine().set(w_pad=0.12, h_pad=0.08)
             grid = figure.add_gridspec(4, 2, width_ratios=(1, 1.35), height_ratios=(1, 1, 1, 0.8))
@@ -97,20 +98,17 @@ def _mean_of_neighbours(values: FloatArray, time_ns: IntArray) -> FloatArray:
     half = round(SMOOTH / 2 / step)
     if half < 1:
         return values
-    sums = np.cumsum(np.concatenate([np.zeros((1, values.shape[1])), values]), axis=0)
-    row = np.arange(len(values))
-    first, last = np.maximum(row - half, 0), np.minimum(row + half + 1, len(values))
-    mean: FloatArray = (sums[last] - sums[first]) / (last - first)[:, None]
-    return mean
+    return np.asarray(uniform_filter1d(values, 2 * half + 1, axis=0, mode="nearest"))
 
 
 def _draw_path(axes: Axes, time: FloatArray, rows: Estimate, spans: list[tuple[float, float]]) -> None:
     axes.set_title("Path [m]")
     axes.plot(rows["wheel_x"], rows["wheel_y"], color=WHEELS, linewidth=UNDER, label="wheels alone")
     axes.plot(rows["x"], rows["y"], color=OURS, linewidth=1.6, label="estimate")
+    half_axis = NINETY_FIVE * np.sqrt(np.linalg.eigvalsh(rows["pose_covariance"][-1, :2, :2])[1])  # m, of the last one
     for i, row in enumerate(_along(rows["distance"])):
         ellipse = _ellipse(rows["x"][row], rows["y"][row], rows["pose_covariance"][row, :2, :2])
-        label = f"95 %, at the end ± {_last_half_axis(rows):.2g} m" if i == 0 else None  # which may be too small to see
+        label = f"95 %, at the end ± {half_axis:.2g} m" if i == 0 else None  # which may be too small to see
         ellipse.set(edgecolor=OURS, facecolor=OURS, alpha=0.25, label=label)
         axes.add_patch(ellipse)
     for i, (first, last) in enumerate(spans):
@@ -128,13 +126,7 @@ def _draw_path(axes: Axes, time: FloatArray, rows: Estimate, spans: list[tuple[f
 def _along(distance: FloatArray) -> IntArray:
     """Rows that are spread evenly along the path, the last one included."""
     marks = np.linspace(distance[0], distance[-1], ELLIPSES + 1)[1:]
-    rows: IntArray = np.unique(np.minimum(np.searchsorted(distance, marks), distance.size - 1))
-    return rows
-
-
-def _last_half_axis(rows: Estimate) -> float:
-    """m, half axis of the last covariance ellipse."""
-    return float(NINETY_FIVE * np.sqrt(np.linalg.eigvalsh(rows["pose_covariance"][-1, :2, :2])[1]))
+    return np.asarray(np.unique(np.minimum(np.searchsorted(distance, marks), distance.size - 1)))
 
 
 def _ellipse(x: float, y: float, covariance: FloatArray) -> Ellipse:
@@ -203,6 +195,4 @@ def _draw_innovations(axes: Axes, time: FloatArray, rows: Estimate) -> None:
         return
     axes.axhline(1, color="#666666", linewidth=0.8, linestyle=":")
     axes.set_yscale("log")
-    axes.legend(
-        loc="upper center", bbox_to_anchor=(0.5, -0.42), ncols=len(SENSORS), fontsize="small", columnspacing=1.2
-    )
+    axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.42), ncols=6, fontsize="small", columnspacing=1.2)

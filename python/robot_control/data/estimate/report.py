@@ -1,6 +1,7 @@
 """Summarises the end of an estimate in a few lines."""
 
 import math
+from collections.abc import Iterator
 
 import numpy as np
 
@@ -27,9 +28,8 @@ class Summary:
         time = estimate["time"]
         steps = np.diff(time, prepend=time[0] if self._before is None else self._before)
         flags = estimate["flags"]
-        self.seconds["slip"] += float(steps[flags & FLAGS["slip"] != 0].sum())
-        self.seconds["standstill"] += float(steps[flags & FLAGS["standstill"] != 0].sum())
-        self.seconds["degraded"] += float(steps[flags & FLAGS["degraded"] != 0].sum())
+        for name in ("slip", "standstill", "degraded"):
+            self.seconds[name] += float(steps[flags & FLAGS[name] != 0].sum())
         self.degraded |= int(np.bitwise_or.reduce(estimate["degraded"]))
         self.seconds["invalid"] += float(steps[~estimate["valid"]].sum())
         self.reasons |= int(np.bitwise_or.reduce(estimate["slip"]))
@@ -38,43 +38,35 @@ class Summary:
 
     def report(self, samples: Samples, robot: Robot) -> str:
         """The report for a user."""
-        last = self.last
-        deviation = np.sqrt(np.maximum(np.diagonal(last["pose_covariance"]), 0))
+        warnings, notes = (("warning", text) for text in samples.warnings), (("note", text) for text in samples.notes)
+        lines = (*warnings, *self._lines(samples, robot), *notes)
+        return escaped_lines(f"{name:<16}{text}" for name, text in lines)
+
+    def _lines(self, samples: Samples, robot: Robot) -> Iterator[tuple[str, str]]:
+        last, seconds = self.last, self.seconds
+        x, y, yaw = np.sqrt(np.maximum(np.diagonal(last["pose_covariance"]), 0))[[0, 1, 5]].tolist()
         rates = ", ".join(f"{name} {rate:.4g} Hz" for name, rate in samples.rates().items())
-        bias, bias_deviation = last["gyro_bias"] / DEGREE, last["gyro_bias_deviation"] / DEGREE
-        lines = [
-            ("recording", f"{samples.duration:.3f} s, {samples.time_ns.size} rows; {rates}"),
-            ("robot", _robot(robot)),
-            ("distance", f"{last['distance']:.3f} m"),
-            (
-                "end pose",
-                f"x {last['x']:.3f} ± {deviation[0]:.3f} m, y {last['y']:.3f} ± {deviation[1]:.3f} m, "
-                f"yaw {last['yaw'] / DEGREE:.2f} ± {deviation[5] / DEGREE:.2f}°",
-            ),
-            (
-                "by wheels alone",
-                f"x {last['wheel_x']:.3f} m, y {last['wheel_y']:.3f} m, yaw {last['wheel_yaw'] / DEGREE:.2f}°",
-            ),
-            (
-                "gyro bias",
-                ", ".join(f"{b:.3f} ± {s:.3f}" for b, s in zip(bias, bias_deviation, strict=True))
-                + " °/s about x, y, z",
-            ),
-            ("wheel radii", _ratio(last)),
-            ("wheel base", _base(robot, last)),
-            ("standing", f"{self.seconds['standstill']:.1f} s"),
-            ("slip", self._slip()),
-            ("slip detection", slip_detection(float(last["residual_level"]))),
-            ("rejected", _rejected(last, samples)),
-        ]
+        yield "recording", f"{samples.duration:.3f} s, {samples.time_ns.size} rows; {rates}"
+        yield "robot", _robot(robot)
+        yield "distance", f"{last['distance']:.3f} m"
+        end = f"x {last['x']:.3f} ± {x:.3f} m, y {last['y']:.3f} ± {y:.3f} m"
+        yield "end pose", f"{end}, yaw {last['yaw'] / DEGREE:.2f} ± {yaw / DEGREE:.2f}°"
+        wheels = f"x {last['wheel_x']:.3f} m, y {last['wheel_y']:.3f} m"
+        yield "by wheels alone", f"{wheels}, yaw {last['wheel_yaw'] / DEGREE:.2f}°"
+        bias = zip(last["gyro_bias"] / DEGREE, last["gyro_bias_deviation"] / DEGREE, strict=True)
+        yield "gyro bias", f"{', '.join(f'{b:.3f} ± {s:.3f}' for b, s in bias)} °/s about x, y, z"
+        ratio, deviation = float(last["radius_ratio"]), float(last["radius_ratio_deviation"])
+        yield "wheel radii", _calibrated("right/left", ratio, deviation)
+        yield "wheel base", _base(robot, last)
+        yield "standing", f"{seconds['standstill']:.1f} s"
+        yield "slip", self._slip()
+        yield "slip detection", slip_detection(float(last["residual_level"]))
+        yield "rejected", _rejected(last, samples)
         if self.degraded:
             names = [name for name, bit in DEGRADED_REASONS.items() if self.degraded & bit]
-            lines.append(("degraded", f"{self.seconds['degraded']:.1f} s ({', '.join(names)})"))
-        if self.seconds["invalid"] > 0:
-            lines.append(("not valid", f"{self.seconds['invalid']:.1f} s"))
-        lines += [("note", note) for note in samples.notes]
-        lines = [*(("warning", warning) for warning in samples.warnings), *lines]
-        return escaped_lines(f"{name:<16}{text}" for name, text in lines)
+            yield "degraded", f"{seconds['degraded']:.1f} s ({', '.join(names)})"
+        if seconds["invalid"] > 0:
+            yield "not valid", f"{seconds['invalid']:.1f} s"
 
     def _slip(self) -> str:
         names = [name for name, bit in SLIP_REASONS.items() if self.reasons & bit]
@@ -89,10 +81,6 @@ def _robot(robot: Robot) -> str:
 
 def _calibrated(what: str, value: float, deviation: float) -> str:
     return f"{what} {value:.5f} ± {deviation:.5f} of what was given" if deviation > 0 else f"{what} as given"
-
-
-def _ratio(last: Estimate) -> str:
-    return _calibrated("right/left", float(last["radius_ratio"]), float(last["radius_ratio_deviation"]))
 
 
 def _base(robot: Robot, last: Estimate) -> str:

@@ -46,8 +46,7 @@ class Samples:
         """s since the first row; a jump of the time counts as a usual step."""
         steps = np.diff(self.time_ns, prepend=self.time_ns[0])
         steps[steps > MAX_STEP] = min(int(np.median(steps)), MAX_STEP)
-        seconds: FloatArray = np.cumsum(steps) / 1e9
-        return seconds
+        return np.asarray(np.cumsum(steps) / 1e9)
 
     @property
     def duration(self) -> float:

@@ -53,19 +53,8 @@ def streams_of(samples: Samples, robot: Robot) -> Streams:
     seconds = samples.seconds
     left, right = (_travel(table, robot, side) for table, side in ((samples.left, "left"), (samples.right, "right")))
     read = ~(np.isnan(left) | np.isnan(right))
-    gyro_time, gyro = _axes(seconds, samples.gyro)
-    accel_time, accel = _axes(seconds, samples.accel)
-    return Streams(
-        seconds[read],
-        left[read],
-        right[read],
-        gyro_time,
-        gyro,
-        accel_time,
-        accel,
-        rotation(robot["imu"]["orientation"]),
-        float(robot["effective_wheel_base"]),
-    )
+    imu = (*_axes(seconds, samples.gyro), *_axes(seconds, samples.accel), rotation(robot["imu"]["orientation"]))
+    return Streams(seconds[read], left[read], right[read], *imu, float(robot["effective_wheel_base"]))
 
 
 def _travel(table: FloatArray, robot: Robot, side: str) -> FloatArray:
@@ -73,8 +62,7 @@ def _travel(table: FloatArray, robot: Robot, side: str) -> FloatArray:
     wheels = [wheel for wheel in robot["wheels"] if wheel["side"] == side]
     columns = table.reshape(table.shape[0], -1)
     scales = [wheel["sign"] * wheel["radius"] for wheel in wheels[: columns.shape[1]]]
-    travel: FloatArray = (columns * scales).mean(axis=1)
-    return travel
+    return np.asarray((columns * scales).mean(axis=1))
 
 
 def _axes(seconds: FloatArray, table: FloatArray | None) -> tuple[FloatArray, FloatArray]:

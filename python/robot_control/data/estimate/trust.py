@@ -47,10 +47,8 @@ class Trust:
         if self._yaw_deviation > MAX_YAW_DEVIATION:
             found.append(f"not to be trusted: the last yaw is known to ± {math.degrees(self._yaw_deviation):.0f}°")
         if self._distance > 0 and self._slipped > MAX_SLIP * self._distance:
-            found.append(
-                f"not to be trusted: slip on {100 * self._slipped / self._distance:.0f} % of the distance is rare; "
-                "look at clocks, units and mounting, and at what shakes the IMU"
-            )
+            what = f"not to be trusted: slip on {100 * self._slipped / self._distance:.0f} % of the distance is rare"
+            found.append(f"{what}; look at clocks, units and mounting, and at what shakes the IMU")
         if self._restarts:
             when = ", ".join(f"{time:.3f} s" for time in self._restarts[:3])
             found.append(f"an encoder began again after {when}: the travel meanwhile is lost")

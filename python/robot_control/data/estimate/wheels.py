@@ -3,6 +3,7 @@
 import numpy as np
 
 from robot_control.data.estimate.samples import FloatArray, Robot, Stream
+from robot_control.robot.pose import arcs_between
 
 STILL = 1e-6
 """m, rad: a pose that stays so close to its first value was never filled in"""
@@ -25,10 +26,7 @@ def wheel_angles(odometry: Stream, robot: Robot, source: str | None) -> tuple[Fl
     moved = np.ptp(x) > STILL or np.ptp(y) > STILL or np.ptp(yaw) > STILL
     used = source or ("pose" if moved else "twist")
     if used == "pose":
-        turn = np.diff(yaw)
-        heading = yaw[:-1] + turn / 2
-        chord = np.diff(x) * np.cos(heading) + np.diff(y) * np.sin(heading)
-        forward = chord / np.sinc(turn / (2 * np.pi))  # numpy's sinc(u) is sin(πu)/(πu)
+        forward, turn = arcs_between(x, y, yaw)
     else:
         dt = np.diff(odometry.time_ns) / 1e9
         forward = (linear[:-1] + linear[1:]) / 2 * dt
@@ -42,5 +40,4 @@ def _angle(robot: Robot, side: str, forward: FloatArray, turn: FloatArray) -> Fl
     radius = float(np.mean([wheel["radius"] for wheel in wheels]))
     out = (-1 if side == "left" else 1) * robot["effective_wheel_base"] / 2
     travel = np.concatenate([[0.0], np.cumsum(forward - turn * axle_y + turn * out)])
-    angle: FloatArray = travel * wheels[0]["sign"] / radius
-    return angle
+    return np.asarray(travel * wheels[0]["sign"] / radius)

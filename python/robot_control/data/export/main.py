@@ -3,9 +3,9 @@
 import argparse
 import sys
 
-from robot_control._robot_control import BagError, TraceError
+from robot_control._robot_control import BagError
 from robot_control.data.csv_table import write_csv
-from robot_control.data.export.mcap_file import McapError, write_mcap
+from robot_control.data.export.mcap_file import write_mcap
 from robot_control.data.run_log import LogError, is_bag
 from robot_control.files.files import NewFiles, escaped, fit_for_message, given_path, in_words
 from robot_control.files.output_files import check_outputs
@@ -17,7 +17,7 @@ EPILOG = """
 --topics  odom, tf, joint_states and cmd_vel, for `rosbag play --clock` and RViz, of the last run
 """
 
-REFUSALS = (TraceError, LogError, McapError, OSError, ValueError, RuntimeError)
+REFUSALS = (OSError, ValueError, RuntimeError)
 
 
 def main(arguments: list[str] | None = None) -> None:

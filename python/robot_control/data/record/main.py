@@ -10,53 +10,17 @@ import roslib.packages
 
 from robot_control.files.files import given_path, in_words
 
-TOPICS = (
-    "cmd_vel",
-    "cmd_vel_stamped",
-    "joy_vel",
-    "key_vel",
-    "console_vel",
-    "path_vel",
-    "pause",
-    "body_pose",
-    "foot_target",
-    "joint_trajectory",
-    "e_stop",
-    "heartbeat",
-    "clearance",
-    "joy",
-    "imu/input",
-    "joint_commands",
-    "joint_targets",
-    "joint_states",
-    "odom",
-    "wheel_odom",
-    "tf",
-    "tf_static",
-    "imu/data_raw",
-    "imu/data",
-    "cmd_vel_out",
-    "battery_state",
-    "drive_state",
-    "leg_state",
-    "path_wanted",
-    "scan",
-    "map",
-    "map_metadata",
-    "localization_state",
-    "amcl_pose",
-    "particlecloud",
-    "initialpose",
-    "view/markers",
-    "view/path_driven",
-    "robot_kind",
-    "safety_status",
-    "robot_status",
-    "ground_truth/odom",
-    "/diagnostics",
-    "/clock",
-    "/rosout",
+REQUESTS = (
+    *("cmd_vel", "cmd_vel_stamped", "joy_vel", "key_vel", "console_vel", "path_vel", "pause", "body_pose"),
+    *("foot_target", "joint_trajectory", "e_stop", "heartbeat", "clearance", "joy", "imu/input", "initialpose"),
 )
+REPORTS = (
+    *("joint_commands", "joint_targets", "joint_states", "odom", "wheel_odom", "tf", "tf_static", "imu/data_raw"),
+    *("imu/data", "cmd_vel_out", "battery_state", "drive_state", "leg_state", "path_wanted", "scan", "map"),
+    *("map_metadata", "localization_state", "amcl_pose", "particlecloud", "view/markers", "view/path_driven"),
+    *("robot_kind", "safety_status", "robot_status", "ground_truth/odom", "/diagnostics", "/clock", "/rosout"),
+)
+TOPICS = REQUESTS + REPORTS
 """The table of docs/interfaces.md, tf_static and /rosout; relative names belong to the namespace of the robot."""
 
 
@@ -75,9 +39,8 @@ def record_command(arguments: list[str], environment: dict[str, str]) -> list[st
     Raises:
         SystemExit: no folder is named, or help is asked for.
     """
-    parser = argparse.ArgumentParser(
-        prog="record.py", description="Records every topic of the interface table with rosbag; Ctrl-C ends it."
-    )
+    about = "Records every topic of the interface table with rosbag; Ctrl-C ends it."
+    parser = argparse.ArgumentParser(prog="record.py", description=about)
     parser.add_argument("folder", metavar="FOLDER", help="for the bag; made where it does not exist")
     folder = parser.parse_args([argument for argument in arguments if ":=" not in argument]).folder
     namespace = namespace_of(arguments, environment)

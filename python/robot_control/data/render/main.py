@@ -10,11 +10,9 @@ from typing import IO, cast
 import matplotlib.image
 
 from robot_control import _robot_control
-from robot_control._robot_control import DriverError, ParameterError, RobotError
-from robot_control.data.render.mujoco import Camera, Picture, Renderer, RenderError, make_current
+from robot_control.data.render.mujoco import Camera, Picture, Renderer, make_current
 from robot_control.data.render.run import Moment, read_moments
 from robot_control.data.render.scene import Scene
-from robot_control.data.run_log import LogError
 from robot_control.files.files import given_path, one_message, printable
 from robot_control.installed_files import share_file
 from robot_control.loop.roles import DRIVER
@@ -23,7 +21,6 @@ from robot_control.settings.parameter_layers import DEFAULTS
 from robot_control.ui.program import run
 
 FRAMES_PER_SECOND = 25
-REFUSALS = (RobotError, ParameterError, DriverError, RenderError, LogError, OSError, ValueError)
 AHEAD = 12
 """moments before and after the present one over which the camera's place is averaged"""
 FAR = 6.0
@@ -43,8 +40,7 @@ def model_of(given: argparse.Namespace) -> str:
         known = not {"/", "."} & set(given.scene)
         scene = share_file(f"urdf/scenes/{given.scene}.xml") if known else str(Path(given.scene).resolve())
         values.append((f"{DRIVER}.scene", scene))
-    mjcf: str = _robot_control.mjcf(path, values)
-    return mjcf
+    return _robot_control.mjcf(path, values)
 
 
 class Film:
@@ -114,24 +110,24 @@ def arguments(given: list[str] | None) -> argparse.Namespace:
     return parser.parse_args(given)
 
 
+@one_message("scripts/render", OSError, ValueError, RuntimeError)
 def main(given: list[str] | None = None) -> None:
     """Entry point."""
     options = arguments(given)
     out = options.out or options.run.parent
-    with one_message("scripts/render", *REFUSALS):
-        scene = Scene(model_of(options))
-        moments = read_moments(options.run, 1 / FRAMES_PER_SECOND)
-        out.mkdir(parents=True, exist_ok=True)
-        make_current()
-        film = Film(scene, moments, options)
-        for number in range(1, options.pictures + 1):
-            path = out / f"render_{number}.png"
-            moment = round((len(moments) - 1) * number / options.pictures)
-            matplotlib.image.imsave(path, film.picture(moment))
-            print(f"wrote {printable(str(path))} ({moments[moment].time:.1f} s)")
-        if not options.no_video:
-            refusal = write_video(film, options.size, out / "render.mp4")
-            print(refusal or f"wrote {printable(str(out / 'render.mp4'))} ({moments[-1].time - moments[0].time:.0f} s)")
+    scene = Scene(model_of(options))
+    moments = read_moments(options.run, 1 / FRAMES_PER_SECOND)
+    out.mkdir(parents=True, exist_ok=True)
+    make_current()
+    film = Film(scene, moments, options)
+    for number in range(1, options.pictures + 1):
+        path = out / f"render_{number}.png"
+        moment = round((len(moments) - 1) * number / options.pictures)
+        matplotlib.image.imsave(path, film.picture(moment))
+        print(f"wrote {printable(str(path))} ({moments[moment].time:.1f} s)")
+    if not options.no_video:
+        refusal = write_video(film, options.size, out / "render.mp4")
+        print(refusal or f"wrote {printable(str(out / 'render.mp4'))} ({moments[-1].time - moments[0].time:.0f} s)")
 
 
 if __name__ == "__main__":

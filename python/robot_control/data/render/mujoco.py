@@ -43,13 +43,8 @@ class Camera:
 
 class _Camera(ctypes.Structure):
     _fields_ = (
-        ("type", c_int),
-        ("fixedcamid", c_int),
-        ("trackbodyid", c_int),
-        ("lookat", c_double * 3),
-        ("distance", c_double),
-        ("azimuth", c_double),
-        ("elevation", c_double),
+        *((name, c_int) for name in ("type", "fixedcamid", "trackbodyid")),
+        *(("lookat", c_double * 3), ("distance", c_double), ("azimuth", c_double), ("elevation", c_double)),
         ("room", c_double * 8),
     )
 

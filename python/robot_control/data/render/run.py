@@ -58,13 +58,9 @@ def moments_of(log: Log, period: float, *, legged: bool = False) -> list[Moment]
         if time >= due:
             rows.append({name: float(values[row]) for name, values in columns.items()})
             due = (time if due == -math.inf else due) + period
-    flat = not legged and _flat(rows)
+    flat = not legged and not any(row.get("truth_tilt", 0.0) > FLAT for row in rows)
     height = f"{pose}_z" if legged else "estimate_z"
     return [_moment(row, rows[0], pose, height, flat=flat) for row in rows]
-
-
-def _flat(rows: list[dict[str, float]]) -> bool:
-    return not any(row.get("truth_tilt", 0.0) > FLAT for row in rows)
 
 
 def _moment(row: dict[str, float], first: dict[str, float], pose: str, height: str, *, flat: bool) -> Moment:
@@ -77,13 +73,7 @@ def _moment(row: dict[str, float], first: dict[str, float], pose: str, height: s
         for name, value in row.items()
         if name.endswith("_position") and math.isfinite(value)
     }
-    return Moment(
-        row["time"],
-        row[f"{pose}_x"],
-        row[f"{pose}_y"],
-        since(height),
-        since("estimate_roll"),
-        since("estimate_pitch"),
-        row[f"{pose}_yaw"],
-        joints,
-    )
+    roll = since("estimate_roll")
+    pitch = since("estimate_pitch")
+    yaw = row[f"{pose}_yaw"]
+    return Moment(row["time"], row[f"{pose}_x"], row[f"{pose}_y"], since(height), roll, pitch, yaw, joints)

@@ -6,6 +6,9 @@ from collections.abc import Sequence
 from dataclasses import replace
 from itertools import pairwise
 
+import numpy as np
+from scipy.spatial.transform import Rotation
+
 from robot_control.data.render.run import Moment
 
 STEP = 0.05
@@ -21,34 +24,6 @@ HIDDEN = "5"
 """group of shapes that are not drawn"""
 
 Vector = tuple[float, float, float]
-Quaternion = tuple[float, float, float, float]
-"""w, x, y, z"""
-
-
-def product(a: Quaternion, b: Quaternion) -> Quaternion:
-    """The product of b, then a."""
-    aw, ax, ay, az = a
-    bw, bx, by, bz = b
-    return (
-        aw * bw - ax * bx - ay * by - az * bz,
-        aw * bx + ax * bw + ay * bz - az * by,
-        aw * by - ax * bz + ay * bw + az * bx,
-        aw * bz + ax * by - ay * bx + az * bw,
-    )
-
-
-def rotated(q: Quaternion, v: Vector) -> Vector:
-    """v in the axes in which q is given."""
-    _, x, y, z = product(product(q, (0.0, *v)), (q[0], -q[1], -q[2], -q[3]))
-    return x, y, z
-
-
-def orientation(roll: float, pitch: float, yaw: float) -> Quaternion:
-    """Fixed axes x, y, z in this order."""
-    x = (math.cos(roll / 2), math.sin(roll / 2), 0.0, 0.0)
-    y = (math.cos(pitch / 2), 0.0, math.sin(pitch / 2), 0.0)
-    z = (math.cos(yaw / 2), 0.0, 0.0, math.sin(yaw / 2))
-    return product(product(z, y), x)
 
 
 class Scene:
@@ -63,7 +38,7 @@ class Scene:
         self._world, self._robot = world, robots[0]
         self._start = _numbers(self._robot.get("pos"), (0.0, 0.0, 0.0))
         w, x, y, z = _numbers(self._robot.get("quat"), (1.0, 0.0, 0.0, 0.0))
-        self._attitude: Quaternion = (w, x, y, z)
+        self._attitude = Rotation.from_quat((x, y, z, w))
 
     @property
     def size(self) -> float:
@@ -78,8 +53,7 @@ class Scene:
 
     def place(self, moment: Moment) -> Vector:
         """Place of the robot's origin in the world, m."""
-        moved = rotated(self._attitude, (moment.x, moment.y, moment.z))
-        x, y, z = (begin + shift for begin, shift in zip(self._start, moved, strict=True))
+        x, y, z = (self._start + self._attitude.apply((moment.x, moment.y, moment.z))).tolist()
         return x, y, z
 
     def written(self, moments: Sequence[Moment], width: int, height: int) -> str:
@@ -92,12 +66,13 @@ class Scene:
     def _add_keyframes(self, moments: Sequence[Moment]) -> None:
         frames = ET.SubElement(self._root, "keyframe")
         for moment in moments:
-            attitude = product(self._attitude, orientation(moment.roll, moment.pitch, moment.yaw))
+            turned = Rotation.from_euler("xyz", (moment.roll, moment.pitch, moment.yaw))
+            x, y, z, w = (self._attitude * turned).as_quat()
             numbers: list[float] = []
             for joint in self._root.iter("joint"):
                 kind = joint.get("type", "hinge")
                 if kind == "free":
-                    numbers += [*self.place(moment), *attitude]
+                    numbers += [*self.place(moment), w, x, y, z]
                 elif DEGREES_OF_FREEDOM[kind] == 1:
                     numbers.append(moment.joints.get(joint.get("name", ""), 0.0))
                 else:
@@ -153,10 +128,9 @@ class Scene:
         for place in places[1:]:
             if math.dist(place, points[-1]) > step:
                 points.append(place)
-        under = rotated(self._attitude, (0.0, 0.0, -self._start[2] if ground is None else ground))
-        for a, b in pairwise(points):
-            ends = [place + shift for point in (a, b) for place, shift in zip(point, under, strict=True)]
-            fromto = " ".join(f"{number:.4f}" for number in ends)
+        under = self._attitude.apply((0.0, 0.0, -self._start[2] if ground is None else ground))
+        for ends in pairwise(points + under):
+            fromto = " ".join(f"{number:.4f}" for number in np.ravel(ends))
             ET.SubElement(self._world, "geom", UNTOUCHABLE, type="capsule", size="0.008", fromto=fromto, rgba=PATH)
 
     def _ground(self) -> float | None:

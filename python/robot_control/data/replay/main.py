@@ -7,7 +7,6 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from robot_control import ParameterError, RobotError
 from robot_control._robot_control import BagError, replay_log
 from robot_control.data.replay.recorded_setup import RecordedSetup, recorded_setup
 from robot_control.files.files import escaped, escaped_lines, fit_for_message, given_path, in_words, utf8
@@ -46,7 +45,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
     except BagError as error:
         print(f"replay.py: {fit_for_message(f'{options.log}: {error}')}", file=sys.stderr)
         sys.exit(REFUSED)
-    except (ParameterError, RobotError, RuntimeError, OSError, ValueError) as error:
+    except (RuntimeError, OSError, ValueError) as error:
         print(f"replay.py: {fit_for_message(in_words(error))}", file=sys.stderr)
         sys.exit(REFUSED)
     sys.exit(verdict(report, options.law))
@@ -63,13 +62,11 @@ def parse(arguments: Sequence[str] | None) -> argparse.Namespace:
     parser.add_argument("log", type=given_path, metavar="LOG", help="run.bag")
     parser.add_argument("--law", choices=LAWS, help="of this law alone")
     what_if = parser.add_argument_group("what if", "the laws with other parameters beside, on the recorded inputs")
-    what_if.add_argument(
-        "--set", action="append", default=[], type=_assignment, metavar="NODE.PARAMETER=VALUE", help="repeatable"
-    )
+    metavar = "NODE.PARAMETER=VALUE"
+    what_if.add_argument("--set", action="append", default=[], type=_assignment, metavar=metavar, help="repeatable")
     what_if.add_argument("--params", type=given_path, metavar="FILE", help="YAML, laid over the parameters of the log")
-    what_if.add_argument(
-        "--plot", type=given_path, default=Path("replay.png"), help="picture of both; default: %(default)s"
-    )
+    meaning = "picture of both; default: %(default)s"
+    what_if.add_argument("--plot", type=given_path, default=Path("replay.png"), help=meaning)
     return parser.parse_args(arguments)
 
 

@@ -13,25 +13,18 @@ mpl.use("Agg")
 from matplotlib import pyplot as plt
 
 Pairs = Mapping[str, tuple[NDArray[np.float64], NDArray[np.float64]]]
-UNITS = {
-    "estimate_x": "m",
-    "estimate_y": "m",
-    "estimate_linear": "m/s",
-    "estimate_angular": "rad/s",
-    "limited_linear": "m/s",
-    "limited_angular": "rad/s",
-    "supervisor_state": "",
-}
+UNITS = {"estimate_x": "m", "estimate_y": "m", "supervisor_state": ""}
+UNITS |= dict.fromkeys(("estimate_linear", "limited_linear"), "m/s")
+UNITS |= dict.fromkeys(("estimate_angular", "limited_angular"), "rad/s")
 
 
 def draw(columns: Pairs, period: float, path: Path) -> None:
     """One panel per column that is not the same in both; `period` in s."""
     changed = [name for name, (was, would) in columns.items() if not np.array_equal(was, would, equal_nan=True)]
     shown = changed or list(columns)[:1]
-    with mpl.rc_context(STYLE):
-        figure, panels = plt.subplots(
-            len(shown), squeeze=False, sharex=True, figsize=(10, 1 + 2 * len(shown)), layout="constrained"
-        )
+    with plt.style.context(STYLE):
+        figsize = (10, 1 + 2 * len(shown))
+        figure, panels = plt.subplots(len(shown), squeeze=False, sharex=True, figsize=figsize, layout="constrained")
         for panel, name in zip(panels[:, 0], shown, strict=True):
             was, would = columns[name]
             time = np.arange(len(was)) * period

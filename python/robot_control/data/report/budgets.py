@@ -46,14 +46,13 @@ class Judged:
     @property
     def verdict(self) -> Verdict:
         """The verdict; a figure without a bound has none."""
+        value = self.figure.value
         if self.most is None and self.least is None:
             return Verdict.UNJUDGED
-        if math.isnan(self.figure.value):
+        if math.isnan(value):
             return Verdict.UNKNOWN
-        kept = (self.most is None or self.figure.value <= self.most) and (
-            self.least is None or self.figure.value >= self.least
-        )
-        return Verdict.OK if kept else Verdict.FAILED
+        broken = (self.most is not None and value > self.most) or (self.least is not None and value < self.least)
+        return Verdict.FAILED if broken else Verdict.OK
 
 
 Budgets = Mapping[str, Mapping[str, float]]

@@ -82,12 +82,11 @@ class Drive:
 
     def driving(self) -> BoolArray:
         """True while the monitor permits to drive, and motion is commanded or measured."""
-        moving = np.zeros(self.time.shape, dtype=bool)
-        for name in ("limited_linear", "limited_angular", "estimate_linear", "estimate_angular"):
-            moving |= np.abs(np.nan_to_num(self.column(name))) > MOVING
         permitted: BoolArray = self.column("permit_action") == PERMIT_DRIVE
-        moving &= permitted
-        return moving
+        return permitted & self._moving("limited_linear", "limited_angular", "estimate_linear", "estimate_angular")
+
+    def _moving(self, *names: str) -> BoolArray:
+        return np.asarray(np.any([np.abs(np.nan_to_num(self.column(name))) > MOVING for name in names], axis=0))
 
     def gate_braked(self) -> BoolArray:
         """True where the gate braked while driving.
@@ -95,9 +94,7 @@ class Drive:
         A command k-1 is executed in tick k; the brake that the controller itself commands at standstill does not count.
         """
         driving = self.driving()
-        standing = np.ones(self.time.shape, dtype=bool)
-        for name in ("limited_linear", "limited_angular"):
-            standing &= np.abs(np.nan_to_num(self.column(name))) < MOVING
+        standing = ~self._moving("limited_linear", "limited_angular")
         by_controller = self.bits("gate_reasons") & ~COMMAND_HELD == CONTROLLER_BRAKE
         braked: BoolArray = self.column("gate_verdict") == GATE_BRAKE
         braked &= driving & np.roll(driving, 1) & ~(by_controller & standing)

@@ -1,13 +1,13 @@
 """Computes the figures of a log that budgets can bound."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
 
 from robot_control.data.intervals import intervals
+from robot_control.data.loop_timing import LATENCIES, durations_ns
 from robot_control.data.report.drive import Drive
-from robot_control.data.report.latency import LATENCIES, durations_ns
 from robot_control.data.report.walking import cost_of_transport, phase_steps, walked_speed
 from robot_control.data.run_log import FloatArray
 from robot_control.loop.signal_names import mask_of, number_of
@@ -16,6 +16,7 @@ NAN = float("nan")
 STOPPED = tuple(number_of("SupervisorState", name) for name in ("STOPPED", "FAULT"))
 """latched"""
 SATURATED = mask_of("CommandReason", "saturated")
+SHARES = (("p50", 50.0, "median"), ("p99", 99.0, "99 % of all cycles are below"), ("max", 100.0, "largest"))
 SLIP, DEGRADED = mask_of("StateFlag", "slip"), mask_of("StateFlag", "degraded")
 
 
@@ -40,16 +41,7 @@ class Figure:
 
 def figures(drive: Drive) -> dict[str, Figure]:
     """All of them, by name."""
-    parts: tuple[Callable[[Drive], Iterator[Figure]], ...] = (
-        _log,
-        _safety,
-        _tracking,
-        _estimate,
-        _torque,
-        _walking,
-        _timing,
-    )
-    return {figure.name: figure for part in parts for figure in part(drive)}
+    return {figure.name: figure for part in PARTS for figure in part(drive)}
 
 
 def _mean_over(values: FloatArray, rows: int) -> FloatArray:
@@ -58,8 +50,7 @@ def _mean_over(values: FloatArray, rows: int) -> FloatArray:
 
 
 def _largest(values: FloatArray) -> float:
-    known = np.abs(values[~np.isnan(values)])
-    return float(known.max()) if known.size else NAN
+    return _percentile(np.abs(values), 100)
 
 
 def _percentile(values: FloatArray, share: float) -> float:
@@ -103,12 +94,10 @@ def _tracking(drive: Drive) -> Iterator[Figure]:
     for axis, unit in (("linear", "m/s"), ("angular", "rad/s")):
         commanded = walked_speed(drive) if axis == "linear" else drive.column("limited_angular")
         error = _mean_over((commanded - drive.column(f"estimate_{axis}"))[driving], period)
-        yield Figure(
-            f"{axis}_error_rms", unit, f"commanded minus estimated {axis} speed while driving, RMS", _rms(error)
-        )
-        yield Figure(
-            f"{axis}_error_p99", unit, "the same, 99 % of all cycles are below", _percentile(np.abs(error), 99)
-        )
+        meaning = f"commanded minus estimated {axis} speed while driving, RMS"
+        yield Figure(f"{axis}_error_rms", unit, meaning, _rms(error))
+        meaning = "the same, 99 % of all cycles are below"
+        yield Figure(f"{axis}_error_p99", unit, meaning, _percentile(np.abs(error), 99))
 
 
 def _estimate(drive: Drive) -> Iterator[Figure]:
@@ -138,9 +127,8 @@ def _position_error(drive: Drive) -> Iterator[Figure]:
     yield Figure("position_error", "share", "largest distance between true and estimated position, of the way", share)
     known = ~np.isnan(error) & (deviation > 0)
     ratio = float(np.mean(error[known] > 2.45 * deviation[known])) if known.any() else NAN  # χ², 2 axes, 95 %
-    yield Figure(
-        "position_outside", "share", "of the time: true position outside the 95 % ellipse's mean radius", ratio
-    )
+    meaning = "of the time: true position outside the 95 % ellipse's mean radius"
+    yield Figure("position_outside", "share", meaning, ratio)
 
 
 def position_error(drive: Drive) -> tuple[FloatArray, FloatArray]:
@@ -182,11 +170,9 @@ def _walking(drive: Drive) -> Iterator[Figure]:
 
 def _timing(drive: Drive) -> Iterator[Figure]:
     for latency in LATENCIES:
-        values = durations_ns(drive, latency) / 1000
-        for name, share in (("p50", 50.0), ("p99", 99.0), ("max", 100.0)):
-            yield Figure(
-                f"{latency.name}_{name}", "µs", f"{latency.meaning}, {_share(share)}", _percentile(values, share)
-            )
+        values = durations_ns(drive.log, latency) / 1000
+        for name, share, words in SHARES:
+            yield Figure(f"{latency.name}_{name}", "µs", f"{latency.meaning}, {words}", _percentile(values, share))
     for counter, meaning in (
         ("missed", "ticks braked for want of a command"),
         ("held", "ticks on a command of an earlier cycle"),
@@ -196,5 +182,4 @@ def _timing(drive: Drive) -> Iterator[Figure]:
         yield Figure(counter, "", meaning, drive.count(counter))
 
 
-def _share(share: float) -> str:
-    return {50.0: "median", 99.0: "99 % of all cycles are below", 100.0: "largest"}[share]
+PARTS = (_log, _safety, _tracking, _estimate, _torque, _walking, _timing)

@@ -10,7 +10,7 @@ from robot_control.data.report.drive import Drive, drive_of
 from robot_control.data.report.figures import figures
 from robot_control.data.report.incidents import incidents
 from robot_control.data.run_log import read_run
-from robot_control.files.files import escaped, escaped_lines, fit_for_message, given_path, in_words, write_text
+from robot_control.files.files import escaped, escaped_lines, fit_for_message, given_path, one_message, write_text
 from robot_control.files.output_files import check_outputs
 from robot_control.installed_files import share_file
 from robot_control.ui.pypi import use_packages
@@ -18,15 +18,11 @@ from robot_control.ui.pypi import use_packages
 BUDGETS = "config/report_budgets.yaml"
 
 
+@one_message("report.py", ValueError, OSError)
 def main(arguments: list[str] | None = None) -> None:
     """Writes the page, prints the verdict; exits with 1 and one message when something is refused."""
     options = _parser().parse_args(arguments)
-    try:
-        judged = report(options)
-    except (ValueError, OSError) as error:
-        sys.exit(f"report.py: {fit_for_message(in_words(error))}")
-    except MemoryError:
-        sys.exit("report.py: the log needs more memory than there is; cut it into pieces")
+    judged = report(options)
     for path, verdicts in zip(options.compare or [options.log], judged, strict=True):
         if options.ci and not any(one.verdict in (Verdict.OK, Verdict.FAILED) for one in verdicts):
             reason = "none of the figures with a budget is in this log; name others: --budgets FILE"

@@ -6,12 +6,12 @@ import numpy as np
 from bokeh.models import ColumnDataSource, FactorRange
 
 from robot_control.data.intervals import intervals, joined, runs_of
+from robot_control.data.loop_timing import LATENCIES, durations_ns
 from robot_control.data.report import style
 from robot_control.data.report.decimate import BINS
 from robot_control.data.report.drive import Drive
 from robot_control.data.report.figures import true_path
 from robot_control.data.report.incidents import Incident
-from robot_control.data.report.latency import LATENCIES, durations_ns
 from robot_control.data.report.walking import BEARS, MISSING, UNASKED, footfalls
 from robot_control.data.run_log import FloatArray
 from robot_control.loop import signal_names as names
@@ -41,34 +41,21 @@ ORDINARY = {"valid"}
 ACTIONS = {"brake": style.RED, "ramp": style.ORANGE, "drive": style.GREEN}
 FEET = {BEARS: style.BLUE, UNASKED: style.ORANGE, MISSING: style.GREY}
 POSTURES = {"lying": style.GREY, "standing": style.SKY, "walking": style.GREEN}
-VERDICTS = {
-    "brake": style.RED,
-    "passed": style.GREEN,
-    "held": style.ORANGE,
-    "clamped": style.PURPLE,
-    "ramp": style.ORANGE,
-}
+VERDICTS = ACTIONS | {"passed": style.GREEN, "held": style.ORANGE, "clamped": style.PURPLE}
 
 
 def path_plot(drives: list[Drive], found: list[Incident]) -> Any:  # noqa: ANN401 (Bokeh's)
     """Seen from above: paths, covariance ellipses, places of stops and brakes."""
-    plot = style.framed(
-        height=460, match_aspect=True, tools="pan,box_zoom,wheel_zoom,reset,save", x_axis_label="x [m]",
-        y_axis_label="y [m]",
-    )  # fmt: skip
+    tools = "pan,box_zoom,wheel_zoom,reset,save"
+    plot = style.framed(height=460, match_aspect=True, tools=tools, x_axis_label="x [m]", y_axis_label="y [m]")
     legend = []
     for i, drive in enumerate(drives):
         prefix = f"{drive.name}: " if len(drives) > 1 else ""
         colour = style.OF_DRIVES[i]
         x, y = drive.column("estimate_x"), drive.column("estimate_y")
         if len(drives) == 1 and not drive.kind.legged:
-            wheels = _path(
-                plot,
-                drive.column("wheel_odom_x"),
-                drive.column("wheel_odom_y"),
-                style.Line("", style.GREY, 1.0, "dotted"),
-            )
-            legend.append(("wheels alone", wheels))
+            wheels = drive.column("wheel_odom_x"), drive.column("wheel_odom_y")
+            legend.append(("wheels alone", _path(plot, *wheels, style.Line("", style.GREY, 1.0, "dotted"))))
         if len(drives) == 1:
             legend.append(("true", _path(plot, *true_path(drive), style.Line("", style.INK, 1.2, "dashed"))))
         legend.append((f"{prefix}estimated", _path(plot, x, y, style.Line("", colour, 2.0))))
@@ -208,7 +195,7 @@ def histograms(drives: list[Drive]) -> list[Any]:
     """Histograms of each latency; the counts have a logarithmic axis, because the rare ones matter."""
     plots = []
     for latency in LATENCIES:
-        found = [durations_ns(drive, latency) / 1000 for drive in drives]
+        found = [durations_ns(drive.log, latency) / 1000 for drive in drives]
         known = [values[~np.isnan(values)] for values in found]
         if all(values.size > 0 for values in known):
             plots.append(_histogram(latency.name.replace("_", " "), known))

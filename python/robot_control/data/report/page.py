@@ -7,21 +7,14 @@ from typing import Any
 from bokeh.embed import components
 from bokeh.resources import Resources
 
+from robot_control.data.report import time_plots
 from robot_control.data.report.budgets import Judged, Verdict, failed
 from robot_control.data.report.drive import Drive
 from robot_control.data.report.incidents import Incident
 from robot_control.data.report.other_plots import foot_lines, histograms, path_plot, time_lines
 from robot_control.data.report.page_style import STYLE
 from robot_control.data.report.style import TimeAxis
-from robot_control.data.report.time_plots import (
-    close_up,
-    innovations,
-    joint_plots,
-    latency_plot,
-    position_plot,
-    speeds,
-    tracking_error,
-)  # fmt: skip
+from robot_control.data.report.time_plots import drawn
 from robot_control.files.files import printable
 
 INCIDENTS_SHOWN = 60
@@ -69,60 +62,53 @@ def _sections(drives: list[Drive], found: list[Incident]) -> Iterable[Section]:
     yield (
         "Stops at full rate",
         "Speeds around each latched stop, every cycle.",
-        _plots(*(close_up(drives[0], one.begin, f"{one.begin:.2f} s: {one.title}") for one in stops[:CLOSE_UPS])),
+        drawn(*(time_plots.close_up(drives[0], s.begin, f"{s.begin:.2f} s: {s.title}") for s in stops[:CLOSE_UPS])),
     )
     yield "Path", "Seen from above; the ellipses hold the true position with 95 %.", [path_plot(drives, found)]
     if len(drives) == 1:
         yield (
             "States and reasons",
             "What the safety monitor permitted, what the gate let through, and why a command was not executed as sent.",
-            _plots(time_lines(axis, drives[0])),
+            drawn(time_lines(axis, drives[0])),
         )
         yield (
             "Feet",
             "When each foot bore: as it was asked to, or not; and when it was asked to bear and did not.",
-            _plots(foot_lines(axis, drives[0])),
+            drawn(foot_lines(axis, drives[0])),
         )
     yield (
         "Speeds",
         "Requested, after the limits, true where the log holds a truth, and estimated.",
-        _plots(speeds(axis, drives, "linear", "linear [m/s]"), speeds(axis, drives, "angular", "angular [rad/s]")),
+        drawn(*(time_plots.speeds(axis, drives, which) for which in time_plots.UNITS)),
     )
     yield (
         "Tracking error",
         "Command after the limits minus estimate; the band is 2 σ of the estimate.",
-        _plots(
-            tracking_error(axis, drives, "linear", "linear [m/s]"),
-            tracking_error(axis, drives, "angular", "angular [rad/s]"),
-        ),
+        drawn(*(time_plots.tracking_error(axis, drives, which) for which in time_plots.UNITS)),
     )
     yield (
         "Joints",
         "Commanded and measured torque and speed of each joint.",
-        joint_plots(axis, drives, ("effort_command", "effort"), "N·m")
-        + joint_plots(axis, drives, ("velocity_command", "velocity_measured"), "rad/s"),
+        time_plots.joint_plots(axis, drives, ("effort_command", "effort"), "N·m")
+        + time_plots.joint_plots(axis, drives, ("velocity_command", "velocity_measured"), "rad/s"),
     )
     yield (
         "Position",
         "An honest estimate's true error stays below 2 σ most of the time.",
-        _plots(position_plot(axis, drives)),
+        drawn(time_plots.position_plot(axis, drives)),
     )
     if len(drives) == 1:
         yield (
             "Innovations",
             "Normalised innovation squared of each sensor (1: it errs as much as its covariance states) and the "
             "confidence that follows from it.",
-            innovations(axis, drives[0]),
+            time_plots.innovations(axis, drives[0]),
         )
     yield (
         "Latency",
         "Of each cycle; only runs in wall-clock time have it.",
-        _plots(latency_plot(axis, drives)) + histograms(drives),
+        drawn(time_plots.latency_plot(axis, drives)) + histograms(drives),
     )
-
-
-def _plots(*made: Any) -> list[Any]:  # noqa: ANN401 (Bokeh's)
-    return [plot for plot in made if plot is not None]
 
 
 def _facts(drives: list[Drive], judged: list[list[Judged]]) -> str:

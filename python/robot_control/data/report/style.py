@@ -71,10 +71,13 @@ def framed(**options: Any) -> Any:  # noqa: ANN401 (Bokeh's)
 
 
 def with_legend(plot: Any, items: list[tuple[str, list[Any]]]) -> Any:  # noqa: ANN401 (Bokeh's)
-    """A legend above the plot; a click hides a series."""
+    """A legend above the plot, in which series of one label share its entry; a click hides them."""
+    entries: dict[str, list[Any]] = {}
+    for label, drawn in items:
+        entries.setdefault(label, []).extend(drawn)
     legend = Legend(
-        items=items, orientation="horizontal", click_policy="hide", border_line_color=None, padding=0, margin=2,
-        label_text_font=FONT, label_text_font_size="12px", label_text_color=INK, glyph_width=18, spacing=14,
+        items=list(entries.items()), orientation="horizontal", click_policy="hide", border_line_color=None, spacing=14,
+        label_text_font=FONT, label_text_font_size="12px", label_text_color=INK, glyph_width=18, padding=0, margin=2,
     )  # fmt: skip
     plot.add_layout(legend, "above")
     return plot

@@ -5,17 +5,18 @@ from typing import Any
 
 import numpy as np
 
+from robot_control.data.loop_timing import TO_COMMAND, durations_ns
 from robot_control.data.report import style
 from robot_control.data.report.decimate import decimated
 from robot_control.data.report.drive import Drive
 from robot_control.data.report.figures import position_error
-from robot_control.data.report.latency import LATENCIES, durations_ns
 from robot_control.data.run_log import FloatArray
 from robot_control.files.files import printable
 from robot_control.loop.estimator import SENSORS
 
 Series = tuple[style.Line, FloatArray, FloatArray]
 """how it is drawn, time [s], values"""
+UNITS = {"linear": "m/s", "angular": "rad/s"}
 BEFORE, AFTER = 0.5, 1.5
 """s around an incident"""
 OF_SENSORS = (style.BLUE, style.SKY, style.ORANGE, style.GREEN, style.PURPLE, style.GREY)
@@ -36,6 +37,11 @@ def line_plot(axis: style.TimeAxis, unit: str, series: Iterable[Series], **optio
         style.with_values(plot, [drawn], [(line.label, "@y{0.0000}"), ("time", "@x{0.000} s")])
         legend.append((line.label, [drawn]))
     return style.with_legend(plot, legend)
+
+
+def drawn(*made: Any) -> list[Any]:  # noqa: ANN401 (Bokeh's)
+    """Those of the plots for which there was something to draw."""
+    return [plot for plot in made if plot is not None]
 
 
 def band(plot: Any, time: FloatArray, low: FloatArray, high: FloatArray, colour: str) -> None:  # noqa: ANN401
@@ -60,7 +66,7 @@ def _of(drive: Drive, number: int, count: int, lines: list[tuple[str, style.Line
     ]
 
 
-def speeds(axis: style.TimeAxis, drives: list[Drive], which: str, unit: str) -> Any:  # noqa: ANN401 (Bokeh's)
+def speeds(axis: style.TimeAxis, drives: list[Drive], which: str) -> Any:  # noqa: ANN401 (Bokeh's)
     """Requested, after limits, true, estimated; the limits themselves."""
     lines = [
         (f"limited_{which}", style.Line("after limits", style.ORANGE, 1.6)),
@@ -73,32 +79,13 @@ def speeds(axis: style.TimeAxis, drives: list[Drive], which: str, unit: str) -> 
         drive = drives[0]
         limit = drive.column(f"max_{which}_speed")
         low = drive.column("min_linear_speed") if which == "linear" else -limit
-        series += [
-            (style.Line("limits", style.RED, 1.0, "dotted"), drive.time, limit),
-            (style.Line("limits", style.RED, 1.0, "dotted"), drive.time, low),
-        ]
+        series += [(style.Line("limits", style.RED, 1.0, "dotted"), drive.time, each) for each in (limit, low)]
         if which == "linear" and not drive.kind.legged:
             series.append((style.Line("monitor's limit", style.PURPLE, 1.2), drive.time, drive.column("speed_limit")))
-    return _merged_legend(line_plot(axis, unit, series, height=240))
+    return line_plot(axis, f"{which} [{UNITS[which]}]", series, height=240)
 
 
-def _merged_legend(plot: Any) -> Any:  # noqa: ANN401 (Bokeh's)
-    """Series of one label share its entry."""
-    if plot is None:
-        return None
-    legend = plot.above[-1]
-    entries: dict[str, Any] = {}
-    for item in legend.items:
-        label = item.label.value
-        if label in entries:
-            entries[label].renderers = [*entries[label].renderers, *item.renderers]
-        else:
-            entries[label] = item
-    legend.items = list(entries.values())
-    return plot
-
-
-def tracking_error(axis: style.TimeAxis, drives: list[Drive], which: str, unit: str) -> Any:  # noqa: ANN401 (Bokeh's)
+def tracking_error(axis: style.TimeAxis, drives: list[Drive], which: str) -> Any:  # noqa: ANN401 (Bokeh's)
     """Draws commanded minus estimated speed; with a single drive the band shows the estimate's standard deviation."""
     series = [
         (style.Line(drive.name if len(drives) > 1 else "after limits − estimated", style.OF_DRIVES[i]), drive.time,
@@ -110,10 +97,11 @@ def tracking_error(axis: style.TimeAxis, drives: list[Drive], which: str, unit: 
         return None
     low, high = min(low for low, _ in ranges), max(high for _, high in ranges)
     margin = 0.1 * (high - low) or 0.01
-    plot = line_plot(axis, unit, series, height=180, y_range=(low - margin, high + margin))
+    y_range = (low - margin, high + margin)
+    plot = line_plot(axis, f"{which} [{UNITS[which]}]", series, height=180, y_range=y_range)
     if plot is not None and len(drives) == 1:
         twice = 2 * np.sqrt(np.maximum(drives[0].column(f"estimate_{which}_variance"), 0))
-        band(plot, drives[0].time, np.maximum(-twice, low - margin), np.minimum(twice, high + margin), style.BLUE)
+        band(plot, drives[0].time, np.maximum(-twice, y_range[0]), np.minimum(twice, y_range[1]), style.BLUE)
     return plot
 
 
@@ -127,7 +115,7 @@ def joint_plots(axis: style.TimeAxis, drives: list[Drive], columns: tuple[str, s
         ]
         series = [one for i, drive in enumerate(drives) for one in _of(drive, i, len(drives), lines)]
         plots.append(line_plot(axis, unit, series, height=200, title=printable(joint, 40)))
-    return [plot for plot in plots if plot is not None]
+    return drawn(*plots)
 
 
 def position_plot(axis: style.TimeAxis, drives: list[Drive]) -> Any:  # noqa: ANN401 (Bokeh's)
@@ -147,19 +135,13 @@ def position_plot(axis: style.TimeAxis, drives: list[Drive]) -> Any:  # noqa: AN
 def innovations(axis: style.TimeAxis, drive: Drive) -> list[Any]:
     """Normalised innovation squared and confidence of each sensor that the estimator uses."""
     sensors = [(sensor, colour) for sensor, colour in zip(SENSORS, OF_SENSORS, strict=True) if drive.uses(sensor)]
-    nis = [
-        (style.Line(sensor.replace("_", " "), colour, 1.0), drive.time, np.maximum(drive.column(f"nis_{sensor}"), 1e-3))
-        for sensor, colour in sensors
-    ]
-    confidence = [
-        (style.Line(sensor.replace("_", " "), colour, 1.2), drive.time, drive.column(f"confidence_{sensor}"))
-        for sensor, colour in sensors
-    ]
-    plots = [
+    lines = [(style.Line(sensor.replace("_", " "), colour, 1.1), sensor) for sensor, colour in sensors]
+    nis = [(line, drive.time, np.maximum(drive.column(f"nis_{sensor}"), 1e-3)) for line, sensor in lines]
+    confidence = [(line, drive.time, drive.column(f"confidence_{sensor}")) for line, sensor in lines]
+    return drawn(
         line_plot(axis, "NIS", nis, height=220, y_axis_type="log"),
         line_plot(axis, "confidence", confidence, height=180, y_range=(-0.05, 1.05)),
-    ]
-    return [plot for plot in plots if plot is not None]
+    )
 
 
 def close_up(drive: Drive, begin: float, title: str) -> Any:  # noqa: ANN401 (Bokeh's)
@@ -170,20 +152,23 @@ def close_up(drive: Drive, begin: float, title: str) -> Any:  # noqa: ANN401 (Bo
     part = Drive(drive.name, {name: values[rows] for name, values in drive.log.items()})
     axis = style.TimeAxis(float(part.time[0]), float(part.time[-1]), [begin])
     series: list[Series] = []
-    for which, unit, dash in (("linear", "m/s", "solid"), ("angular", "rad/s", "dashed")):
-        for name, colour in (("limited", style.ORANGE), ("truth", style.INK), ("estimate", style.BLUE)):
-            words = {"limited": "after limits", "truth": "true", "estimate": "estimated"}[name]
-            line = style.Line(f"{which} [{unit}] {words}", colour, 1.4, dash)
+    shown = (
+        ("limited", "after limits", style.ORANGE),
+        ("truth", "true", style.INK),
+        ("estimate", "estimated", style.BLUE),
+    )
+    for which, dash in (("linear", "solid"), ("angular", "dashed")):
+        for name, words, colour in shown:
+            line = style.Line(f"{which} [{UNITS[which]}] {words}", colour, 1.4, dash)
             series.append((line, part.time, part.column(f"{name}_{which}")))
     return line_plot(axis, "speed", series, height=210, title=title)
 
 
 def latency_plot(axis: style.TimeAxis, drives: list[Drive]) -> Any:  # noqa: ANN401 (Bokeh's)
     """Sensors to command, cycle by cycle."""
-    latency = next(one for one in LATENCIES if one.name == "sensors_to_command")
     series = [
         (style.Line(drive.name if len(drives) > 1 else "sensors to command", style.OF_DRIVES[i], 1.0), drive.time,
-         durations_ns(drive, latency) / 1000)
+         durations_ns(drive.log, TO_COMMAND) / 1000)
         for i, drive in enumerate(drives)
     ]  # fmt: skip
     return line_plot(axis, "latency [µs]", series, height=200)

@@ -35,8 +35,7 @@ def footfalls(drive: Drive) -> list[Stretch]:
 def phase_steps(drive: Drive) -> FloatArray:
     """By how much of its period the gait went on since the row before; 0 where no foot swings, and on wheels."""
     phase = np.nan_to_num(drive.column("legged_gait_phase"))
-    steps: FloatArray = np.mod(np.diff(phase, prepend=phase[0]), 1.0)
-    return steps
+    return np.asarray(np.mod(np.diff(phase, prepend=phase[0]), 1.0))
 
 
 def walked_speed(drive: Drive) -> FloatArray:
@@ -56,15 +55,11 @@ def cost_of_transport(drive: Drive) -> float:
     where mass or way is not known.
     """
     walks = drive.column("legged_phase") == WALKING
-    way = float(np.nansum(_steps(drive.column("estimate_distance"))[walks]))
+    distance = drive.column("estimate_distance")
+    way = float(np.nansum(np.diff(distance, prepend=distance[0])[walks]))
     power = np.zeros_like(drive.time)
     for joint in drive.joints:
         power += np.abs(np.nan_to_num(drive.column(f"{joint}_effort") * drive.column(f"{joint}_velocity")))
     if not way > SHORTEST:
         return float("nan")
     return float(np.sum(power[walks])) * drive.period / (drive.mass * GRAVITY * way)
-
-
-def _steps(values: FloatArray) -> FloatArray:
-    steps: FloatArray = np.diff(values, prepend=values[0])
-    return steps

@@ -15,7 +15,7 @@ from robot_control.drive.path.robot import PATIENCE, SOURCE, Robot
 from robot_control.drive.path.run import Drive, PauseServices, points_of, shown
 from robot_control.drive.path.shapes import SHAPES
 from robot_control.drive.path.waypoints import PathError, Waypoint, placed, read_csv
-from robot_control.files.files import fit_for_message, in_words, one_message
+from robot_control.files.files import in_words, one_message
 from robot_control.robot.boundary import MAX_LONG_BYTES, next_message
 from robot_control.robot.command import Command
 from robot_control.robot.command_topic import CommandTopic
@@ -56,8 +56,7 @@ def drive(points: list[Waypoint] | None, given: argparse.Namespace, signals: Sig
         message = received(given.topic)
         here, frame = located(points_of(message), message.header.frame_id, robot.frames, tf)
     else:
-        start = pose_of(odometry)
-        here = points if given.in_odom else placed(points, start.x, start.y, start.yaw)
+        here = points if given.in_odom else placed(points, pose_of(odometry))
         frame = PathFrame(odom, odom, tf)
     planned = route(here)
     wanted = rospy.Publisher("path_wanted", Path, queue_size=1, latch=True)
@@ -91,34 +90,31 @@ def arguments(given: list[str]) -> argparse.Namespace:
     )
     which = parser.add_mutually_exclusive_group(required=True)
     which.add_argument("--topic", help="a topic with a nav_msgs/Path, for instance a planner's, in any frame of tf")
-    which.add_argument(
-        "path", nargs="?", help=f"{', '.join(SHAPES)}, or a CSV file with the header x,y[,yaw[,speed]] (m, rad, m/s)"
-    )
+    meaning = f"{', '.join(SHAPES)}, or a CSV file with the header x,y[,yaw[,speed]] (m, rad, m/s)"
+    which.add_argument("path", nargs="?", help=meaning)
     parser.add_argument("--size", type=positive, default=2.0, help="m, side or width of a shape (default %(default)s)")
     parser.add_argument("--speed", type=positive, default=FollowParameters.speed, help="m/s (default %(default)s)")
-    parser.add_argument(
-        "--in-odom", action="store_true", help="the points of the CSV file lie in the frame odom, not before the robot"
-    )
+    meaning = "the points of the CSV file lie in the frame odom, not before the robot"
+    parser.add_argument("--in-odom", action="store_true", help=meaning)
     return parser.parse_args(given)
 
 
 def points_named(path: str, size: float) -> list[Waypoint]:
     """The points of a shape or of a file. Raises PathError, OSError."""
-    points = SHAPES[path](size) if path in SHAPES else read_csv(FilePath(path))
+    try:
+        points = SHAPES[path](size) if path in SHAPES else read_csv(FilePath(path))
+    except FileNotFoundError as error:
+        raise PathError(f"{in_words(error)}; the shapes are {', '.join(SHAPES)}") from None
     route(points)
     return points
 
 
+@one_message("drive_path.py", PathError, OSError)
 def main() -> None:
     """Entry point of scripts/drive_path.py."""
-    given = arguments(rospy.myargv(sys.argv)[1:])
-    try:
-        points = None if given.path is None else points_named(given.path, given.size)
-    except FileNotFoundError as error:
-        sys.exit(f"drive_path.py: {fit_for_message(in_words(error))}; the shapes are {', '.join(SHAPES)}")
-    except (PathError, OSError) as error:
-        sys.exit(f"drive_path.py: {fit_for_message(in_words(error))}")
-    with one_message("drive_path.py", PathError), running_node("drive_path") as signals:
+    given = arguments(rospy.myargv()[1:])
+    points = None if given.path is None else points_named(given.path, given.size)
+    with running_node("drive_path") as signals:
         reason = drive(points, given, signals)
     if reason:
         sys.exit(f"drive_path.py: {reason}")

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import argparse
 import math
-import sys
 import threading
 import time
 
@@ -13,19 +12,13 @@ import rospy
 from actionlib_msgs.msg import GoalID
 from nav_msgs.msg import Path
 
+import robot_control.msg as messages
 from robot_control.drive.path.follower import Follower, FollowParameters, State
 from robot_control.drive.path.frames import Tf, located
 from robot_control.drive.path.pieces import route
 from robot_control.drive.path.robot import SOURCE, Robot
 from robot_control.drive.path.run import Drive, PauseServices, points_of, shown
 from robot_control.drive.path.waypoints import PathError, checked, limited, shortened
-from robot_control.msg import (
-    FollowPathAction,
-    FollowPathActionGoal,
-    FollowPathFeedback,
-    FollowPathGoal,
-    FollowPathResult,
-)
 from robot_control.robot.boundary import boundary, guard_action, unsealed
 from robot_control.robot.command import Command
 from robot_control.robot.command_topic import CommandTopic
@@ -46,7 +39,7 @@ NUMBERS = ("x", "y", "z", "w", "speed", "speeds", "turn_speeds", "begin_at")
 UNSTAMPED = f"a goal without goal_id.stamp counts as sent {GAP:g} s before it arrived"
 
 
-class TimedGoal(unsealed(FollowPathActionGoal, NUMBERS)):  # type: ignore[misc]
+class TimedGoal(unsealed(messages.FollowPathActionGoal, NUMBERS)):  # type: ignore[misc]
     """A goal that notes its time of request: a long one takes seconds to be read, and actionlib stamps one without
     time. One that cannot be read replaces the present goal and is refused, for it has no path.
     """
@@ -66,7 +59,7 @@ class TimedGoal(unsealed(FollowPathActionGoal, NUMBERS)):  # type: ignore[misc]
         return self
 
 
-class TimedAction(FollowPathAction):  # type: ignore[misc]
+class TimedAction(messages.FollowPathAction):  # type: ignore[misc]
     """The action follow_path with such goals."""
 
     def __init__(self) -> None:
@@ -105,9 +98,9 @@ class Server:
     def _going_on(self) -> bool:
         return self._signals.going_on() and not self._action.is_preempt_requested()
 
-    def _execute(self, goal: FollowPathGoal) -> None:
+    def _execute(self, goal: messages.FollowPathGoal) -> None:
         self._idle.clear()
-        result = FollowPathResult(reason="the goal surprised follow_path, whose log names it")
+        result = messages.FollowPathResult(reason="the goal surprised follow_path, whose log names it")
         with boundary.crossing(NAME):
             try:
                 result.reason = self._drive(goal, result)
@@ -120,7 +113,7 @@ class Server:
         self._conclude(result, replaced=replaced)
         self._idle.set()
 
-    def _conclude(self, result: FollowPathResult, *, replaced: bool) -> None:
+    def _conclude(self, result: messages.FollowPathResult, *, replaced: bool) -> None:
         if result.reason == "done":
             conclude = self._action.set_succeeded
         elif replaced or self._action.is_preempt_requested():
@@ -132,7 +125,7 @@ class Server:
         rospy.loginfo(f"{result.reason}; {result.distance:.2f} m along the path")
         conclude(result, result.reason)
 
-    def _drive(self, goal: FollowPathGoal, result: FollowPathResult) -> str:
+    def _drive(self, goal: messages.FollowPathGoal, result: messages.FollowPathResult) -> str:
         """Why the path ended. Raises PathError: the goal cannot be driven."""
         if not 0 <= goal.speed <= FARTHEST:
             raise PathError(f"speed is {goal.speed:g} m/s: it must be a number from zero on; zero is the default")
@@ -162,14 +155,16 @@ class Server:
             return "it was requested before follow_path began. Start the path again"
         said = -math.inf
 
-        def waits() -> bool:
+        def awaits_permit() -> bool:
             nonlocal said
             if time.monotonic() - said >= FEEDBACK_PERIOD:
                 said = time.monotonic()
-                self._action.publish_feedback(FollowPathFeedback(state="waiting", reason="for the permit to drive"))
+                self._action.publish_feedback(
+                    messages.FollowPathFeedback(state="waiting", reason="for the permit to drive")
+                )
             return self._going_on()
 
-        return self._robot.await_drivable(self._topic, waits, message.requested)
+        return self._robot.await_drivable(self._topic, awaits_permit, message.requested)
 
 
 class Reporter:
@@ -187,7 +182,7 @@ class Reporter:
         self._sent_at, self._said = now, follower.state
         distance = self._begin_at + follower.distance
         self._action.publish_feedback(
-            FollowPathFeedback(
+            messages.FollowPathFeedback(
                 state=follower.state.name.lower(),
                 reason=self._drive.paused_by,
                 progress=follower.progress if not distance else distance / (distance + follower.remaining),
@@ -206,7 +201,7 @@ def main() -> None:
         description="Serves the action follow_path (robot_control/FollowPath.action): drives the robot along the path "
         "of a goal. Commands go to path_vel where the robot has a list of command sources, else to cmd_vel_stamped. "
         "Services: follow_path/pause, follow_path/resume.",
-    ).parse_args(rospy.myargv(sys.argv)[1:])
+    ).parse_args(rospy.myargv()[1:])
     with running_node(NAME) as signals:
         server = Server(signals)
         while signals.going_on():

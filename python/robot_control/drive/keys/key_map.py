@@ -10,6 +10,7 @@ In both: space stops, Esc and ! are the e-stop, r and then y resets, Ctrl-C ends
 """
 
 from dataclasses import dataclass
+from itertools import starmap
 
 FASTER, SLOWER = 1.1, 0.9
 """as in teleop_twist_keyboard"""
@@ -42,27 +43,25 @@ class KeyMap:
     help: tuple[str, ...]  # lines of at most 78 columns
 
 
+TURNS = ((1, 1), (1, 0), (1, -1), (0, 1), (0, -1), (-1, -1), (-1, 0), (-1, 1), (0, 0, 1), (0, 0, -1))
+"""forward turning left, straight, turning right; left and right on the spot; backward likewise; sideways"""
+FACTORS = ((FASTER, FASTER), (SLOWER, SLOWER), (FASTER, 1), (SLOWER, 1), (1, FASTER), (1, SLOWER))
+
+
+def _motions(keys: str) -> dict[str, Motion]:
+    return dict(zip(keys, starmap(Motion, TURNS), strict=True))
+
+
+def _speeds(keys: str, first: int = 0) -> dict[str, Speeds]:
+    return dict(zip(keys, starmap(Speeds, FACTORS[first:]), strict=True))
+
+
 SAFETY_HELP = "Space stop    Esc or ! EMERGENCY STOP    r, then y: reset    Ctrl-C end"
 
 ARROWS = KeyMap(
-    motions={
-        **dict.fromkeys(("up", "w"), Motion(1, 0)),
-        **dict.fromkeys(("down", "s"), Motion(-1, 0)),
-        **dict.fromkeys(("left", "a"), Motion(0, 1)),
-        **dict.fromkeys(("right", "d"), Motion(0, -1)),
-        "q": Motion(1, 1),
-        "e": Motion(1, -1),
-        "z": Motion(-1, -1),
-        "c": Motion(-1, 1),
-        "j": Motion(0, 0, 1),
-        "l": Motion(0, 0, -1),
-    },
-    speeds={
-        **dict.fromkeys(("+", "="), Speeds(FASTER, 1)),
-        **dict.fromkeys(("-", "_"), Speeds(SLOWER, 1)),
-        **dict.fromkeys((".", ">"), Speeds(1, FASTER)),
-        **dict.fromkeys((",", "<"), Speeds(1, SLOWER)),
-    },
+    motions=_motions("qweadzscjl")
+    | {"up": Motion(1, 0), "down": Motion(-1, 0), "left": Motion(0, 1), "right": Motion(0, -1)},
+    speeds=_speeds("+-.,", 2) | _speeds("=_><", 2),
     stops=frozenset(("space",)),
     help=(
         "q  w  e     hold a key to drive, or an arrow key;    + -  linear speed",
@@ -73,26 +72,8 @@ ARROWS = KeyMap(
 )
 
 CLASSIC = KeyMap(
-    motions={
-        "u": Motion(1, 1),
-        "i": Motion(1, 0),
-        "o": Motion(1, -1),
-        "j": Motion(0, 1),
-        "l": Motion(0, -1),
-        "m": Motion(-1, -1),
-        ",": Motion(-1, 0),
-        ".": Motion(-1, 1),
-        "a": Motion(0, 0, 1),
-        "d": Motion(0, 0, -1),
-    },
-    speeds={
-        "q": Speeds(FASTER, FASTER),
-        "z": Speeds(SLOWER, SLOWER),
-        "w": Speeds(FASTER, 1),
-        "x": Speeds(SLOWER, 1),
-        "e": Speeds(1, FASTER),
-        "c": Speeds(1, SLOWER),
-    },
+    motions=_motions("uiojlm,.ad"),
+    speeds=_speeds("qzwxec"),
     stops=frozenset(("space", "k")),
     help=(
         "u  i  o     hold a key to drive;                     q z  both speeds",

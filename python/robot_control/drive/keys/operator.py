@@ -101,9 +101,8 @@ class Operator:
     def chosen(self) -> Command:
         """The speeds of a held key, within the robot's limits."""
         chosen, limits = self._chosen, self._limits
-        return Command(
-            min(chosen.linear, limits.linear), min(chosen.angular, limits.angular), min(chosen.lateral, limits.lateral)
-        )
+        angular = min(chosen.angular, limits.angular)
+        return Command(min(chosen.linear, limits.linear), angular, min(chosen.lateral, limits.lateral))
 
     def limit(self, limits: Limits) -> None:
         """Sets the robot's present limits."""
@@ -135,11 +134,8 @@ class Operator:
             self._zeros_until = now + ZEROS
             motion, chosen = self._keys.motions[held.key], self.chosen
             linear = max(motion.linear * chosen.linear, -self._limits.reverse)
-            return Command(
-                held.share * linear,
-                motion.angular * held.share * chosen.angular,
-                motion.lateral * held.share * chosen.lateral,
-            )
+            angular = motion.angular * held.share * chosen.angular
+            return Command(held.share * linear, angular, motion.lateral * held.share * chosen.lateral)
         return Command() if now < self._zeros_until or self._e_stopped else None
 
     def held(self, now: float) -> Held | None:
@@ -170,9 +166,8 @@ class Operator:
         for key in keys:
             factor, chosen = self._keys.speeds[key], self.chosen
             lateral = chosen.lateral or self._chosen.lateral  # before the robot's kind is known, its limit is 0
-            self._chosen = Command(
-                chosen.linear * factor.linear, chosen.angular * factor.angular, lateral * factor.linear
-            )
+            angular = chosen.angular * factor.angular
+            self._chosen = Command(chosen.linear * factor.linear, angular, lateral * factor.linear)
 
     def _stop(self, now: float) -> None:
         self._dead_man.stop(now)

@@ -4,7 +4,7 @@ Axes and buttons are numbered as the kernel's joystick interface numbers them, i
 found with another joystick tool therefore fit. Forward and left are positive, as in ROS's joy.
 """
 
-from typing import Any, Protocol
+from typing import Any
 
 EV_KEY, EV_ABS = 1, 3
 """linux/input-event-codes.h"""
@@ -17,25 +17,10 @@ LAST_AXIS = 0x28
 PACKAGE = "python3-evdev"
 
 
-class EventDevice(Protocol):
-    """The part of evdev.InputDevice that is used."""
-
-    name: str
-
-    def capabilities(self) -> dict[int, Any]:
-        """Codes by type; an axis comes with its AbsInfo."""
-
-    def active_keys(self) -> list[int]:
-        """Buttons that are held, read from the kernel; OSError: the device is gone."""
-
-    def absinfo(self, code: int) -> Any:
-        """Value, min and max of an axis, read from the kernel; OSError: the device is gone."""
-
-
 class Device:
     """The device is read as a whole at every call, so no event is missed and a lost device raises an error."""
 
-    def __init__(self, device: EventDevice) -> None:
+    def __init__(self, device: Any) -> None:
         self._device = device
         able = device.capabilities()
         self._axes = sorted(code for code, _ in able.get(EV_ABS, []) if code < LAST_AXIS)
@@ -44,7 +29,7 @@ class Device:
     @property
     def name(self) -> str:
         """The name that its maker gave it."""
-        return self._device.name
+        return str(self._device.name)
 
     def read(self) -> tuple[tuple[float, ...], tuple[int, ...]]:
         """Axes, −1 … 1, and buttons, 0 or 1. Raises OSError: it is gone."""
@@ -59,7 +44,7 @@ def _share(info: Any) -> float:
     return 0.0 if span <= 0 else -(2.0 * (info.value - info.min) / span - 1.0)
 
 
-def is_pad(device: EventDevice) -> bool:
+def is_pad(device: Any) -> bool:
     """True if it has the buttons of a game pad, or two axes and a joystick's button."""
     able = device.capabilities()
     buttons = set(able.get(EV_KEY, []))

@@ -5,14 +5,14 @@ import math
 import sys
 import time
 from collections import deque
-from typing import Any
+from importlib.util import find_spec
 
 import rospy
 from sensor_msgs.msg import Joy
 
 from robot_control.drive.pad.device import PACKAGE, Device, open_device
 from robot_control.drive.pad_law import Pad, PadParameters
-from robot_control.files.files import printable
+from robot_control.files.files import one_message, printable
 from robot_control.robot.boundary import boundary, subscribe
 from robot_control.robot.command import SEND_PERIOD, Pace
 from robot_control.robot.command_topic import CommandTopic
@@ -22,6 +22,7 @@ from robot_control.robot.safety_watch import SafetyWatch
 from robot_control.robot.server_values import ServerValueError, server_tree
 from robot_control.robot.topic_sender import Signals
 from robot_control.robot.view import View
+from robot_control.settings.files import NUMBER, Rule, SettingsError, in_range, rules_of, wrong_values
 
 SOURCE = "joy_vel"
 PERIOD = 0.02
@@ -33,33 +34,17 @@ MESSAGES = 100
 REFUSED = "the controller refuses what was requested before a stop: zero; release the enable button once"
 
 
-class ParameterError(ValueError):
-    """A parameter that cannot be used."""
+ABOVE_ZERO: Rule = ("a number above zero", lambda value: NUMBER[1](value) and value > 0)
+SHARE: Rule = ("a number of 0 to below 1", lambda value: in_range(0, 1)(value) and value < 1)
+RULES = rules_of(PadParameters, deadzone=SHARE, max_hold=ABOVE_ZERO, joy_timeout=ABOVE_ZERO)
 
 
 def parameters() -> PadParameters:
-    """The private ROS parameters of this node over the defaults. Raises ParameterError with all problems."""
-    try:
-        given = server_tree("~")
-    except ServerValueError as error:
-        raise ParameterError(str(error)) from error
-    problems = [f"~{name}: unknown" for name in sorted(set(given) - set(PadParameters.names()))]
-    values: dict[str, Any] = {}
-    for name in PadParameters.names():
-        if name not in given:
-            continue
-        value, default = given[name], getattr(PadParameters, name)
-        kinds = (int,) if isinstance(default, int) else (int, float)
-        if isinstance(value, bool) or not isinstance(value, kinds) or not math.isfinite(value):
-            problems.append(f"~{name} = {value!r}: must be a {'whole ' if kinds == (int,) else ''}number")
-        else:
-            values[name] = value
-    if not 0 <= values.get("deadzone", 0.0) < 1:
-        problems.append("~deadzone: must be a number of 0 to below 1")
-    problems += [f"~{name}: must be above zero" for name in ("max_hold", "joy_timeout") if values.get(name, 1) <= 0]
-    if problems:
-        raise ParameterError("; ".join(problems))
-    return PadParameters(**values)
+    """The private ROS parameters of this node over the defaults. Raises SettingsError, ServerValueError."""
+    given = server_tree("~")
+    if problems := "; ".join(wrong_values(given, RULES, "~")):
+        raise SettingsError(problems)
+    return PadParameters(**given)
 
 
 class Source:
@@ -146,13 +131,11 @@ def arguments(given: list[str]) -> argparse.Namespace:
     return parser.parse_args(given)
 
 
+@one_message("pad.py", SettingsError, ServerValueError)
 def main() -> None:
     """Entry point of scripts/pad.py."""
-    given = arguments(rospy.myargv(sys.argv)[1:])
-    try:
-        with running_node("pad") as signals:
-            drive(given, signals)
-    except ModuleNotFoundError:
+    given = arguments(rospy.myargv()[1:])
+    if not given.joy and find_spec("evdev") is None:
         sys.exit(f"pad.py: needs the package {PACKAGE} (apt install {PACKAGE}); or --joy and a pad on another machine")
-    except ParameterError as error:
-        sys.exit(f"pad.py: {error}")
+    with running_node("pad") as signals:
+        drive(given, signals)

@@ -90,7 +90,7 @@ class Follower:
         self._route = route
         self._parameters = parameters or FollowParameters()
         self._number = 0  # number of the piece; that of the last + 1: the turn to the end heading
-        self._state = State.TURNING
+        self.state = State.TURNING
         self._settling = True  # a turn first waits until the robot stands
         self._before_pause = State.TURNING
         self._last: tuple[Pose, Motion] | None = None  # pose and command of the step before
@@ -107,14 +107,9 @@ class Follower:
         self.worst_cross_track_error = 0.0  # m
 
     @property
-    def state(self) -> State:
-        """The present state."""
-        return self._state
-
-    @property
     def over(self) -> bool:
         """True when nothing follows."""
-        return self._state in {State.DONE, State.FAILED}
+        return self.state in {State.DONE, State.FAILED}
 
     @property
     def distance(self) -> float:
@@ -129,22 +124,22 @@ class Follower:
     @property
     def progress(self) -> float:
         """0 … 1"""
-        return 1.0 if self._state is State.DONE else self.distance / (self._route.length or math.inf)
+        return 1.0 if self.state is State.DONE else self.distance / (self._route.length or math.inf)
 
     def pause(self) -> None:
         """Stands until `resume` is called."""
-        if not self.over and self._state is not State.PAUSED:
-            self._before_pause, self._state = self._state, State.PAUSED
+        if not self.over and self.state is not State.PAUSED:
+            self._before_pause, self.state = self.state, State.PAUSED
 
     def resume(self) -> None:
         """Goes on from where the robot is."""
-        if self._state is State.PAUSED:
-            self._state = self._before_pause
+        if self.state is State.PAUSED:
+            self.state = self._before_pause
 
     def fail(self, reason: str) -> None:
         """Ends the path with a zero command."""
         if not self.over:
-            self._state, self.reason = State.FAILED, reason
+            self.state, self.reason = State.FAILED, reason
 
     def step(self, pose: Pose, measured: Motion, limit: float = math.inf, elapsed: float = PERIOD) -> Motion:
         """The command for this pose.
@@ -164,9 +159,9 @@ class Follower:
             else:
                 moved = self._moved(*self._last, pose, measured, elapsed)
             self._last = pose, measured
-        if self.over or self._state is State.PAUSED:
+        if self.over or self.state is State.PAUSED:
             return STAND
-        if self._state is State.TURNING:
+        if self.state is State.TURNING:
             return self._turn(pose, measured, moved)
         return self._drive(pose, measured, limit, moved.linear)
 
@@ -187,9 +182,8 @@ class Follower:
     def _begin(self, pose: Pose) -> None:
         distance = self._reachable = math.dist(self._route.begin, (pose.x, pose.y))
         if distance > self._parameters.start_distance:
-            self.fail(
-                f"the path begins {distance:.2f} m from the robot, more than {self._parameters.start_distance:g} m"
-            )
+            reason = f"the path begins {distance:.2f} m from the robot, more than {self._parameters.start_distance:g} m"
+            self.fail(reason)
         elif self._route.pieces:
             heading = self._route.pieces[0].first_heading
             if abs(turned(heading - pose.yaw)) < self._parameters.start_turn:
@@ -197,7 +191,7 @@ class Follower:
 
     def _begin_piece(self, pose: Pose) -> None:
         """The way back of what a robot strayed while it turned is no motion in vain; that of a jump is."""
-        self._state = State.DRIVING
+        self.state = State.DRIVING
         piece = self._route.pieces[self._number]
         strayed = min(self._strayed, math.dist(piece.points[0], (pose.x, pose.y)))
         self._headway.begin(piece.length + max(self._reachable, strayed))
@@ -218,7 +212,7 @@ class Follower:
         if abs(error) < given.heading_tolerance:
             if abs(measured.angular) < given.standing:
                 if at_end:
-                    self._state = State.DONE
+                    self.state = State.DONE
                 else:
                     self._begin_piece(pose)
             return STAND
@@ -254,7 +248,7 @@ class Follower:
             self._driven += piece.length
             self._along = 0.0
             self._number += 1
-            self._state, self._settling = State.TURNING, True
+            self.state, self._settling = State.TURNING, True
             return STAND
         ahead = piece.at(foot.along + lookahead)
         axes = pose.yaw if piece.sign > 0 else pose.yaw + math.pi

@@ -4,7 +4,6 @@ import math
 import threading
 import time
 from dataclasses import dataclass
-from typing import Protocol
 
 import rospy
 import tf2_py
@@ -28,13 +27,6 @@ class Transform:
 
     pose: Pose
     stamp: float  # s; 0: the two are fixed to each other
-
-
-class Frames(Protocol):
-    """The part of tf that is used."""
-
-    def lookup(self, target: str, source: str) -> Transform:
-        """The newest transform. Raises PathError: tf does not connect them."""
 
 
 class Tf:
@@ -75,7 +67,7 @@ class Tf:
 class PathFrame:
     """Poses by odometry → poses in the path's frame, which may move against odometry's (map)."""
 
-    def __init__(self, name: str, odom: str, frames: Frames) -> None:
+    def __init__(self, name: str, odom: str, frames: Tf) -> None:
         self.name = name
         self._odom, self._frames = odom, frames
         self._stamp, self._newer_at = math.nan, math.inf
@@ -98,13 +90,10 @@ class PathFrame:
             self._stamp, self._newer_at = found.stamp, now
         if found.stamp > 0 and now - self._newer_at > SILENCE:
             raise PathError(f"tf from {self._odom!r} to {self.name!r} is silent for {SILENCE:g} s")
-        (inside,) = placed([Waypoint(pose.x, pose.y, pose.yaw)], found.pose.x, found.pose.y, found.pose.yaw)
-        return Pose(inside.x, inside.y, inside.yaw or 0.0)
+        return Pose(*found.pose.holding(pose.x, pose.y), pose.yaw + found.pose.yaw)
 
 
-def located(
-    points: list[Waypoint], frame: str, own: tuple[str, str], frames: Frames
-) -> tuple[list[Waypoint], PathFrame]:
+def located(points: list[Waypoint], frame: str, own: tuple[str, str], frames: Tf) -> tuple[list[Waypoint], PathFrame]:
     """The path as it is driven, and the frame in which it is given. A frame that is fixed to the robot is replaced by
     that of odometry, with the path at its present place. `own`: frames of odometry and of the robot.
 
@@ -117,6 +106,5 @@ def located(
     if frame == odom:
         return points, PathFrame(odom, odom, frames)
     if frame == base or frames.lookup(base, frame).stamp == 0:
-        pose = frames.lookup(odom, frame).pose
-        return placed(points, pose.x, pose.y, pose.yaw), PathFrame(odom, odom, frames)
+        return placed(points, frames.lookup(odom, frame).pose), PathFrame(odom, odom, frames)
     return points, PathFrame(frame, odom, frames)

@@ -8,7 +8,6 @@ from collections.abc import Callable, Iterable
 import rospy
 from geometry_msgs.msg import Point, Pose, PoseStamped
 from nav_msgs.msg import Odometry, Path
-from std_srvs.srv import Trigger, TriggerResponse
 
 from robot_control.drive.path.follower import Follower, Motion, State
 from robot_control.drive.path.frames import PathFrame
@@ -17,8 +16,10 @@ from robot_control.drive.path.waypoints import PathError, Waypoint, from_poses
 from robot_control.robot.command import Command
 from robot_control.robot.command_topic import CommandTopic
 from robot_control.robot.pose import pose_of
+from robot_control.robot.ros_node import serve
 from robot_control.robot.view import SILENCES
 
+PAUSED = "paused; goes on after ~resume"
 POLL_PERIOD = 0.005
 """s between two looks for a new odometry message"""
 MAX_SHOWN = 2000
@@ -53,11 +54,12 @@ class Drive:
             poll()
             time.sleep(POLL_PERIOD)
 
-    def pause(self, why: str) -> None:
-        """Stands until `resume` is called."""
+    def pause(self, why: str) -> str:
+        """Stands until `resume` is called; empty, for nothing stands against it."""
         with self._lock:
             self.follower.pause()
             self.paused_by = why
+            return ""
 
     def resume(self) -> str:
         """Why it does not go on; empty if it does."""
@@ -90,10 +92,8 @@ class Drive:
     def describe(self) -> str:
         """One line for the log."""
         f = self.follower
-        return (
-            f"{f.state.name.lower()}: {100 * f.progress:.0f} %, {f.remaining:.2f} m left, "
-            f"{1000 * f.cross_track_error:z.0f} mm aside, {math.degrees(f.heading_error):z.1f} deg off"
-        )
+        what = f"{f.state.name.lower()}: {100 * f.progress:.0f} %, {f.remaining:.2f} m left"
+        return f"{what}, {1000 * f.cross_track_error:z.0f} mm aside, {math.degrees(f.heading_error):z.1f} deg off"
 
 
 class PauseServices:
@@ -101,20 +101,11 @@ class PauseServices:
 
     def __init__(self) -> None:
         self.drive: Drive | None = None
-        rospy.Service("~pause", Trigger, self._pause)
-        rospy.Service("~resume", Trigger, self._resume)
+        serve("~pause", lambda: self._of_drive(lambda drive: drive.pause("~pause was called")), PAUSED)
+        serve("~resume", lambda: self._of_drive(Drive.resume), "goes on")
 
-    def _pause(self, _request: object) -> TriggerResponse:
-        drive = self.drive
-        if drive is None:
-            return TriggerResponse(success=False, message="no path is driven")
-        drive.pause("~pause was called")
-        return TriggerResponse(success=True, message="paused; goes on after ~resume")
-
-    def _resume(self, _request: object) -> TriggerResponse:
-        drive = self.drive
-        refusal = "no path is driven" if drive is None else drive.resume()
-        return TriggerResponse(success=not refusal, message=refusal or "goes on")
+    def _of_drive(self, act: Callable[[Drive], str]) -> str:
+        return "no path is driven" if (drive := self.drive) is None else act(drive)
 
 
 def points_of(message: Path) -> list[Waypoint]:
@@ -123,13 +114,7 @@ def points_of(message: Path) -> list[Waypoint]:
     others = {pose.header.frame_id for pose in message.poses} - {"", frame}
     if others:
         raise PathError(f"poses of the path lie in {', '.join(sorted(others))}, and the path in {frame!r}")
-    return from_poses(
-        [
-            (pose.position.x, pose.position.y, (q.x, q.y, q.z, q.w))
-            for pose in (stamped.pose for stamped in message.poses)
-            for q in [pose.orientation]
-        ]
-    )
+    return from_poses(stamped.pose for stamped in message.poses)
 
 
 def shown(points: list[Waypoint], frame: str) -> Path:

@@ -6,9 +6,10 @@ import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Any
 
 from robot_control.files.files import InputFileError, check_input, listed
-from robot_control.robot.pose import FARTHEST
+from robot_control.robot.pose import FARTHEST, Pose
 
 COLUMNS = ("x", "y", "yaw", "speed")
 APART = 1e-4
@@ -74,26 +75,19 @@ def _refuse_jumps(points: list[Waypoint]) -> None:
     median = sorted(lengths)[len(lengths) // 2]
     for number, length in enumerate(lengths):
         if length > max(JUMP, JUMP_RATIO * median):
-            raise PathError(
-                f"the path jumps by {length:.2f} m after point {number}, where its points are {median:.3g} m apart"
-            )
+            why = f"the path jumps by {length:.2f} m after point {number}, where its points are {median:.3g} m apart"
+            raise PathError(why)
 
 
-Quaternion = tuple[float, float, float, float]
+def from_poses(poses: Iterable[Any]) -> list[Waypoint]:
+    """The points of geometry_msgs/Pose. Four zeros stand for no orientation: the robot then drives along the path."""
+    return [Waypoint(each.position.x, each.position.y, _yaw(each.orientation)) for each in poses]
 
 
-def from_poses(poses: Sequence[tuple[float, float, Quaternion]]) -> list[Waypoint]:
-    """The points of a nav_msgs/Path: x, y [m] and the orientation x, y, z, w of each. Four zeros stand for no
-    orientation: the robot then drives along the path.
-    """
-    return [Waypoint(x, y, _yaw(orientation)) for x, y, orientation in poses]
-
-
-def _yaw(orientation: Quaternion) -> float | None:
-    x, y, z, w = orientation
-    if not any(orientation):
+def _yaw(q: Any) -> float | None:  # noqa: ANN401 (geometry_msgs/Quaternion)
+    if not any((q.x, q.y, q.z, q.w)):
         return None
-    return math.atan2(2 * (w * z + x * y), w * w + x * x - y * y - z * z)
+    return math.atan2(2 * (q.w * q.z + q.x * q.y), q.w * q.w + q.x * q.x - q.y * q.y - q.z * q.z)
 
 
 def shortened(points: Sequence[Waypoint], begin_at: float) -> list[Waypoint]:
@@ -148,17 +142,12 @@ def limited(points: Sequence[Waypoint], speeds: Sequence[float], turn_speeds: Se
     ]
 
 
-def placed(points: Sequence[Waypoint], x: float, y: float, yaw: float) -> list[Waypoint]:
+def placed(points: Sequence[Waypoint], origin: Pose) -> list[Waypoint]:
     """The same path, its origin at this pose."""
-    cosine, sine = math.cos(yaw), math.sin(yaw)
+    places = (origin.holding(point.x, point.y) for point in points)
     return [
-        replace(
-            point,
-            x=x + cosine * point.x - sine * point.y,
-            y=y + sine * point.x + cosine * point.y,
-            yaw=None if point.yaw is None else point.yaw + yaw,
-        )
-        for point in points
+        replace(point, x=x, y=y, yaw=None if point.yaw is None else point.yaw + origin.yaw)
+        for point, (x, y) in zip(points, places, strict=True)
     ]
 
 

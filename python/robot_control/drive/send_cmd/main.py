@@ -111,7 +111,7 @@ def send(plan: SendPlan, signals: Signals) -> int:
 
 def main() -> None:
     """Entry point of scripts/send_cmd.py."""
-    plan = parse_plan(rospy.myargv(sys.argv)[1:])
+    plan = parse_plan(rospy.myargv()[1:])
     begin_node("send_cmd")
     with ended_by_signals() as signals:
         code = send(plan, signals)

@@ -55,18 +55,13 @@ class Release:
         self._start = self._received_at = now
         self._requested = now if began is None else began
         self._interruptions = Interruptions(now, began)
-        self._phase = Phase.WAITING
+        self.phase = Phase.WAITING  # the kind of message that is sent now
         self._provisional = False
         self._silence_logged = False
         self._gone_since = math.inf
         self._waiting_for = ""
         self._say_at = math.inf
         self._no_speed = False
-
-    @property
-    def phase(self) -> Phase:
-        """The kind of message that is sent now."""
-        return self._phase
 
     def interrupt(self, now: float, why: str) -> None:
         """Ends the command: something else than the robot speaks against it."""
@@ -101,13 +96,11 @@ class Release:
         if status is not None:
             self._interruptions.receive(status, now)
         why = self._interruptions.revoked(self._requested)
-        if why and self._phase in {Phase.WAITING, Phase.SENDING}:
-            self._phase, self._provisional = Phase.STOPPED, False
+        if why and self.phase in {Phase.WAITING, Phase.SENDING}:
+            self.phase, self._provisional = Phase.STOPPED, False
             remedy = f"{status.remedy}, then " if status is not None and status.remedy else ""
-            yield Line(
-                f"{why}. The command has no effect, zeros are sent from now on. "
-                f"To drive again: {remedy}start send_cmd.py again"
-            )
+            what = f"{why}. The command has no effect, zeros are sent from now on. To drive again"
+            yield Line(f"{what}: {remedy}start send_cmd.py again")
         elif status is None:
             yield from self._without_monitor(now)
         else:
@@ -116,30 +109,28 @@ class Release:
     def _with_monitor(self, now: float, status: Status, age: float, *, connected: bool) -> Iterator[Line]:
         if self._provisional:
             self._provisional = False
-            self._phase = Phase.WAITING
+            self.phase = Phase.WAITING
         self._gone_since = math.inf if connected else min(self._gone_since, now)
-        if self._phase is Phase.WAITING:
+        if self.phase is Phase.WAITING:
             yield from self._wait(now, status, age)
-        elif self._phase is Phase.SENDING:
+        elif self.phase is Phase.SENDING:
             yield from self._drive(now, status, age)
-        elif self._phase is Phase.STOPPED and status.drivable and connected:
-            self._phase = Phase.RELEASED
+        elif self.phase is Phase.STOPPED and status.drivable and connected:
+            self.phase = Phase.RELEASED
             yield Line("the robot is released; this command does not begin again by itself: start send_cmd.py again")
 
     def _without_monitor(self, now: float) -> Iterator[Line]:
-        if self._phase is not Phase.WAITING or now - self._start < NO_MONITOR:
+        if self.phase is not Phase.WAITING or now - self._start < NO_MONITOR:
             return
         self._provisional = True
-        self._phase = Phase.SENDING
-        yield Line(
-            f"no safety_status within {NO_MONITOR:g} s: {MONITOR} does not run, and without it the robot brakes; "
-            "sending the command all the same"
-        )
+        self.phase = Phase.SENDING
+        what = f"no safety_status within {NO_MONITOR:g} s: {MONITOR} does not run, and without it the robot brakes"
+        yield Line(f"{what}; sending the command all the same")
 
     def _wait(self, now: float, status: Status, age: float) -> Iterator[Line]:
         gone = now - self._gone_since > GONE or age > NO_MONITOR
         if status.drivable and not gone:
-            self._phase = Phase.SENDING
+            self.phase = Phase.SENDING
             return
         text = self._obstacle(status, gone=gone)
         if text != self._waiting_for:
@@ -159,7 +150,7 @@ class Release:
 
     def _drive(self, now: float, status: Status, age: float) -> Iterator[Line]:
         if now - self._gone_since > GONE:
-            self._phase = Phase.STOPPED
+            self.phase = Phase.STOPPED
             yield Line(
                 f"{MONITOR} is gone, and without it the robot brakes: the command has no effect, zeros are sent "
                 f"from now on. To drive again: start {MONITOR}, call e_stop_reset, start send_cmd.py again"

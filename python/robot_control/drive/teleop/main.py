@@ -1,7 +1,6 @@
 """teleop.py's ROS side: keys in, commands and heartbeat out, one screen."""
 
 import argparse
-import sys
 import time
 
 import rospy
@@ -9,7 +8,7 @@ from std_msgs.msg import Empty
 
 from robot_control.drive.keys.dead_man import HoldParameters
 from robot_control.drive.keys.key_map import KEY_MAPS
-from robot_control.drive.keys.keyboard import Decoder, Event
+from robot_control.drive.keys.keyboard import REPORT_RELEASES, Decoder, Event
 from robot_control.drive.keys.operator import Operator, Request
 from robot_control.drive.speed_limits import SpeedLimits
 from robot_control.drive.teleop.backlog import Backlog
@@ -45,9 +44,8 @@ class Teleop:
         self._keys = KEY_MAPS[given.keys]
         hold = HoldParameters(first_hold=given.first_hold, max_hold=given.max_hold)
         self._limits = SpeedLimits()
-        self._operator = Operator(
-            self._keys, Command(given.linear, given.angular, given.lateral), self._limits.newest(), hold
-        )
+        chosen = Command(given.linear, given.angular, given.lateral)
+        self._operator = Operator(self._keys, chosen, self._limits.newest(), hold)
         self._decoder = Decoder()
         self._listener, self._watch = Listener(), SafetyWatch()
         self._services = Services(self._watch)
@@ -89,7 +87,7 @@ class Teleop:
         for key in [*self._decoder.feed(data, now), *self._decoder.flush(now)]:
             if key.event is Event.SPEAKS_KITTY:
                 self._releases = True
-                self._terminal.report_releases()
+                self._terminal.write(REPORT_RELEASES)
                 continue
             request = self._operator.key(key, now, late=late)
             if request is Request.END:
@@ -134,13 +132,8 @@ def arguments(given: list[str]) -> argparse.Namespace:
         "cmd_vel_stamped; a heartbeat goes to heartbeat.",
         epilog="Another robot's: __ns:=robot2. Needs the wall clock: in lockstep every command times out.",
     )
-    parser.add_argument(
-        "--keys",
-        choices=sorted(KEY_MAPS),
-        default="arrows",
-        help="arrows: arrow keys and w a s d; "
-        "classic: u i o j k l m , . of teleop_twist_keyboard (default %(default)s)",
-    )
+    what = "arrows: arrow keys and w a s d; classic: u i o j k l m , . of teleop_twist_keyboard"
+    parser.add_argument("--keys", choices=sorted(KEY_MAPS), default="arrows", help=f"{what} (default %(default)s)")
     for name, default, meaning in (
         ("--linear", 0.5, "m/s, chosen speed, at most the robot's max_linear_speed"),
         ("--angular", 1.0, "rad/s, chosen speed, at most max_angular_speed"),
@@ -154,7 +147,7 @@ def arguments(given: list[str]) -> argparse.Namespace:
 
 def main() -> None:
     """Entry point of scripts/teleop.py."""
-    given = arguments(rospy.myargv(sys.argv)[1:])
+    given = arguments(rospy.myargv()[1:])
     require_master()
     with one_message("teleop.py", NoTerminalError), Terminal() as terminal:
         begin_node("teleop", anonymous=True)

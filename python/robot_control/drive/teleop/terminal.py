@@ -19,7 +19,7 @@ from contextlib import suppress
 from types import TracebackType
 from typing import Any, Self
 
-from robot_control.drive.keys.keyboard import END_RELEASES, QUERY_RELEASES, REPORT_RELEASES
+from robot_control.drive.keys.keyboard import END_RELEASES, QUERY_RELEASES
 
 REPORTING = b"9;1000;1001;1002;1003;1004;1005;1006;1007;1015;1016"
 """modes in which a terminal reports what is no key: the mouse, its wheel as arrow keys, the focus"""
@@ -56,10 +56,8 @@ def undelayed(settings: list[Any]) -> list[Any]:
 def refuse_without_sequences(name: str) -> None:
     """Raises NoTerminalError for the value of TERM that stands for a terminal without control sequences, or none."""
     if name in {"", "dumb", "unknown"}:
-        raise NoTerminalError(
-            f"{f'TERM={name}' if name else 'TERM is not set'}: the screen needs a terminal with control sequences; "
-            "start it in one, or, if this terminal has them, with TERM=xterm"
-        )
+        what = f"{f'TERM={name}' if name else 'TERM is not set'}: the screen needs a terminal with control sequences"
+        raise NoTerminalError(f"{what}; start it in one, or, if this terminal has them, with TERM=xterm")
 
 
 class Terminal:
@@ -72,9 +70,8 @@ class Terminal:
             refuse_without_sequences(os.environ.get("TERM", ""))
             self._descriptor = os.open(os.ttyname(descriptor), os.O_RDWR | os.O_NONBLOCK | os.O_NOCTTY | os.O_CLOEXEC)
         except (OSError, termios.error) as error:
-            raise NoTerminalError(
-                "the standard input is no terminal; start it in one (not in a launch file)"
-            ) from error
+            why = "the standard input is no terminal; start it in one (not in a launch file)"
+            raise NoTerminalError(why) from error
         self._unwritten = b""
         self._printed = tempfile.TemporaryFile()  # noqa: SIM115 (as long as this object)
         self._outputs = [os.dup(number) for number in (1, 2)]
@@ -127,10 +124,6 @@ class Terminal:
         if not data:
             raise NoTerminalError("the terminal is gone")
         return data
-
-    def report_releases(self) -> None:
-        """Switches reports of releases on, after the terminal has answered that it can send them."""
-        self.write(REPORT_RELEASES)
 
     def size(self) -> tuple[int, int]:
         """Columns and lines."""

@@ -57,40 +57,43 @@ class Capabilities:
         kind = self.actions.get(action.kind)
         if kind is None or scope not in kind.scopes:
             why = "is not known" if kind is None else f"is not possible on {scope}"
-            raise RefusedError("orderError", f"actionType {action.kind} {why}", **_of(action), parameter="actionType")
+            raise _refused(f"actionType {action.kind} {why}", **_of(action), parameter="actionType")
         for name in kind.needs:
             if name not in action.parameters:
-                raise RefusedError("orderError", f"{action.kind} needs {name}", **_of(action), parameter=name)
+                raise _refused(f"{action.kind} needs {name}", **_of(action), parameter=name)
 
     def _check(self, order: Order, last: Node | None) -> None:
         if not self.map_id:
-            raise RefusedError("orderError", "the position of the robot is not initialized: send initPosition")
+            raise _refused("the position of the robot is not initialized: send initPosition")
         if order.zone_set:
-            raise RefusedError("orderError", "the robot knows no zones", parameter="zoneSetId")
+            raise _refused("the robot knows no zones", parameter="zoneSetId")
         points = 0.0
         nodes = [last or order.nodes[0], *order.nodes[1:]]
         for node in nodes:
             if node.place is None:
-                raise RefusedError("orderError", f"node {node.id} needs a nodePosition", nodeId=node.id)
+                raise _refused(f"node {node.id} needs a nodePosition", nodeId=node.id)
             if node.place.map_id != self.map_id:
                 why = f"node {node.id} lies on map {node.place.map_id}, the robot on {self.map_id}"
-                raise RefusedError(
-                    "orderError", why, nodeId=node.id, mapId=node.place.map_id, errorName="UNKNOWN_MAP_ID"
-                )
+                unknown = {"mapId": node.place.map_id, "errorName": "UNKNOWN_MAP_ID"}
+                raise _refused(why, nodeId=node.id, **unknown)
             for action in node.actions:
                 self.refuse_action(action, NODE)
         for edge, begin, end in zip(order.edges, nodes, nodes[1:], strict=False):
             if edge.raw.get("maxHeight", self.height) < self.height:
                 why = f"edge {edge.id}: maxHeight is below the robot's {self.height:g} m"
-                raise RefusedError("orderError", why, edgeId=edge.id, parameter="maxHeight")
+                raise _refused(why, edgeId=edge.id, parameter="maxHeight")
             if begin.place is not None and end.place is not None:
                 way = way_of(edge, begin.place, end.place)
                 points += len(way.points) + way.length / JUMP
             if points > MAX_POINTS:
                 why = f"edge {edge.id}: the way has more than {MAX_POINTS} points, one each {STEP:g} to {JUMP:g} m"
-                raise RefusedError("orderError", why, edgeId=edge.id, parameter="trajectory")
+                raise _refused(why, edgeId=edge.id, parameter="trajectory")
             for action in edge.actions:
                 self.refuse_action(action, EDGE)
+
+
+def _refused(why: str, **references: str) -> RefusedError:
+    return RefusedError("orderError", why, **references)
 
 
 def _of(action: Action) -> dict[str, str]:

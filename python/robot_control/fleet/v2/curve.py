@@ -2,14 +2,14 @@
 
     C(u) = Σ wᵢ·Nᵢ(u)·Pᵢ / Σ wᵢ·Nᵢ(u),    u from knot[degree] to knot[n]
 
-by de Boor's algorithm in homogeneous coordinates: L. Piegl, W. Tiller, The NURBS Book (1997), sections 3.1 and 4.1.
+as B-spline in homogeneous coordinates: L. Piegl, W. Tiller, The NURBS Book (1997), section 4.1.
 """
 
 import math
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import NDArray
+from scipy.interpolate import BSpline
 
 from robot_control.fleet.v2.messages import Message
 
@@ -50,19 +50,6 @@ def points_of(trajectory: Message) -> list[Point]:
     if degree == 1:
         return [(each["x"], each["y"]) for each in controls]
     steps = max(2 * count, math.ceil(length / STEP))
-    return _at(np.linspace(begin, end, steps + 1), degree, np.asarray(knots, float), np.asarray(homogeneous))
-
-
-def _at(u: NDArray[np.float64], degree: int, knots: NDArray[np.float64], controls: NDArray[np.float64]) -> list[Point]:
-    """`controls`: (count, 3), homogeneous."""
-    inside = knots[: len(controls) + 1]
-    last = int(np.searchsorted(inside, inside[-1])) - 1  # the span that ends with the last knot
-    span = np.clip(np.searchsorted(inside, u, side="right") - 1, degree, last)
-    local = controls[span[:, None] + np.arange(-degree, 1)]
-    for level in range(1, degree + 1):
-        for n in range(degree, level - 1, -1):
-            low, high = knots[span - degree + n], knots[span + 1 + n - level]
-            share = np.divide(u - low, high - low, out=np.zeros_like(u), where=high > low)[:, None]
-            local[:, n] = (1 - share) * local[:, n - 1] + share * local[:, n]
-    points: list[Point] = list(map(tuple, (local[:, degree, :2] / local[:, degree, 2:]).tolist()))
+    along = BSpline(np.asarray(knots, float), np.asarray(homogeneous), degree)(np.linspace(begin, end, steps + 1))
+    points: list[Point] = list(map(tuple, (along[:, :2] / along[:, 2:]).tolist()))
     return points

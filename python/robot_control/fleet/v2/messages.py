@@ -3,6 +3,7 @@
 import json
 import math
 import re
+import time
 from collections import deque
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -103,28 +104,24 @@ def is_connection(payload: bytes) -> bool:
 
 def check(message: Message, topic: str) -> None:
     """Raises RefusedError: validationError with the path of a field that the robot, or the schema, does not allow."""
-    whole, against = schema(topic), None
-    left: deque[tuple[Where | None, str, Any, Message, int]] = deque([(None, "", message, whole, 0)])
+    left: deque[tuple[Where | None, str, Any, int]] = deque([(None, "", message, 0)])
     values = 0
     while left:
-        where, name, value, rules, depth = left.popleft()
+        where, name, value, depth = left.popleft()
         values += len(value) if isinstance(value, dict | list) else 0
         if values > MAX_VALUES or depth > MAX_DEPTH:
             raise _malformed("", TOO_LARGE)
-        if "$ref" in rules:
-            rules = whole["definitions"][rules["$ref"].rpartition("/")[2]]
         if broken := _broken(name, value):
             raise _malformed(_path(where), broken)
-        if not against and (broken := _against(value, rules)):
-            against = _malformed(_path(where), broken)
         if isinstance(value, dict):
-            of = rules.get("properties", {})
-            left += [((where, key), key, each, of.get(key, {}), depth + 1) for key, each in value.items()]
+            left += [((where, key), key, each, depth + 1) for key, each in value.items()]
         elif isinstance(value, list):
-            of = rules.get("items", {})
-            left += [((where, number), name, each, of, depth + 1) for number, each in enumerate(value)]
-    if against:
-        raise against
+            left += [((where, number), name, each, depth + 1) for number, each in enumerate(value)]
+    for error in _validator(topic).iter_errors(message):
+        place: Where | None = None
+        for part in error.absolute_path:
+            place = place, part
+        raise _malformed(_path(place), f"breaks the schema: {error.message}")
 
 
 def _path(where: Where | None) -> str:
@@ -164,8 +161,6 @@ def _unique(pairs: list[tuple[str, Any]]) -> Message:
 
 
 DECODER = json.JSONDecoder(parse_constant=_no_constant, object_pairs_hook=_unique)
-NUMBER, NOTHING = "number", type(None)
-KINDS = {dict: "object", list: "array", str: "string", bool: "boolean", int: NUMBER, float: NUMBER, NOTHING: "null"}
 TOO_LARGE = f"is more than {MAX_DEPTH} levels deep, or has more than {MAX_VALUES} values"
 
 
@@ -195,19 +190,11 @@ def schema(topic: str) -> Message:
     return result
 
 
-def _against(value: Any, rules: Message) -> str:
-    """The keyword of a schema that a value breaks; the standard's schemas know no other ones."""
-    whole = type(value) is int or (type(value) is float and value.is_integer())
-    if not any(kind in rules.get("type", kind) for kind in (KINDS[type(value)], *(["integer"] if whole else []))):
-        return f"must be of the type {rules['type']}"
-    if missing := [name for name in rules.get("required", ()) if name not in value]:
-        return f"needs {missing[0]}"
-    if value not in rules.get("enum", [value]):
-        return f"must be one of {', '.join(rules['enum'])}"
-    least, largest = rules.get("minimum", -math.inf), rules.get("maximum", math.inf)
-    if KINDS[type(value)] == NUMBER and not least <= value <= largest:
-        return f"must be from {least:g} to {largest:g}"
-    return ""
+@cache
+def _validator(topic: str) -> Any:
+    from jsonschema import Draft202012Validator
+
+    return Draft202012Validator(schema(topic))
 
 
 def is_time(text: str) -> bool:
@@ -224,6 +211,12 @@ def is_time(text: str) -> bool:
 def time_text(seconds: float) -> str:
     """UTC, of seconds since 1970."""
     return datetime.fromtimestamp(seconds, UTC).strftime("%Y-%m-%dT%H:%M:%S.%f")[:-4] + "Z"
+
+
+def headed(number: int, version: str, manufacturer: str, serial_number: str, message: Mapping[str, Any]) -> bytes:
+    """The bytes of a message with its header, whose time is now. Raises ValueError: a number is not finite."""
+    header = {"headerId": number, "timestamp": time_text(time.time()), "version": version}
+    return encoded({**header, "manufacturer": manufacturer, "serialNumber": serial_number, **message})
 
 
 def encoded(message: Mapping[str, Any]) -> bytes:

@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 
 from robot_control.fleet.v2.capability import ActionKind
 from robot_control.fleet.v2.messages import LIMITS, MAX_BYTES, MAX_ID, Error, Message
-from robot_control.fleet.v2.order import Edge, Node
+from robot_control.fleet.v2.order import Node
 from robot_control.fleet.v2.vehicle import ActionState, Vehicle
 from robot_control.robot.pose import turned
 
@@ -13,18 +13,13 @@ STATE_PERIOD = 30.0
 """s between two states at the latest (6.10)"""
 PLACE = ("x", "y", "theta", "mapId")
 """what the schema knows of a nodePosition in a nodeState"""
+PLACE_OPTIONS = ("theta", "allowedDeviationXY", "allowedDeviationTheta")
+EDGE_OPTIONS = (
+    *("maxSpeed", "maxHeight", "orientation", "orientationType", "rotationAllowed", "maxRotationSpeed", "trajectory"),
+)
 OPTIONAL = (
-    "order.nodes.nodePosition",
-    "order.nodes.nodePosition.theta",
-    "order.nodes.nodePosition.allowedDeviationXY",
-    "order.nodes.nodePosition.allowedDeviationTheta",
-    "order.edges.maxSpeed",
-    "order.edges.maxHeight",
-    "order.edges.orientation",
-    "order.edges.orientationType",
-    "order.edges.rotationAllowed",
-    "order.edges.maxRotationSpeed",
-    "order.edges.trajectory",
+    *("order.nodes.nodePosition", *(f"order.nodes.nodePosition.{name}" for name in PLACE_OPTIONS)),
+    *(f"order.edges.{name}" for name in EDGE_OPTIONS),
 )
 
 
@@ -116,7 +111,7 @@ def state(vehicle: Vehicle, facts: Facts, unknown_charge: float, *, new_base: bo
         "lastNodeId": vehicle.last_id,
         "lastNodeSequenceId": vehicle.last_sequence,
         "nodeStates": [_node_state(node) for node in vehicle.nodes],
-        "edgeStates": [_edge_state(edge) for edge in vehicle.edges],
+        "edgeStates": [{"edgeId": e.id, "sequenceId": e.sequence, "released": e.released} for e in vehicle.edges],
         "actionStates": [_action_state(each) for each in vehicle.actions],
         "agvPosition": position(facts),
         "velocity": velocity(facts),
@@ -143,10 +138,6 @@ def _node_state(node: Node) -> Message:
     return result
 
 
-def _edge_state(edge: Edge) -> Message:
-    return {"edgeId": edge.id, "sequenceId": edge.sequence, "released": edge.released}
-
-
 def _action_state(state: ActionState) -> Message:
     result = {"actionId": state.action.id, "actionType": state.action.kind, "actionStatus": state.status}
     return result | ({"resultDescription": state.result} if state.result else {})
@@ -154,13 +145,8 @@ def _action_state(state: ActionState) -> Message:
 
 def factsheet(machine: Machine) -> Message:
     """Without its header; the limits are those that messages.py enforces."""
-    half_length, half_width = machine.length / 2, machine.width / 2
-    corners = [
-        (half_length, half_width),
-        (-half_length, half_width),
-        (-half_length, -half_width),
-        (half_length, -half_width),
-    ]
+    x, y = machine.length / 2, machine.width / 2
+    corners = ((x, y), (-x, y), (-x, -y), (x, -y))
     return {
         "typeSpecification": {
             "seriesName": machine.series,
@@ -191,7 +177,10 @@ def factsheet(machine: Machine) -> Message:
                     "actionType": name,
                     "actionDescription": kind.description,
                     "actionScopes": list(kind.scopes),
-                    "actionParameters": [{"key": key, "valueDataType": _type_of(key)} for key in kind.needs],
+                    "actionParameters": [
+                        {"key": key, "valueDataType": "STRING" if key.endswith("Id") else "NUMBER"}
+                        for key in kind.needs
+                    ],
                 }
                 for name, kind in machine.actions.items()
             ],
@@ -225,10 +214,6 @@ def _limits(machine: Machine) -> Message:
             "visualizationInterval": machine.visualization_period,
         },
     }
-
-
-def _type_of(key: str) -> str:
-    return "STRING" if key.endswith("Id") else "NUMBER"
 
 
 def _wheel(x: float, y: float, diameter: float, width: float) -> Message:

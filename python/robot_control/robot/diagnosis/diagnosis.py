@@ -59,12 +59,8 @@ def _to_start(facts: Facts, headline: str, *nodes: str) -> Answer:
 def _no_nodes(facts: Facts) -> Answer | None:
     safety = facts.received()
     if safety is None and not facts.master_answers:
-        return Answer(
-            Verdict.STOPPED,
-            f"There is no ROS master at {facts.master}.",
-            (("", "start it with the robot, or set ROS_MASTER_URI to where it runs"),),
-            (_launch(facts),),
-        )
+        to_do = (("", "start it with the robot, or set ROS_MASTER_URI to where it runs"),)
+        return Answer(Verdict.STOPPED, f"There is no ROS master at {facts.master}.", to_do, (_launch(facts),))
     absent = missing_nodes(facts)
     if safety is None and len(absent) == len(facts.loop):
         where = "" if facts.namespace == "/" else f" in {facts.namespace}"
@@ -83,20 +79,16 @@ def _no_nodes(facts: Facts) -> Answer | None:
 def _paused(facts: Facts) -> Answer | None:
     if facts.value(facts.driver, "driver_state") != "paused":
         return None
-    return Answer(
-        Verdict.STOPPED,
-        "The simulation is paused.",
-        (("", "let it run"),),
-        (f"rosservice call {facts.path(facts.driver)}/set_pause false",),
-    )
+    commands = (f"rosservice call {facts.path(facts.driver)}/set_pause false",)
+    return Answer(Verdict.STOPPED, "The simulation is paused.", (("", "let it run"),), commands)
 
 
 def _starting(facts: Facts) -> Answer | None:
     safety = facts.received()
     if facts.value(facts.driver, "driver_state") != "starting" or safety is None or safety.causes:
         return None
-    waits = facts.value(facts.driver, "suspicious")
-    actions = tuple(("technician", line) for line in waits.split(". ") if line)
+    suspicious = facts.value(facts.driver, "suspicious")
+    actions = tuple(("technician", line) for line in suspicious.split(". ") if line)
     return Answer(Verdict.STOPPED, "Not ready: the machine is starting.", actions)
 
 
@@ -107,23 +99,18 @@ def _stopped(facts: Facts) -> Answer | None:
     absent = missing_nodes(facts)
     if safety.awaiting_zero and not safety.causes and not absent:
         senders, silence = facts.commanders(), silent_long_enough(facts.command_timeout)
-        return Answer(
-            Verdict.STOPPED,
-            f"Not ready: it waits for a zero request; stop the sender{silence} or send zero.",
-            (("operator", f"publishing on {facts.kind.requests}: {senders_in_words(facts)}"),) if senders else (),
-        )
+        headline = f"Not ready: it waits for a zero request; stop the sender{silence} or send zero."
+        actions = (("operator", f"publishing on {facts.kind.requests}: {senders_in_words(facts)}"),) if senders else ()
+        return Answer(Verdict.STOPPED, headline, actions)
     if safety.state == "INIT" or not safety.causes:
         awaited = ", ".join(safety.missing) or "the first cycles"
         return _to_start(facts, f"Not ready: the monitor waits: {awaited}.", *absent)
     causes = sorted(safety.causes, key=lambda cause: not cause.first)
     doing = "Stopping" if safety.state == "STOPPING" else "Stopped"
     measured = f" ({causes[0].detail})" if causes[0].detail else ""
-    return Answer(
-        Verdict.STOPPED,
-        f"{doing}: {causes[0].sentence}{measured}.",
-        tuple(_actions(facts, causes, absent)),
-        tuple(_commands(facts, causes, absent)),
-    )
+    headline = f"{doing}: {causes[0].sentence}{measured}."
+    commands = tuple(_commands(facts, causes, absent))
+    return Answer(Verdict.STOPPED, headline, tuple(_actions(facts, causes, absent)), commands)
 
 
 def _actions(facts: Facts, causes: list[Cause], absent: tuple[str, ...]) -> Iterator[tuple[str, str]]:
@@ -166,12 +153,11 @@ def _navigation(facts: Facts) -> Answer | None:
     state = facts.value(NAVIGATE, "goal")
     if state not in {"waiting", "failed"} or _motion_commanded(facts):
         return None
-    waits = state == "waiting"
-    verdict, what = (Verdict.STOPPED, "waits") if waits else (Verdict.IDLE, "is given up")
-    then = "; the robot then drives on" if waits else ", and send the goal again"
-    return Answer(
-        verdict, f"The goal {what}: {facts.reports[NAVIGATE].message}.", (("operator", f"remove this cause{then}"),)
-    )
+    waiting = state == "waiting"
+    verdict, what = (Verdict.STOPPED, "waits") if waiting else (Verdict.IDLE, "is given up")
+    then = "; the robot then drives on" if waiting else ", and send the goal again"
+    headline = f"The goal {what}: {facts.reports[NAVIGATE].message}."
+    return Answer(verdict, headline, (("operator", f"remove this cause{then}"),))
 
 
 def _no_path(facts: Facts) -> Answer | None:
@@ -182,23 +168,17 @@ def _no_path(facts: Facts) -> Answer | None:
     remedy = "clear the path, and publish it on clearance in metres"
     if facts.clearance_senders:
         remedy += f": {', '.join(facts.clearance_senders)} {'does' if len(facts.clearance_senders) == 1 else 'do'}"
-    return Answer(
-        Verdict.STOPPED,
-        "The path is not free: clearance leaves it no speed.",
-        (("operator", remedy),),
-        () if facts.clearance_senders else (f"rostopic pub -1 {facts.path('clearance')} std_msgs/Float64 inf",),
-    )
+    headline = "The path is not free: clearance leaves it no speed."
+    commands = () if facts.clearance_senders else (f"rostopic pub -1 {facts.path('clearance')} std_msgs/Float64 inf",)
+    return Answer(Verdict.STOPPED, headline, (("operator", remedy),), commands)
 
 
 def _locked(facts: Facts) -> Answer | None:
     locked = [state for state in facts.sources().values() if state.startswith("locked by ")]
     if not locked or "commands" in facts.sources().values():
         return None
-    return Answer(
-        Verdict.STOPPED,
-        f"The commands are {locked[0]}: the result is zero.",
-        (("operator", "publish false on the topic of this lock, and go on publishing it where it has a timeout"),),
-    )
+    actions = (("operator", "publish false on the topic of this lock, and go on publishing it where it has a timeout"),)
+    return Answer(Verdict.STOPPED, f"The commands are {locked[0]}: the result is zero.", actions)
 
 
 def _controller(facts: Facts) -> Answer | None:
@@ -233,12 +213,9 @@ def _without_motion(facts: Facts) -> Answer | None:
         remedy = remedies.get(name, "")
         if facts.senders:
             remedy = f"look at {', '.join(facts.senders)}: {remedy}"
-        return Answer(
-            Verdict.IDLE,
-            f"It may move, but no velocity command is being received: {text}.",
-            (("operator", remedy),),
-            () if facts.senders else (_run(facts, "send_cmd.py"),),
-        )
+        headline = f"It may move, but no velocity command is being received: {text}."
+        commands = () if facts.senders else (_run(facts, "send_cmd.py"),)
+        return Answer(Verdict.IDLE, headline, (("operator", remedy),), commands)
     if "holding" in reasons and not _motion_commanded(facts):
         return Answer(
             Verdict.IDLE,
@@ -269,18 +246,12 @@ def _moving(facts: Facts) -> Answer:
     slow = f", no faster than {facts.speed_limit:.2g} m/s" if facts.speed_limit < float("inf") else ""
     suspicious = facts.value(facts.driver, "suspicious")
     if suspicious and _motion_commanded(facts):
-        return Answer(
-            Verdict.MOVING,
-            f"It may not move as commanded: {suspicious}.",
-            (("integrator", "look at what touches the ground, and at the <collision> shapes of the links named"),),
-            ("rosrun robot_control inspect_robot.py FILE",),
-        )
+        actions = (("integrator", "look at what touches the ground, and at the <collision> shapes of the links named"),)
+        commands = ("rosrun robot_control inspect_robot.py FILE",)
+        return Answer(Verdict.MOVING, f"It may not move as commanded: {suspicious}.", actions, commands)
     if facts.measured is not None and max(map(abs, facts.measured)) > MOVING:
         return Answer(Verdict.MOVING, f"It moves: {speeds(facts.measured)}{slow}.")
     if _motion_commanded(facts) and facts.limited is not None:
-        return Answer(
-            Verdict.MOVING,
-            f"It is commanded to move ({speeds(facts.limited)}) and has not begun to{slow}.",
-            (("", "if it stays so: look at ground, motors and torque limits"),),
-        )
+        headline = f"It is commanded to move ({speeds(facts.limited)}) and has not begun to{slow}."
+        return Answer(Verdict.MOVING, headline, (("", "if it stays so: look at ground, motors and torque limits"),))
     return Answer(Verdict.IDLE, f"It may move{slow}; nothing stands against it, and no motion is requested.")

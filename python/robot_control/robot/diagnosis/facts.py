@@ -17,22 +17,12 @@ def safety_of(status: SafetyStatus, held: float, age: float) -> Safety:
     columns = (status.causes, status.sentences, status.remedies_before_reset, status.actors, status.details)
     if len({len(column) for column in columns}) > 1:
         raise UnfitError("has lists of causes, sentences, remedies, actors and details of different lengths")
-    causes = zip(*columns, strict=True)
-    return Safety(
-        state=status.state_name,
-        permit=status.permit_name,
-        held=held,
-        age=age,
-        causes=tuple(
-            Cause(name, sentence, remedy, actor, detail, name == status.first_cause, name in status.active)
-            for name, sentence, remedy, actor, detail in causes
-        ),
-        warnings=tuple(status.warning_sentences),
-        speed_limit=status.speed_limit,
-        missing=tuple(status.missing),
-        refusal=tuple(status.reset_refusal),
-        awaiting_zero=status.awaiting_zero_request,
+    causes = tuple(
+        Cause(name, sentence, remedy, actor, detail, name == status.first_cause, name in status.active)
+        for name, sentence, remedy, actor, detail in zip(*columns, strict=True)
     )
+    texts = tuple(status.warning_sentences), status.speed_limit, tuple(status.missing), tuple(status.reset_refusal)
+    return Safety(status.state_name, status.permit_name, held, age, causes, *texts, status.awaiting_zero_request)
 
 
 def below(namespace: str, name: str) -> str:

@@ -24,12 +24,8 @@ def execution(facts: Facts) -> Answer:
         return Answer(Verdict.MOVING, f"It walks{_speed(facts)}{why}.", actions)
     for name, needed in REFUSALS.items():
         if name in reasons:
-            return Answer(
-                Verdict.IDLE,
-                f"It may move, but {reasons[name]}.",
-                (("operator", remedies.get(name, "")),),
-                _set_posture(facts, needed),
-            )
+            to_do = (("operator", remedies.get(name, "")),)
+            return Answer(Verdict.IDLE, f"It may move, but {reasons[name]}.", to_do, _set_posture(facts, needed))
     if posture == "lying":
         action = ("operator", "call set_posture with 'standing'")
         return Answer(Verdict.IDLE, "It may move, but it lies.", (action,), _set_posture(facts, "standing"))

@@ -126,10 +126,6 @@ class Facts:
         """Name of a reason → its remedy, for those that have one."""
         return self.reasons(node, f"{whose} remedy")
 
-    def not_real_time(self, node: str) -> bool:
-        """True if the real-time thread of a node that reports has done what it must not, in the last 10 s."""
-        return self.there(node) and "not real-time" in self.reports[node].message
-
     def commanders(self) -> tuple[str, ...]:
         """Nodes that send commands, as the controller reports; without it, those that are registered."""
         reported = self.value(self.controller, "senders")

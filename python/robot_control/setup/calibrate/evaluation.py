@@ -108,20 +108,16 @@ def implausible_distance(measured: float, by_wheels: float) -> str:
     """Why the tape cannot have measured that; empty if it can."""
     if abs(measured - by_wheels) <= WRONG * by_wheels:
         return ""
-    return (
-        f"{measured:g} m where the wheels say {by_wheels:.3f} m: more than {WRONG:.0%} off. Is it in metres, and "
-        "between the two marks?"
-    )
+    what = f"{measured:g} m where the wheels say {by_wheels:.3f} m"
+    return f"{what}: more than {WRONG:.0%} off. Is it in metres, and between the two marks?"
 
 
 def implausible_return(returned: tuple[float, float], side: float) -> str:
     """Why the robot cannot have come to that place; empty if it can."""
     if math.hypot(*returned) <= FAR * side:
         return ""
-    return (
-        f"{math.hypot(*returned):.2f} m from the start after a square of {side:g} m: more than {FAR:.0%} of a side. Is "
-        "it in metres, x ahead and y to the left of the first mark?"
-    )
+    what = f"{math.hypot(*returned):.2f} m from the start after a square of {side:g} m"
+    return f"{what}: more than {FAR:.0%} of a side. Is it in metres, x ahead and y to the left of the first mark?"
 
 
 def wheels_of(robot: Mapping[str, Any]) -> law.Wheels:

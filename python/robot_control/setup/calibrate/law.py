@@ -1,4 +1,4 @@
-"""Computes common radius, ratio of the radii and wheel base from driven distances and squares. It needs numpy alone.
+"""Computes common radius, ratio of the radii and wheel base from driven distances and squares. It needs no ROS.
 
 Wheel odometry uses the nominal radius R and wheel base b. In truth the left and right wheels roll s·c_l·R and s·c_r·R
 over a base of
@@ -13,8 +13,8 @@ Each step of the path of wheel odometry, Δs and Δθ, is then in truth
     Δs'  = s·(c_l·left + c_r·right)/2      Δθ' = s·(c_r·right − c_l·left)/(E_b·b)
 
 `replay` integrates that to the robot's true path. s, E_d and E_b are fitted until this path agrees with the tape. The
-tape measures the length of straight drives, and the place to which squares driven both ways return. Gauss-Newton
-minimises the squares on the exact arcs, so large errors, round corners and an open square do no harm.
+tape measures the length of straight drives, and the place to which squares driven both ways return. Least
+squares on the exact arcs are minimised, so large errors, round corners and an open square do no harm.
 
 Only straight drives separate the common radius from the wheel base, because squares show E_b/s. Without straight drives
 s is 1.
@@ -32,21 +32,18 @@ side, of radius ρ, and from the quarter turn:
 """
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
+from scipy.optimize import least_squares
 
-FloatArray = NDArray[np.float64]
+from robot_control.robot.pose import FloatArray, along_arcs, arcs_between
 
 TAPE = 0.003
 """m, standard deviation of one reading: half a finger's width, on marks on a floor"""
-ITERATIONS = 30
-TOLERANCE = 1e-10
-MAX_STEP = 0.02
-"""A step of Gauss-Newton changes each factor by at most this much. On a side of 4 m even this gives a different path of
-a square."""
+FARTHEST = 0.9
+"""of a factor from 1; no robot has such wheels"""
 
 
 class NotCalibratedError(ValueError):
@@ -102,30 +99,16 @@ def of_axle(path: FloatArray, axle: tuple[float, float]) -> FloatArray:
     return np.column_stack([x + cosine * axle[0] - sine * axle[1], y + sine * axle[0] + cosine * axle[1], yaw])
 
 
-def steps(path: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Δs [m] and Δθ [rad] of the arcs between the poses of the middle of the wheels."""
-    x, y, yaw = np.asarray(path, float).T
-    turn = np.remainder(np.diff(yaw) + np.pi, 2 * np.pi) - np.pi
-    middle = yaw[:-1] + turn / 2
-    chord = np.diff(x) * np.cos(middle) + np.diff(y) * np.sin(middle)
-    return chord / np.sinc(turn / (2 * np.pi)), turn  # numpy's sinc(x) is sin(πx)/(πx)
-
-
 def replay(path: FloatArray, wheels: Wheels, truth: Truth) -> FloatArray:
     """(n, 3): the true path of the middle of the wheels, seen from its start."""
-    advance, turn = steps(of_axle(path, wheels.axle))
+    advance, turn = arcs_between(*of_axle(path, wheels.axle).T)
     left, right = sides(truth.ratio)
     left *= truth.scale
     right *= truth.scale
     half = turn * wheels.wheel_base / 2
     true_left, true_right = left * (advance - half), right * (advance + half)
     true_turn = (true_right - true_left) / (truth.base * wheels.wheel_base)
-    chord = (true_left + true_right) / 2 * np.sinc(true_turn / (2 * np.pi))
-    heading = np.concatenate([[0.0], np.cumsum(true_turn)])
-    middle = heading[:-1] + true_turn / 2
-    x = np.concatenate([[0.0], np.cumsum(chord * np.cos(middle))])
-    y = np.concatenate([[0.0], np.cumsum(chord * np.sin(middle))])
-    return np.column_stack([x, y, heading])
+    return along_arcs((true_left + true_right) / 2, true_turn)
 
 
 def return_errors(squares: Sequence[Square], wheels: Wheels, truth: Truth) -> FloatArray:
@@ -152,45 +135,30 @@ def fit(straights: Sequence[Straight], squares: Sequence[Square], wheels: Wheels
     if not any(free):
         raise NotCalibratedError("nothing was measured: drive a distance, or squares both ways")
     if len(ways) == 1:
-        raise NotCalibratedError(
-            "squares of one direction cannot distinguish unequal wheels from a wrong base (Borenstein & Feng 1996): "
-            "drive them both ways"
-        )
-    index = np.flatnonzero(free)
-    values = np.ones(3)
+        what = "squares of one direction cannot distinguish unequal wheels from a wrong base (Borenstein & Feng 1996)"
+        raise NotCalibratedError(f"{what}: drive them both ways")
 
     def residual(at: FloatArray) -> FloatArray:
-        truth = Truth(*at)
+        truth = Truth(*_spread(at, free))
         driven = [float(np.linalg.norm(replay(drive.path, wheels, truth)[-1, :2])) for drive in straights]
         straight = np.array([drive.measured for drive in straights]) - np.array(driven)
         returned = return_errors(squares, wheels, truth).ravel() if squares else np.empty(0)
         return np.concatenate([straight, returned])
 
-    for _ in range(ITERATIONS):
-        at = residual(values)
-        jacobian = _jacobian(residual, values, index)
-        step = np.clip(np.linalg.lstsq(jacobian, -at, rcond=None)[0], -MAX_STEP, MAX_STEP)
-        values[index] += step
-        if np.abs(step).max() < TOLERANCE:
-            break
-    else:
-        raise NotCalibratedError(
-            "no wheels explain these numbers: look at units (m), signs (x ahead, y left) and directions"
-        )
+    found = least_squares(residual, np.ones(np.count_nonzero(free)), bounds=(1 - FARTHEST, 1 + FARTHEST))
+    if not found.success or found.active_mask.any():
+        why = "no wheels explain these numbers: look at units (m), signs (x ahead, y left) and directions"
+        raise NotCalibratedError(why)
     deviations = np.zeros(3)
-    deviations[index] = _deviations(_jacobian(residual, values, index), residual(values))
-    return Truth(*values, *deviations)
+    deviations[free] = _deviations(found.jac, found.fun)
+    return Truth(*_spread(found.x, free), *deviations)
 
 
-def _jacobian(residual: Callable[[FloatArray], FloatArray], values: FloatArray, index: NDArray[np.intp]) -> FloatArray:
-    """The Jacobian by central differences of 1e-6: the law is smooth, and its second derivatives are of order one."""
-    columns = []
-    for one in index:
-        up, down = values.copy(), values.copy()
-        up[one] += 1e-6
-        down[one] -= 1e-6
-        columns.append((residual(up) - residual(down)) / 2e-6)
-    return np.column_stack(columns)
+def _spread(found: FloatArray, free: list[bool]) -> FloatArray:
+    """All factors: those that were found, and 1."""
+    values = np.ones(3)
+    values[free] = found
+    return values
 
 
 def _deviations(jacobian: FloatArray, residual: FloatArray) -> FloatArray:

@@ -2,27 +2,27 @@
 
 import argparse
 import math
-import sys
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
+from functools import partial
+from typing import Any
 
 import numpy as np
 import rospy
 
-from robot_control import ParameterError, RobotError
 from robot_control._robot_control import describe as describe_robot
 from robot_control.files.files import one_message
 from robot_control.files.output_files import check_outputs
 from robot_control.loop.roles import CONTROLLER, ESTIMATOR
-from robot_control.robot.pose import Pose
+from robot_control.robot.pose import FloatArray, Pose
 from robot_control.robot.running_robot import RefusedError, await_all, master_state, other_senders, running_settings
 from robot_control.robot.topic_sender import Signals, ended_by_signals
 from robot_control.settings.block import Settings
 from robot_control.setup.calibrate import evaluation, law
 from robot_control.setup.calibrate.moves import Move, Pilot, square, straight
 from robot_control.setup.calibrate.robot import CalibratedRobot
-from robot_control.setup.calibrate.terminal_dialog import NoAnswerError, Questions
+from robot_control.setup.calibrate.terminal_dialog import Answer, NoAnswerError, Questions
 from robot_control.setup.excitation_watch import hindrance, ignored, moves, unattended
 
 PERIOD = 0.05
@@ -39,7 +39,11 @@ MARKS = (
     "Mark on the floor where the middle between the wheels stands, and which way the robot points (a string along the "
     "axle, and one ahead). Each run begins where the robot stands: set it back whenever the path is no longer free."
 )
-REFUSALS = (RefusedError, law.NotCalibratedError, NoAnswerError, ParameterError, RobotError, OSError, ValueError)
+REFUSALS = (RefusedError, NoAnswerError, OSError, ValueError)
+
+
+Objection = Callable[[Any], str]
+"""Why an answer is none that can be; empty if it can"""
 
 
 @dataclass
@@ -93,18 +97,18 @@ class Wizard:
     def _straight(self, drive: Drive, number: int) -> law.Straight:
         path, truth = self._driven(drive, f"straight drive {number + 1} of {self.options.repeats}")
         by_wheels = float(np.linalg.norm(law.replay(path, self.wheels, law.Truth())[-1, :2]))
-        if self.options.truth:
-            measured = math.hypot(*truth)
-        elif self.lengths:
-            measured = self.lengths.pop(0)
-        else:
-            measured = self.questions.value(
-                f"m between the two marks, by tape (the wheels say {by_wheels:.3f}):",
-                float,
-                lambda value: evaluation.implausible_distance(value, by_wheels),
-            )
-        self._refuse(evaluation.implausible_distance(measured, by_wheels) if self.options.truth else "")
-        return law.Straight(path, measured)
+        objection = partial(evaluation.implausible_distance, by_wheels=by_wheels)
+        question = f"m between the two marks, by tape (the wheels say {by_wheels:.3f}):"
+        return law.Straight(path, self._answer(math.hypot(*truth), self.lengths, question, float, objection))
+
+    def _answer(
+        self, truth: Answer, given: list[Answer], question: str, read: Callable[[str], Answer], objection: Objection
+    ) -> Answer:
+        """The reading of the tape: the truth of a simulation, the next one that was given, or a person's answer."""
+        if not self.options.truth:
+            return given.pop(0) if given else self.questions.value(question, read, objection)
+        self._refuse(objection(truth))
+        return truth
 
     def _square(self, number: int, *, clockwise: bool) -> law.Square:
         side = self.options.side
@@ -112,20 +116,12 @@ class Wizard:
         direction = "clockwise" if clockwise else "counter-clockwise"
         drive = Drive("square", square(side, clockwise=clockwise), side, left, right)
         path, truth = self._driven(drive, f"square {number + 1} of {self.options.runs}, {direction}")
-        if self.options.truth:
-            measured = truth
-        elif self.places:
-            measured = self.places.pop(0)
-        else:
-            measured = self.questions.value(
-                "x,y: m of the second mark ahead of and to the left of the first:",
-                evaluation.place,
-                lambda value: evaluation.implausible_return(value, side),
-            )
-        self._refuse(evaluation.implausible_return(measured, side) if self.options.truth else "")
+        question = "x,y: m of the second mark ahead of and to the left of the first:"
+        objection = partial(evaluation.implausible_return, side=side)
+        measured = self._answer(truth, self.places, question, evaluation.place, objection)
         return law.Square(path, measured, clockwise)
 
-    def _driven(self, drive: Drive, title: str) -> tuple[law.FloatArray, tuple[float, float]]:
+    def _driven(self, drive: Drive, title: str) -> tuple[FloatArray, tuple[float, float]]:
         """The path by wheel odometry, and the true end of the middle of the wheels (in simulation; else zero)."""
         if not self.options.truth:
             print(MARKS)
@@ -144,9 +140,8 @@ class Wizard:
         if hops.sum() < MIN_DISTANCE:
             raise RefusedError(f"{title}: the wheels have not turned")
         if hops.max() > MAX_HOP:
-            raise RefusedError(
-                f"{title}: wheel_odom jumped by {hops.max():.2f} m: was the odometry or the robot reset?"
-            )
+            why = f"{title}: wheel_odom jumped by {hops.max():.2f} m: was the odometry or the robot reset?"
+            raise RefusedError(why)
         if begin is None:
             return path, (0.0, 0.0)
         end = self._truth() or begin
@@ -214,16 +209,16 @@ class Wizard:
             raise RefusedError(f"{reason}. Nothing is written")
 
 
+@one_message("calibrate.py", *REFUSALS)
 def main() -> None:
     """Entry point of scripts/calibrate.py: exit code 0 with a YAML written, else 1 with one message."""
-    options = evaluation.parse_options(rospy.myargv(sys.argv)[1:])
-    with one_message("calibrate.py", *REFUSALS):
-        check_outputs([options.out])
-        with running_settings("calibrate", ESTIMATOR, *OTHERWISE) as settings:
-            with ended_by_signals() as signals:
-                robot, straights, squares = _measured(settings, options, signals)
-            outcome = evaluation.evaluate(robot, straights, squares, options.side)
-        outcome.deliver(options.out, "then restart every node")
+    options = evaluation.parse_options(rospy.myargv()[1:])
+    check_outputs([options.out])
+    with running_settings("calibrate", ESTIMATOR, *OTHERWISE) as settings:
+        with ended_by_signals() as signals:
+            robot, straights, squares = _measured(settings, options, signals)
+        outcome = evaluation.evaluate(robot, straights, squares, options.side)
+    outcome.deliver(options.out, "then restart every node")
 
 
 OTHERWISE = ("and let the robot stand where it may drive", "as a tape measure does")
@@ -234,10 +229,7 @@ def _measured(
 ) -> tuple[dict[str, object], list[law.Straight], list[law.Square]]:
     described = describe_robot(settings.path, settings.values)
     robot = CalibratedRobot(sends=not options.manual)
-    all_running: Callable[[], bool] = lambda: (  # noqa: E731
-        robot.received > 0 and robot.reports() and (options.manual or robot.has_receiver())
-    )
-    await_all(all_running, signals)
+    await_all(lambda: robot.received > 0 and robot.reports() and (options.manual or robot.has_receiver()), signals)
     senders = () if options.manual else other_senders(master_state())
     if robot.received == 0:
         raise RefusedError(f"no wheel_odom: does {ESTIMATOR} run? Start the robot first")

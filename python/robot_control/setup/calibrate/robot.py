@@ -4,8 +4,7 @@ import numpy as np
 from nav_msgs.msg import Odometry
 
 from robot_control.robot.boundary import Latest, subscribe
-from robot_control.robot.pose import Pose, pose_of
-from robot_control.setup.calibrate.law import FloatArray
+from robot_control.robot.pose import FloatArray, Pose, pose_of
 from robot_control.setup.moving_robot import RunningRobot
 
 

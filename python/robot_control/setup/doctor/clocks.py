@@ -21,11 +21,8 @@ def source(system: System) -> Finding:
         offered = (system.text(name.replace("current", "available")) or "").split()
         better = next((each for each in offered if each not in SLOW), "")
         remedy = f"use {better}" if better else "see why in the kernel's log: dmesg | grep -i clocksource"
-        return warning(
-            f"{current}: a reading takes microseconds",
-            remedy,
-            *([f"echo {better} | sudo tee /{name}"] if better else []),
-        )
+        value = f"{current}: a reading takes microseconds"
+        return warning(value, remedy, *([f"echo {better} | sudo tee /{name}"] if better else []))
     return ok(current)
 
 
@@ -38,11 +35,8 @@ def synchronised(system: System) -> Finding:
     if system.path("run/systemd/timesync/synchronized").exists() or running:
         return ok("by " + (", ".join(running) or "systemd-timesyncd"))
     if remote:
-        return warning(
-            f"no service keeps the clock, and the master is on {remote}",
-            "synchronise both machines",
-            "sudo apt-get install chrony",
-        )
+        value = f"no service keeps the clock, and the master is on {remote}"
+        return warning(value, "synchronise both machines", "sudo apt-get install chrony")
     if system.kind:
         return unseen(system.hidden("run/systemd/timesync"))
     return note("no service keeps the clock", "chrony, as soon as a second machine takes part")

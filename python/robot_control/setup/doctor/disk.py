@@ -53,11 +53,8 @@ def log_rights(system: System) -> Finding:
     if not system.live:
         return unseen("not visible in a recorded folder")
     if Path(folder).exists() and not os.access(folder, os.W_OK | os.X_OK):
-        return fault(
-            f"{folder} is not writable",
-            "correct its owner, or set ROS_HOME",
-            f'sudo chown -R "$USER" {shlex.quote(folder)}',
-        )
+        command = f'sudo chown -R "$USER" {shlex.quote(folder)}'
+        return fault(f"{folder} is not writable", "correct its owner, or set ROS_HOME", command)
     return ok(folder)
 
 
@@ -82,19 +79,15 @@ def _size(path: Path) -> int:
 def shared_memory(system: System) -> Finding:
     """Shared memory of robots, and the space that is left for it."""
     if not system.path("dev/shm").is_dir():
-        return fault(
-            "/dev/shm is absent", "mount a tmpfs there: without it no node starts", "sudo mount -t tmpfs tmpfs /dev/shm"
-        )
+        remedy = "mount a tmpfs there: without it no node starts"
+        return fault("/dev/shm is absent", remedy, "sudo mount -t tmpfs tmpfs /dev/shm")
     size = sum(map(_size, map(system.path, system.names("dev/shm/robot_control.*"))))
     running = any(Path(arguments[0]).name in NODES for _, arguments in system.processes())
     free = _free(system, "/dev/shm")
     value = f"{size / 1e6:.0f} MB of robots" + ("" if free is None else f", {free / 1e6:.0f} MB free")
     if free is not None and free < SHARED_NEEDED:
-        return fault(
-            value,
-            "remove what is left, or enlarge it (docker run --shm-size=256m)",
-            "sudo mount -o remount,size=256m /dev/shm",
-        )
+        remedy = "remove what is left, or enlarge it (docker run --shm-size=256m)"
+        return fault(value, remedy, "sudo mount -o remount,size=256m /dev/shm")
     if size > SHARED_LEFT and not running:
         return warning(f"{value}, and no node runs", "remove what is left behind", "rm /dev/shm/robot_control.*")
     if size > SHARED_LEFT:

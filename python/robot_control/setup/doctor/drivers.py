@@ -1,11 +1,10 @@
 """Checks of the interfaces to motor drives: CAN, serial ports, USB."""
 
-import dataclasses
 import json
 import stat
 from typing import Any
 
-from robot_control.setup.doctor.finding import Check, Finding, Verdict, fault, ok, warning
+from robot_control.setup.doctor.finding import Check, Finding, Verdict, fault, note, ok, warning
 from robot_control.setup.doctor.processor import writable
 from robot_control.setup.doctor.system import System
 
@@ -61,9 +60,8 @@ def _can_problem(system: System, interface: str) -> Finding | None:
         return found
     queue = system.number(f"sys/class/net/{interface}/tx_queue_len")
     if details.get("info_kind") == "can" and queue is not None and queue < MIN_QUEUE:
-        return warning(
-            f"{interface}: a queue of {queue} frames", "lengthen it", f"sudo ip link set {interface} txqueuelen 128"
-        )
+        command = f"sudo ip link set {interface} txqueuelen 128"
+        return warning(f"{interface}: a queue of {queue} frames", "lengthen it", command)
     return None
 
 
@@ -103,10 +101,10 @@ def can(system: System) -> Finding:
     return worst if used else ok(f"{worst.value}; not used (robot.driver: {system.robot.get('driver')})")
 
 
-def _if_used(system: System, finding: Finding) -> Finding:
+def _not_ready(system: System, value: str, remedy: str, *commands: str) -> Finding:
     """The simulation uses no adapter, so one that is not ready is no more than a note."""
     simulated = system.robot.get("driver", "mujoco") == "mujoco"
-    return dataclasses.replace(finding, verdict=Verdict.NOTE) if simulated else finding
+    return (note if simulated else warning)(value, remedy, *commands)
 
 
 def serial_latency(system: System) -> Finding:
@@ -117,13 +115,11 @@ def serial_latency(system: System) -> Finding:
         return ok("no serial adapter has one")
     if not slow:
         return ok(f"{MAX_LATENCY} ms")
-    return _if_used(
+    return _not_ready(
         system,
-        warning(
-            ", ".join(f"{name.split('/')[5]} {value} ms" for name, value in slow),
-            "shorten it, for good by a udev rule with ATTR{latency_timer}",
-            *(f"echo {MAX_LATENCY} | sudo tee {name}" for name, _ in slow),
-        ),
+        ", ".join(f"{name.split('/')[5]} {value} ms" for name, value in slow),
+        "shorten it, for good by a udev rule with ATTR{latency_timer}",
+        *(f"echo {MAX_LATENCY} | sudo tee {name}" for name, _ in slow),
     )
 
 
@@ -146,13 +142,11 @@ def autosuspend(system: System) -> Finding:
     asleep = [device for device in devices if system.text(f"{device}/power/control") == "auto"]
     if not asleep:
         return ok("no USB adapter is suspended" if devices else "no USB adapter with a serial port or CAN")
-    return _if_used(
+    return _not_ready(
         system,
-        warning(
-            "may be suspended: " + ", ".join(device.rsplit("/", 1)[1] for device in asleep),
-            "keep it awake, for good by a udev rule with ATTR{power/control}",
-            *(f"echo on | sudo tee {device}/power/control" for device in asleep),
-        ),
+        "may be suspended: " + ", ".join(device.rsplit("/", 1)[1] for device in asleep),
+        "keep it awake, for good by a udev rule with ATTR{power/control}",
+        *(f"echo on | sudo tee {device}/power/control" for device in asleep),
     )
 
 
@@ -164,13 +158,11 @@ def device_files(system: System) -> Finding:
     if not closed:
         return ok(", ".join(ports) or "no serial port")
     mode = stat.filemode(system.path(closed[0]).stat().st_mode)
-    return _if_used(
+    return _not_ready(
         system,
-        warning(
-            f"{closed[0]} is not yours ({mode})",
-            "join its group, then log in again",
-            'sudo usermod -aG dialout "$USER"',
-        ),
+        f"{closed[0]} is not yours ({mode})",
+        "join its group, then log in again",
+        'sudo usermod -aG dialout "$USER"',
     )
 
 

@@ -1,10 +1,8 @@
 """Checks of the ROS graph, by the master's own interface; it needs no rospy."""
 
 import functools
-import http.client
 import shlex
 import socket
-import xmlrpc.client
 from collections import Counter
 from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
@@ -12,6 +10,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from robot_control.robot.timed_proxy import NO_ANSWER, timed_proxy
 from robot_control.setup.doctor.finding import Check, Finding, fault, note, ok, unseen, warning
 from robot_control.setup.doctor.programs import NODES, SET_AT_LAUNCH
 from robot_control.setup.doctor.remote_master import address, remote_host
@@ -23,13 +22,6 @@ BLOCKS = ("robot", *sorted(NODES))
 """Parameters of the nodes, which outlive them in the master"""
 THREADS = 16
 """Nodes that are asked at a time"""
-
-
-class _Transport(xmlrpc.client.Transport):
-    def make_connection(self, host: tuple[str, dict[str, str]] | str) -> http.client.HTTPConnection:
-        connection = super().make_connection(host)
-        connection.timeout = TIMEOUT
-        return connection
 
 
 @dataclass(frozen=True)
@@ -46,10 +38,8 @@ class Graph:
 def _call(address_: str, method: str, *arguments: object) -> Any:  # noqa: ANN401 (of the method)
     """The third part of an answer; None if there is none."""
     try:
-        proxy = xmlrpc.client.ServerProxy(address_, transport=_Transport())
-        answer: Any = getattr(proxy, method)(*arguments)
-        code, _, value = answer
-    except (OSError, xmlrpc.client.Error, http.client.HTTPException, ValueError, TypeError):
+        code, _, value = getattr(timed_proxy(address_, TIMEOUT), method)(*arguments)
+    except (*NO_ANSWER, TypeError):
         return None
     return value if code == 1 else None
 
@@ -100,9 +90,8 @@ def master(system: System) -> Finding:
     except OSError:
         listening = False
     if listening:
-        return fault(
-            f"{value}, although something listens there", "end what listens there: ss -tlnp, or restart roscore"
-        )
+        remedy = "end what listens there: ss -tlnp, or restart roscore"
+        return fault(f"{value}, although something listens there", remedy)
     if remote_host(system):
         return fault(value, f"start roscore on {found[0]}, or correct ROS_MASTER_URI; a firewall may stand between")
     return note(value, "start the robot, which also starts a master", "roslaunch robot_control sim.launch")
@@ -129,12 +118,9 @@ def simulated_time(known: Graph) -> Finding:
     simulated = known.parameters.get("use_sim_time", False)
     lockstep = _block(known, "robot").get("clock") == "lockstep"
     if simulated and not known.published.get("/clock"):
-        return fault(
-            "/use_sim_time is true, and no node publishes /clock: time stands still",
-            "remove it, unless a simulation in lockstep is about to start",
-            "rosparam set /use_sim_time false",
-            "rosparam delete /robot/clock",
-        )
+        value = "/use_sim_time is true, and no node publishes /clock: time stands still"
+        remedy = "remove it, unless a simulation in lockstep is about to start"
+        return fault(value, remedy, "rosparam set /use_sim_time false", "rosparam delete /robot/clock")
     if lockstep and not simulated:
         return fault("/robot/clock is lockstep without /use_sim_time", "remove it", "rosparam delete /robot/clock")
     return ok("simulated" if simulated else "wall clock")
@@ -155,11 +141,8 @@ def left_over(known: Graph) -> Finding:
     if not left:
         return ok("none")
     shown = ", ".join(left[:4]) + (f" and {len(left) - 4} more" if len(left) > 4 else "")
-    return warning(
-        shown,
-        "remove what you did not set for the next start",
-        *(f"rosparam delete {shlex.quote(name)}" for name in left),
-    )
+    remedy = "remove what you did not set for the next start"
+    return warning(shown, remedy, *(f"rosparam delete {shlex.quote(name)}" for name in left))
 
 
 def senders(known: Graph) -> Finding:
@@ -206,11 +189,9 @@ def other_master(system: System) -> Finding:
         return ok("no node of a robot runs here")
     ports = {uri.rsplit(":", 1)[-1] for uri in masters}
     if str(found[1]) not in ports:
-        return warning(
-            f"the robot runs at {', '.join(masters)}, this terminal asks port {found[1]}",
-            "use the robot's master in this terminal",
-            f"export ROS_MASTER_URI={shlex.quote(masters[0])}",
-        )
+        value = f"the robot runs at {', '.join(masters)}, this terminal asks port {found[1]}"
+        command = f"export ROS_MASTER_URI={shlex.quote(masters[0])}"
+        return warning(value, "use the robot's master in this terminal", command)
     return ok(", ".join(masters))
 
 

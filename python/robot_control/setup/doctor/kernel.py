@@ -16,16 +16,12 @@ def preemption(system: System) -> Finding:
     if "PREEMPT_RT" in version or system.number("sys/kernel/realtime") == 1:
         return ok("PREEMPT_RT")
     if (chosen and chosen[1] == "none") or "PREEMPT" not in version:
-        return warning(
-            "no preemption" + (" (preempt=none in the boot arguments)" if chosen else ""),
-            "remove preempt=none from GRUB_CMDLINE_LINUX in /etc/default/grub, or install PREEMPT_RT",
-            "sudo apt-get install linux-image-rt-amd64",
-        )
+        value = "no preemption" + (" (preempt=none in the boot arguments)" if chosen else "")
+        remedy = "remove preempt=none from GRUB_CMDLINE_LINUX in /etc/default/grub, or install PREEMPT_RT"
+        return warning(value, remedy, "sudo apt-get install linux-image-rt-amd64")
     model = chosen[1] if chosen else "the kernel's default"
-    return note(
-        f"PREEMPT_DYNAMIC, {model}" if "PREEMPT_DYNAMIC" in version else "PREEMPT",
-        "Debian's linux-image-rt-amd64, if a bare machine misses deadlines (docs/realtime.md)",
-    )
+    remedy = "Debian's linux-image-rt-amd64, if a bare machine misses deadlines (docs/realtime.md)"
+    return note(f"PREEMPT_DYNAMIC, {model}" if "PREEMPT_DYNAMIC" in version else "PREEMPT", remedy)
 
 
 def throttling(system: System) -> Finding:
@@ -93,9 +89,8 @@ def timers(system: System) -> Finding:
 
 def pressure(system: System) -> Finding:
     """The kernel's own figure for the time that runnable threads waited for a processor."""
-    found = system.seen(
-        re.search(r"^some avg10=([\d.]+)", system.text("proc/pressure/cpu") or "", re.MULTILINE), "proc/pressure/cpu"
-    )
+    shown = re.search(r"^some avg10=([\d.]+)", system.text("proc/pressure/cpu") or "", re.MULTILINE)
+    found = system.seen(shown, "proc/pressure/cpu")
     share = float(found[1])
     value = f"threads wait for a processor {share:.0f} % of the time (last 10 s)"
     return ok(value) if share < 50 else note(value, "end other work, or use a faster machine")

@@ -65,11 +65,8 @@ def rivals(system: System) -> Finding:
     if not above:
         return ok(f"no other program runs at priority {LOWEST_PRIORITY} or above")
     named = ", ".join(f"{task.name} ({task.process}) {task.priority}" for task in above[:MAX_SHOWN])
-    return warning(
-        named,
-        f"give it a priority below {LOWEST_PRIORITY}",
-        *(f"sudo chrt -f -p 40 {task.thread}" for task in above[:MAX_SHOWN]),
-    )
+    remedy = f"give it a priority below {LOWEST_PRIORITY}"
+    return warning(named, remedy, *(f"sudo chrt -f -p 40 {task.thread}" for task in above[:MAX_SHOWN]))
 
 
 def steal(system: System) -> Finding:

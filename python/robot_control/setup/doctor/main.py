@@ -2,40 +2,22 @@
 
 import argparse
 import contextlib
+import importlib
 import sys
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
 from robot_control.installed_files import share_file
-from robot_control.setup.doctor import (
-    clocks,
-    disk,
-    drivers,
-    environment,
-    graph,
-    interrupts,
-    kernel,
-    load,
-    memory,
-    processor,
-)
 from robot_control.setup.doctor.finding import Check, Finding, unseen
 from robot_control.setup.doctor.report import Row, as_json, commands, exit_code, lines
 from robot_control.setup.doctor.system import DEFAULTS, HiddenError, System
 from robot_control.setup.doctor.tasks import first_sample
 
+FILES = ("kernel", "memory", "processor", "load", "interrupts", "clocks", "drivers", "terminal", "graph", "disk")
+"""of this folder, in the order of the report"""
 GROUPS: dict[str, Sequence[Check]] = {
-    "kernel": kernel.CHECKS,
-    "memory": memory.CHECKS,
-    "processor": processor.CHECKS,
-    "load": load.CHECKS,
-    "interrupts": interrupts.CHECKS,
-    "clocks": clocks.CHECKS,
-    "drivers": drivers.CHECKS,
-    "terminal": environment.CHECKS,
-    "graph": graph.CHECKS,
-    "disk": disk.CHECKS,
+    name: importlib.import_module(f"robot_control.setup.doctor.{name}").CHECKS for name in FILES
 }
 
 
@@ -57,12 +39,9 @@ def examine(system: System) -> list[Row]:
     """All findings; the load is measured over the time of the other checks."""
     with contextlib.suppress(*UNREADABLE):
         first_sample(system)
-    late = "load"
-    order = [*(name for name in GROUPS if name != late), late]
-    found = {
-        name: [Row(name, check.name, check.why, _finding(check, system)) for check in GROUPS[name]] for name in order
-    }
-    return [row for name in GROUPS for row in found[name]]
+    order = sorted(GROUPS, key=lambda name: name == "load")
+    rows = [Row(name, each.name, each.why, _finding(each, system)) for name in order for each in GROUPS[name]]
+    return sorted(rows, key=lambda row: FILES.index(row.group))
 
 
 def _robot_block(given: str | None) -> dict[str, Any]:
@@ -97,12 +76,8 @@ def parse(arguments: Sequence[str]) -> argparse.Namespace:
     parser.add_argument("--json", action="store_true", help="the findings as JSON")
     parser.add_argument("--fix", action="store_true", help="print the commands of the remedies, and run none")
     parser.add_argument("--params", metavar="FILE", help="your parameters: robot.core, realtime, driver … are read")
-    parser.add_argument(
-        "--measure",
-        metavar="N",
-        type=int,
-        help="also N pairs of the nodes beside cyclictest, idle and under load (stress-ng): about N × 30 s",
-    )
+    meaning = "also N pairs of the nodes beside cyclictest, idle and under load (stress-ng): about N × 30 s"
+    parser.add_argument("--measure", metavar="N", type=int, help=meaning)
     parser.add_argument("--root", metavar="DIR", default="/", help="read /proc, /sys, /etc and /dev from this folder")
     return parser.parse_args([each for each in arguments if ":=" not in each])
 

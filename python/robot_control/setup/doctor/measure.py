@@ -5,10 +5,10 @@ idle states. Pairs follow each other in alternating order, so that a slow change
 """
 
 import contextlib
+import math
 import os
 import re
 import shutil
-import signal
 import socket
 import subprocess
 import sys
@@ -16,6 +16,7 @@ import tempfile
 import time
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from itertools import accumulate
 from pathlib import Path
 from statistics import median
 
@@ -25,6 +26,7 @@ from robot_control.setup.doctor.finding import Finding, note, ok, unseen, warnin
 from robot_control.setup.doctor.memory import MAX_PRIORITY
 from robot_control.setup.doctor.report import Row
 from robot_control.setup.doctor.system import CAP_SYS_NICE, System
+from robot_control.ui.child import Child
 
 SECONDS = 5
 """s of one run"""
@@ -61,10 +63,8 @@ def require_programs() -> None:
     missing = [name for name in PROGRAMS if shutil.which(name, path=f"{os.environ['PATH']}:/usr/sbin") is None]
     if missing:
         packages = " ".join(PROGRAMS[name] for name in missing)
-        raise MeasureError(
-            f"--measure needs {', '.join(missing)}: scripts/setup --realtime, or apt-get install {packages}; "
-            "source install/setup.bash for roslaunch"
-        )
+        what = f"--measure needs {', '.join(missing)}: scripts/setup --realtime, or apt-get install {packages}"
+        raise MeasureError(f"{what}; source install/setup.bash for roslaunch")
 
 
 def measure(system: System, pairs: int) -> list[Row]:
@@ -88,10 +88,8 @@ def judge(pairs: Sequence[Pair], period: float) -> Finding:
     ratios = sorted(pair.nodes / pair.cyclictest for pair in pairs)
     lowest, highest = interval(ratios)
     own, reference = (median(values) for values in zip(*((p.nodes, p.cyclictest) for p in pairs), strict=True))
-    value = (
-        f"p99 {own:.0f} µs, cyclictest {reference:.0f} µs, ratio {median(ratios):.2f} "
-        f"({lowest:.2f} … {highest:.2f}, {len(pairs)} pairs of {SECONDS} s)"
-    )
+    what = f"p99 {own:.0f} µs, cyclictest {reference:.0f} µs, ratio {median(ratios):.2f}"
+    value = f"{what} ({lowest:.2f} … {highest:.2f}, {len(pairs)} pairs of {SECONDS} s)"
     if reference > MAX_SHARE * period:
         return warning(value, "the machine itself is late: see the other findings; docs/realtime.md has the steps")
     if lowest > MAX_RATIO and len(pairs) < MIN_PAIRS:
@@ -108,22 +106,16 @@ def judge(pairs: Sequence[Pair], period: float) -> Finding:
 
 def interval(ordered: Sequence[float]) -> tuple[float, float]:
     """Bounds of the median with at least 95 % confidence by order statistics; the range of fewer than six values."""
-    count, tail, below = len(ordered), 0.0, 0
-    weight = 0.5**count
-    while count >= MIN_PAIRS and tail + weight <= 0.025:
-        tail += weight
-        weight *= (count - below) / (below + 1)
-        below += 1
-    low = max(below - 1, 0)
+    count = len(ordered)
+    tails = accumulate(math.comb(count, number) / 2**count for number in range(count))
+    low = max(sum(tail <= 0.025 for tail in tails) - 1, 0)
     return ordered[low], ordered[count - 1 - low]
 
 
 def _pair(system: System, *, loaded: bool, nodes_first: bool) -> Pair:
-    if nodes_first:
-        nodes = _nodes(system, loaded=loaded)
-        return Pair(nodes, _cyclictest(system, loaded=loaded))
-    reference = _cyclictest(system, loaded=loaded)
-    return Pair(_nodes(system, loaded=loaded), reference)
+    first, second = (_nodes, _cyclictest) if nodes_first else (_cyclictest, _nodes)
+    latencies = first(system, loaded=loaded), second(system, loaded=loaded)
+    return Pair(*latencies[:: 1 if nodes_first else -1])
 
 
 def _cyclictest(system: System, *, loaded: bool) -> float:
@@ -171,30 +163,28 @@ def _nodes(system: System, *, loaded: bool) -> float:
         command = ["roslaunch", "-p", port, "robot_control", "sim.launch", "telemetry:=true", "black_box:=false"]
         command += [f"params:={folder}/measure.yaml", f"out:={folder}", f"cycles:={(START + SECONDS) * rate:.0f}"]
         values = {**os.environ, "ROS_MASTER_URI": f"http://127.0.0.1:{port}", "ROS_HOME": name}
-        with (folder / "launch.log").open("w") as output:
-            launch = subprocess.Popen(command, stdout=output, stderr=output, env=values, start_new_session=True)
+        launch = Child(command, folder / "launch.log", values)
         try:
             _run_out(system, launch, folder, loaded=loaded)
             log = read_log(folder / "run.bag")
-        except (OSError, LogError, subprocess.TimeoutExpired) as error:
-            said = (folder / "launch.log").read_text(errors="replace")[-500:]
+        except (OSError, LogError, TimeoutError) as error:
+            said = launch.output.read_text(errors="replace")[-500:]
             raise MeasureError(f"the nodes left no log: {error}; they said: {said}") from None
         finally:
-            if launch.poll() is None:
-                os.killpg(launch.pid, signal.SIGKILL)
-                launch.wait()
+            launch.end()
         return loop_timing({name: values[log["cycle"] >= START * rate] for name, values in log.items()}).wake_up.p99
 
 
-def _run_out(system: System, launch: subprocess.Popen[bytes], folder: Path, *, loaded: bool) -> None:
-    """Waits for the end of the nodes; the load begins with their log, so that it does not delay their start."""
+def _run_out(system: System, launch: Child, folder: Path, *, loaded: bool) -> None:
+    """Waits for the end of the nodes; the load begins with their log, so that it does not delay their start. Raises
+    TimeoutError.
+    """
     end = time.monotonic() + START_LIMIT
-    while not any(folder.glob("run*.bag*")) and launch.poll() is None:
-        if time.monotonic() > end:
-            raise subprocess.TimeoutExpired("roslaunch", START_LIMIT)
+    while not any(folder.glob("run*.bag*")) and launch.running and time.monotonic() < end:
         time.sleep(0.1)
     with _stressed(system, loaded=loaded):
-        launch.wait(timeout=START + SECONDS + START_LIMIT)
+        if time.monotonic() > end or not launch.wait(START + SECONDS + START_LIMIT):
+            raise TimeoutError("roslaunch does not end")
 
 
 @contextlib.contextmanager

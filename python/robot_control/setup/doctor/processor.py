@@ -39,10 +39,8 @@ def granted(system: System) -> Finding:
     if system.core in available and (not online or system.core in online):
         return ok(f"core {system.core}")
     listed = ", ".join(map(str, sorted(available & online if online else available)))
-    return fault(
-        f"robot.core is {system.core}, available are {listed}",
-        "set robot.core to one of these, or extend the processor set of the container or service",
-    )
+    remedy = "set robot.core to one of these, or extend the processor set of the container or service"
+    return fault(f"robot.core is {system.core}, available are {listed}", remedy)
 
 
 def governor(system: System) -> Finding:
@@ -71,13 +69,10 @@ def idle_states(system: System) -> Finding:
     if wanted is not None and not device.exists():
         return warning(f"robot.cpu_dma_latency is {wanted}, and /dev/cpu_dma_latency is absent", NO_DEVICE)
     if wanted is not None and not writable(system, "dev/cpu_dma_latency"):
-        return warning(
-            f"robot.cpu_dma_latency is {wanted}, and this user may not open /dev/cpu_dma_latency", GRANT, INSTALL
-        )
-    states = system.seen(
-        [name.rsplit("/", 1)[0] for name in system.names(f"{CPU}/cpu{_core(system)}/cpuidle/state*/latency")] or None,
-        f"{CPU}/cpu{_core(system)}/cpuidle",
-    )
+        shown = f"robot.cpu_dma_latency is {wanted}, and this user may not open /dev/cpu_dma_latency"
+        return warning(shown, GRANT, INSTALL)
+    what = [name.rsplit("/", 1)[0] for name in system.names(f"{CPU}/cpu{_core(system)}/cpuidle/state*/latency")] or None
+    states = system.seen(what, f"{CPU}/cpu{_core(system)}/cpuidle")
     enabled = [state for state in states if system.number(f"{state}/disable") != 1]
     deepest = max(enabled or states[:1], key=lambda state: system.number(f"{state}/latency") or 0)
     latency = system.number(f"{deepest}/latency") or 0
@@ -141,20 +136,16 @@ def isolation(system: System) -> Finding:
 
 def siblings(system: System) -> Finding:
     """Two threads of one core share its arithmetic units and caches."""
-    listed = system.seen(
-        system.text(f"{CPU}/cpu{_core(system)}/topology/thread_siblings_list"), f"{CPU}/cpu{_core(system)}/topology"
-    )
+    shown = system.text(f"{CPU}/cpu{_core(system)}/topology/thread_siblings_list")
+    listed = system.seen(shown, f"{CPU}/cpu{_core(system)}/topology")
     others = cores_of(listed) - {_core(system)}
     if not others:
         return ok("the loop's core is no half of another")
     isolated = cores_of(system.text(f"{CPU}/isolated"))
     value = f"core {_core(system)} shares its units with {', '.join(map(str, sorted(others)))}"
     if _core(system) in isolated and not others <= isolated:
-        return warning(
-            f"{value}, which is not isolated",
-            "isolate it, too, or switch SMT off",
-            f"echo off | sudo tee /{CPU}/smt/control",
-        )
+        command = f"echo off | sudo tee /{CPU}/smt/control"
+        return warning(f"{value}, which is not isolated", "isolate it, too, or switch SMT off", command)
     return note(value, "keep it free of work, or switch SMT off") if not system.kind else ok(value)
 
 

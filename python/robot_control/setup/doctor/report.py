@@ -2,7 +2,7 @@
 
 import json
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 
 from robot_control.setup.doctor.finding import Finding, Verdict
 
@@ -38,15 +38,9 @@ def lines(rows: Sequence[Row]) -> list[str]:
 def as_json(rows: Sequence[Row]) -> str:
     """The same for programs."""
     checks = [
-        {
-            "group": row.group,
-            "name": row.name,
-            "verdict": row.finding.verdict.value.lower(),
-            "value": row.finding.value,
-            "why": row.why,
-            "remedy": row.finding.remedy,
-            "commands": list(row.finding.commands),
-        }
+        {"group": row.group, "name": row.name, "why": row.why}
+        | asdict(row.finding)
+        | {"verdict": row.finding.verdict.value.lower()}
         for row in rows
     ]
     return json.dumps({"exit_code": exit_code(rows), "checks": checks}, indent=2, ensure_ascii=False)

@@ -53,17 +53,10 @@ def _task(system: System, name: str) -> Task | None:
     fields = rest.split()  # the first one is field 3, state
     if len(fields) < 39:
         return None
-    parts = name.split("/")
-    return Task(
-        process=int(parts[2]),
-        thread=int(parts[4]),
-        name=begin.partition("(")[2],
-        parent=int(fields[1]),
-        ticks=int(fields[11]) + int(fields[12]),
-        start=int(fields[19]),
-        core=int(fields[36]),
-        priority=int(fields[37]),
-    )
+    _, _, process, _, thread, _ = name.split("/")
+    parent, user, system_time, start, core, priority = (int(fields[at]) for at in (1, 11, 12, 19, 36, 37))
+    called = begin.partition("(")[2]
+    return Task(int(process), int(thread), called, parent, user + system_time, start, core, priority)
 
 
 def sample(system: System) -> Sample:

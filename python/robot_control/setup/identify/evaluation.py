@@ -3,7 +3,6 @@
 import argparse
 import math
 from pathlib import Path
-from typing import Any
 
 from robot_control._robot_control import controller_parameters, derived_wheel_loops, wheel_loops
 from robot_control._robot_control import describe as describe_robot
@@ -58,7 +57,7 @@ def plan(settings: Settings, options: argparse.Namespace) -> Excitation:
     return plan_excitation(
         AxisLimits(**limits["linear"]),
         AxisLimits(**limits["angular"]),
-        wheel_base=base_of(_robot(settings)).effective_wheel_base,
+        wheel_base=base_of(describe_robot(settings.path, settings.values)).effective_wheel_base,
         space=options.space,
         max_speed=min(options.max_speed, slowest_rim),
         repeats=options.repeats,
@@ -72,7 +71,7 @@ def evaluate(log: Log, settings: Settings, mass: float | None, source: str) -> O
         UnfitError, NoGainsError, ValueError: what the log or the mass does not allow.
         ParameterError, RobotError: of the parameters.
     """
-    robot = _robot(settings)
+    robot = describe_robot(settings.path, settings.values)
     base = base_of(robot)
     now = wheel_loops(settings.path, settings.values)
     found = identify(log, base)
@@ -90,8 +89,3 @@ def evaluate(log: Log, settings: Settings, mass: float | None, source: str) -> O
         *(f"! {sentence}" for sentence in said),
     ]
     return Outcome(table, said, to_yaml(head, {CONTROLLER: proposal.overlay()}))
-
-
-def _robot(settings: Settings) -> dict[str, Any]:
-    robot: dict[str, Any] = describe_robot(settings.path, settings.values)
-    return robot

@@ -15,18 +15,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from robot_control.data.run_log import FloatArray, Log
+from robot_control.setup.identify import wheel_law as law
 from robot_control.setup.identify.rows import UnfitError, fit_rows
-from robot_control.setup.identify.wheel_law import (
-    FILTERS,
-    SIDES,
-    TERMS,
-    WINDOW,
-    Base,
-    Regression,
-    Signals,
-    regression,
-    signals_of,
-)
 
 BLOCK = 0.5
 """s; three times the filter"""
@@ -95,7 +85,7 @@ class Identification:
         return Estimate(float(np.mean([value.value for value in values])), float(error))
 
 
-def identify(log: Log, base: Base) -> Identification:
+def identify(log: Log, base: law.Base) -> Identification:
     """Fits `log` (columns of run.bag or ClosedLoop.run).
 
     Raises:
@@ -103,31 +93,29 @@ def identify(log: Log, base: Base) -> Identification:
     """
     stretches, period = fit_rows(log, [wheel.joint for wheel in base.wheels])
     lag = _effort_lag(log, stretches, base)
-    signals = [signals_of(log, rows, base, lag) for rows in stretches]
-    width = max(2, round(WINDOW / period))
-    signals = [one for one in signals if len(one.angle) > FILTERS * width + 2 * MAX_DELAY]
+    signals = [law.signals_of(log, rows, base, lag) for rows in stretches]
+    width = max(2, round(law.WINDOW / period))
+    signals = [one for one in signals if len(one.angle) > law.FILTERS * width + 2 * MAX_DELAY]
     _refuse_short(signals, base, period, width)
     shift = _motion_lag(signals, base, period, width)
-    parts = [regression(one, base, period, width, max(0, round(shift.value))) for one in signals]
+    parts = [law.regression(one, base, period, width, max(0, round(shift.value))) for one in signals]
     delay = Estimate(max(0.0, lag - BUS_LAG + max(0.0, shift.value)), shift.error)
-    left, right = (_fit_side(base, i, parts, period) for i in range(len(SIDES)))
+    left, right = (_fit_side(base, i, parts, period) for i in range(len(law.SIDES)))
     return Identification((left, right), delay, _seconds(parts, period), period)
 
 
-def _seconds(parts: Sequence[Regression], period: float) -> float:
+def _seconds(parts: Sequence[law.Regression], period: float) -> float:
     return sum(len(part.torque) for part in parts) * period
 
 
-def _refuse_short(signals: Sequence[Signals], base: Base, period: float, width: int) -> None:
-    seconds = _seconds([regression(one, base, period, width, 0) for one in signals], period)
+def _refuse_short(signals: Sequence[law.Signals], base: law.Base, period: float, width: int) -> None:
+    seconds = _seconds([law.regression(one, base, period, width, 0) for one in signals], period)
     if seconds < MIN_SECONDS:
-        raise UnfitError(
-            f"the wheels turn for {seconds:.1f} s in which nothing interferes, of {MIN_SECONDS:g} s needed: "
-            "drive longer and faster, give it more space"
-        )
+        what = f"the wheels turn for {seconds:.1f} s in which nothing interferes, of {MIN_SECONDS:g} s needed"
+        raise UnfitError(f"{what}: drive longer and faster, give it more space")
 
 
-def _effort_lag(log: Log, stretches: Sequence[slice], base: Base) -> int:
+def _effort_lag(log: Log, stretches: Sequence[slice], base: law.Base) -> int:
     """Cycles from a commanded torque to the sample that shows it."""
     lags = np.arange(MAX_DELAY + BUS_LAG + 1)
     misses = np.zeros(len(lags))
@@ -149,7 +137,7 @@ class _Solution:
     residual: FloatArray  # (rows,), N·m
 
 
-def _solve(parts: Sequence[Regression], side: int, block: int) -> _Solution:
+def _solve(parts: Sequence[law.Regression], side: int, block: int) -> _Solution:
     """Instrumental variables for one side; `block` rows. A term that is not in the log has value and error NaN.
 
     Cruising and accelerating rows are weighted by the inverse of their own residuals' variance. With equal weights the
@@ -176,17 +164,17 @@ def _solve(parts: Sequence[Regression], side: int, block: int) -> _Solution:
     sums = np.add.reduceat(scores, np.arange(0, len(scores), block), axis=0)
     variances = np.diag(inverse @ (sums.T @ sums) @ inverse.T)
     errors = np.sqrt(np.where(variances >= 0, variances, np.nan))  # rounding may be negative
-    values, spread = np.full(len(TERMS), np.nan), np.full(len(TERMS), np.nan)
+    values, spread = np.full(len(law.TERMS), np.nan), np.full(len(law.TERMS), np.nan)
     values[excited], spread[excited] = theta / scale[excited], errors / scale[excited]
     return _Solution(values, spread, residual)
 
 
-def _motion_lag(signals: Sequence[Signals], base: Base, period: float, width: int) -> Estimate:
+def _motion_lag(signals: Sequence[law.Signals], base: law.Base, period: float, width: int) -> Estimate:
     """Cycles from measured torque to motion: the shift with the smallest residual, interpolated by a parabola."""
 
     def left_over(shift: int) -> float:
-        parts = [regression(one, base, period, width, shift) for one in signals]
-        residuals = [_solve(parts, i, round(BLOCK / period)).residual for i in range(len(SIDES))]
+        parts = [law.regression(one, base, period, width, shift) for one in signals]
+        residuals = [_solve(parts, i, round(BLOCK / period)).residual for i in range(len(law.SIDES))]
         return float(np.mean([np.mean(residual**2) for residual in residuals]))
 
     left = {shift: left_over(shift) for shift in (-2, -1, 0, 1, 2)}
@@ -197,22 +185,26 @@ def _motion_lag(signals: Sequence[Signals], base: Base, period: float, width: in
         left[best + 1] = left_over(best + 1)
     low, middle, high = left[best - 1], left[best], left[best + 1]
     bend = low - 2 * middle + high
-    rows = sum(len(one.angle) for one in signals) * len(SIDES) / (FILTERS * width)  # number of independent values
+    rows = (
+        sum(len(one.angle) for one in signals) * len(law.SIDES) / (law.FILTERS * width)
+    )  # number of independent values
     if not bend > 0:
         return Estimate(float(best), float("inf"))
     return Estimate(best + (low - high) / (2 * bend), float(np.sqrt(2 * middle / (bend * rows))))
 
 
-def _fit_side(base: Base, side: int, parts: Sequence[Regression], period: float) -> SideFit:
+def _fit_side(base: law.Base, side: int, parts: Sequence[law.Regression], period: float) -> SideFit:
     solution = _solve(parts, side, round(BLOCK / period))
     torque = np.concatenate([part.torque[:, side] for part in parts])
     effort = float(np.sqrt(np.mean(torque**2)))
-    fastest = float(np.abs(np.concatenate([part.regressors[:, side, TERMS.index("damping")] for part in parts])).max())
+    fastest = float(
+        np.abs(np.concatenate([part.regressors[:, side, law.TERMS.index("damping")] for part in parts])).max()
+    )
     found = {
         name: Estimate(float(value), float(error))
-        for name, value, error in zip(TERMS, solution.values, solution.errors, strict=True)
+        for name, value, error in zip(law.TERMS, solution.values, solution.errors, strict=True)
     }
-    joints = tuple(wheel.joint for wheel in base.beside(SIDES[side]))
+    joints = tuple(wheel.joint for wheel in base.beside(law.SIDES[side]))
     named = ", ".join(joints)
     left_over = float(np.sqrt(np.mean(solution.residual**2)))
     if left_over > LEFT_OVER * effort:
@@ -223,10 +215,8 @@ def _fit_side(base: Base, side: int, parts: Sequence[Regression], period: float)
     for name, remedy in (("straight", "ramps forwards and back"), ("turning", "turns on the spot, both ways")):
         inertia = found[name]
         if not np.isfinite(inertia.value) or not np.isfinite(inertia.error):
-            raise UnfitError(
-                f"{named}: the inertia {name} cannot be determined from this log: it holds no {remedy}. identify.py "
-                "without --log drives them"
-            )
+            what = f"{named}: the inertia {name} cannot be determined from this log"
+            raise UnfitError(f"{what}: it holds no {remedy}. identify.py without --log drives them")
         if not inertia.error < INERTIA_ERROR * abs(inertia.value):
             raise UnfitError(
                 f"{named}: the inertia {name} is {inertia:.3g} kg·m², its standard error must be below "
@@ -242,22 +232,12 @@ def _fit_side(base: Base, side: int, parts: Sequence[Regression], period: float)
             raise UnfitError(f"{named}: the inertia {name} comes out as {inertia:.3g} kg·m², must be > 0: {cause}")
     friction = max(found["damping"].error * fastest, found["friction"].error)
     if not np.isfinite(friction):
-        raise UnfitError(
-            f"{named}: the friction cannot be determined from this log: drive at several speeds, both ways; "
-            "identify.py without --log does"
-        )
+        what = f"{named}: the friction cannot be determined from this log: drive at several speeds, both ways"
+        raise UnfitError(f"{what}; identify.py without --log does")
     if not friction < max(FRICTION_ERROR * effort, 1e-9):
         raise UnfitError(
             f"{named}: the friction is known to {friction:.2g} N·m, {FRICTION_ERROR:.0%} of the RMS torque "
             f"{effort:.2g} N·m are needed: drive at several speeds, both ways, longer"
         )
-    return SideFit(
-        joints,
-        found["straight"],
-        found["turning"],
-        found["damping"],
-        found["friction"],
-        found["scrub"],
-        left_over,
-        effort,
-    )
+    names = ("straight", "turning", "damping", "friction", "scrub")
+    return SideFit(joints, **{name: found[name] for name in names}, residual=left_over, effort=effort)

@@ -1,13 +1,11 @@
 """identify.py's ROS side: reads the robot's parameters, drives the plan, stops whenever something is not as planned."""
 
 import argparse
-import sys
 import time
 
 import rospy
 
-from robot_control import ParameterError, RobotError
-from robot_control.data.run_log import FloatArray, LogError, kind_in, read_run
+from robot_control.data.run_log import FloatArray, kind_in, read_run
 from robot_control.files.files import one_message
 from robot_control.files.output_files import check_outputs
 from robot_control.loop.roles import CONTROLLER, refuse_legs
@@ -19,9 +17,7 @@ from robot_control.settings.block import Settings
 from robot_control.settings.parameter_layers import layered
 from robot_control.setup.excitation_watch import hindrance, interruption, moves
 from robot_control.setup.identify.evaluation import evaluate, parse_options, plan
-from robot_control.setup.identify.excitation import Excitation, NoRoomError
-from robot_control.setup.identify.rows import UnfitError
-from robot_control.setup.identify.tuning_proposal import NoGainsError
+from robot_control.setup.identify.excitation import Excitation
 from robot_control.setup.moving_robot import RunningRobot
 from robot_control.setup.recorded_log import RecordingError, recording
 
@@ -29,36 +25,23 @@ PERIOD = 0.05
 """s between two commands: 25 are lost before the default cmd_vel_timeout"""
 NO_MASTER = "or fit a log with --log"
 SIMULATED_TIME = "or fit the log of a command_script with --log"
+REFUSALS = (RefusedError, RecordingError, OSError, ValueError)
 
 
-REFUSALS = (
-    RefusedError,
-    NoRoomError,
-    UnfitError,
-    NoGainsError,
-    RecordingError,
-    LogError,
-    ParameterError,
-    RobotError,
-    OSError,
-    ValueError,
-)
-
-
+@one_message("identify.py", *REFUSALS)
 def main() -> None:
     """Entry point of scripts/identify.py: exit code 0 with a YAML written, else 1 with one message."""
-    options = parse_options(rospy.myargv(sys.argv)[1:])
-    with one_message("identify.py", *REFUSALS):
-        check_outputs([options.output], [options.log, options.params, options.urdf])
-        if options.log is not None:
-            run = read_run(options.log)
-            refuse_legs(kind_in(run.header), "identify.py")
-            _fit(run.columns, _settings_of_files(options), options, f"log {options.log.name}")
-        else:
-            with running_settings("identify", CONTROLLER, NO_MASTER, SIMULATED_TIME) as settings:
-                with ended_by_signals() as signals:
-                    log = _drive(settings, options, signals)
-                _fit(log, settings, options, "driven")
+    options = parse_options(rospy.myargv()[1:])
+    check_outputs([options.output], [options.log, options.params, options.urdf])
+    if options.log is not None:
+        run = read_run(options.log)
+        refuse_legs(kind_in(run.header), "identify.py")
+        _fit(run.columns, _settings_of_files(options), options, f"log {options.log.name}")
+        return
+    with running_settings("identify", CONTROLLER, NO_MASTER, SIMULATED_TIME) as settings:
+        with ended_by_signals() as signals:
+            log = _drive(settings, options, signals)
+        _fit(log, settings, options, "driven")
 
 
 def _fit(log: dict[str, FloatArray], settings: Settings, options: argparse.Namespace, source: str) -> None:

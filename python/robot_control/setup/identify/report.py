@@ -17,7 +17,8 @@ def to_table(
 ) -> str:
     """`robot` as ClosedLoop.robot, `now` as _robot_control.wheel_loops gives them: the nominal values."""
     nominal = now[0]
-    forward, after = proposal.feed_forward, proposal.after
+    forward, after = {name: _number(value) for name, value in proposal.feed_forward.items()}, proposal.after
+    damping, friction = _measured(found.mean("damping")), _measured(found.mean("friction"))
     rows = [
         ("", "nominal", "measured", "proposed"),
         ("inertia straight, kg·m²", _number(nominal["straight"]), _measured(found.mean("straight")), ""),
@@ -25,21 +26,11 @@ def to_table(
         ("scrub while turning, N·m", "", _measured(found.mean("scrub")), ""),
         *_ground_friction(found, now),
         ("delay beyond the bus, cycles", "0", _measured(found.delay), ""),
-        ("feed_forward.mass, kg", _number(robot["mass"]), "", _number(forward["mass"])),
-        ("feed_forward.yaw_inertia, kg·m²", _number(robot["yaw_inertia"]), "", _number(forward["yaw_inertia"])),
-        ("feed_forward.wheel_inertia, kg·m²", _number(nominal["lifted"]), "", _number(forward["wheel_inertia"])),
-        (
-            "feed_forward.wheel_damping, N·m·s/rad",
-            _number(nominal["damping"]),
-            _measured(found.mean("damping")),
-            _number(forward["wheel_damping"]),
-        ),
-        (
-            "feed_forward.wheel_friction, N·m",
-            _number(nominal["friction"]),
-            _measured(found.mean("friction")),
-            _number(forward["wheel_friction"]),
-        ),
+        ("feed_forward.mass, kg", _number(robot["mass"]), "", forward["mass"]),
+        ("feed_forward.yaw_inertia, kg·m²", _number(robot["yaw_inertia"]), "", forward["yaw_inertia"]),
+        ("feed_forward.wheel_inertia, kg·m²", _number(nominal["lifted"]), "", forward["wheel_inertia"]),
+        ("feed_forward.wheel_damping, N·m·s/rad", _number(nominal["damping"]), damping, forward["wheel_damping"]),
+        ("feed_forward.wheel_friction, N·m", _number(nominal["friction"]), friction, forward["wheel_friction"]),
         ("pid_kp, N·m·s/rad", _number(proposal.before.kp), "", _number(after.kp)),
         ("pid_ki, N·m/rad", _number(proposal.before.ki), "", _number(after.ki)),
         ("spectral radius", f"{proposal.margins_before.radius:.4f}", "", f"{proposal.margins_after.radius:.4f}"),
@@ -69,10 +60,8 @@ def warnings(found: Identification, proposal: Proposal) -> list[str]:
     said = []
     delay = round(found.delay.value)
     if proposal.margins_before.delay < delay + RESERVE:
-        said.append(
-            f"the gains so far bear {proposal.margins_before.delay} cycles of delay, {delay} were measured: "
-            "wheels that lose grip may fall into a limit cycle"
-        )
+        what = f"the gains so far bear {proposal.margins_before.delay} cycles of delay, {delay} were measured"
+        said.append(f"{what}: wheels that lose grip may fall into a limit cycle")
     if not proposal.derived_bear:
         said.append("the gains are slower than those derived from the robot, for the delay's sake")
     if not proposal.weighed:
@@ -83,10 +72,8 @@ def warnings(found: Identification, proposal: Proposal) -> list[str]:
         unlike = abs(one.value - other.value)
         mean = abs(one.value + other.value) / 2
         if unlike > UNLIKE * mean and unlike > 3 * (one.error + other.error):
-            said.append(
-                f"{name}: left {_measured(one)}, right {_measured(other)}: the sides are unlike, and one value is "
-                "proposed for both. Look at gears, tyres, load"
-            )
+            what = f"{name}: left {_measured(one)}, right {_measured(other)}"
+            said.append(f"{what}: the sides are unlike, and one value is proposed for both. Look at gears, tyres, load")
     return said
 
 

@@ -31,10 +31,8 @@ def fit_rows(log: Log, joints: Sequence[str]) -> tuple[list[slice], float]:
     """
     missing = [joint for joint in joints if f"{joint}_effort_command" not in log]
     if missing:
-        raise UnfitError(
-            f"the log is of another robot: it has no joint {', '.join(missing)}, but {', '.join(joint_names(log))}; "
-            "give it the parameters it was driven with"
-        )
+        what = f"the log is of another robot: it has no joint {', '.join(missing)}, but {', '.join(joint_names(log))}"
+        raise UnfitError(f"{what}; give it the parameters it was driven with")
     cycle, time = log["cycle"], log["time"]
     if len(cycle) < 2:
         raise UnfitError("the log has no two cycles: drive first")
@@ -49,10 +47,8 @@ def fit_rows(log: Log, joints: Sequence[str]) -> tuple[list[slice], float]:
     for joint in joints:
         effort = log[f"{joint}_effort"][moving]
         if np.ptp(effort) == 0:
-            raise UnfitError(
-                f"{joint}: its measured effort is {effort[0]:g} N·m throughout: the driver does not measure it; "
-                "let it report at least the commanded effort"
-            )
+            what = f"{joint}: its measured effort is {effort[0]:g} N·m throughout: the driver does not measure it"
+            raise UnfitError(f"{what}; let it report at least the commanded effort")
     clamped = driven & (_bits(log, "gate_reasons", CLAMPED) | _bits(log, "command_reasons", SATURATED))
     _refuse(
         clamped & moving,
@@ -63,13 +59,8 @@ def fit_rows(log: Log, joints: Sequence[str]) -> tuple[list[slice], float]:
         "half of pid_kp and a quarter of pid_ki: gains that are too high for a late torque do that",
     )
     slipping = _bits(log, "estimate_flags", SLIP)
-    _refuse(
-        slipping & moving,
-        moving,
-        SLIP_SHARE,
-        "the wheels slipped",
-        "drive on ground that carries, lower max_linear_acceleration and max_angular_acceleration",
-    )
+    remedy = "drive on ground that carries, lower max_linear_acceleration and max_angular_acceleration"
+    _refuse(slipping & moving, moving, SLIP_SHARE, "the wheels slipped", remedy)
     return _stretches(driven & ~clamped & ~slipping, cycle), period
 
 
@@ -83,13 +74,11 @@ def _driven(log: Log, joints: Sequence[str]) -> BoolArray:
 
 
 def _any_wheel_planned(log: Log, joints: Sequence[str]) -> BoolArray:
-    planned: BoolArray = np.any([log[f"{joint}_velocity_command"] != 0 for joint in joints], axis=0)
-    return planned
+    return np.asarray(np.any([log[f"{joint}_velocity_command"] != 0 for joint in joints], axis=0))
 
 
 def _bits(log: Log, column: str, bits: int) -> BoolArray:
-    found: BoolArray = (np.nan_to_num(log[column]).astype(np.int64) & bits) != 0
-    return found
+    return np.asarray((np.nan_to_num(log[column]).astype(np.int64) & bits) != 0)
 
 
 def _refuse(bad: BoolArray, considered: BoolArray, share: float, what: str, remedy: str) -> None:

@@ -52,12 +52,8 @@ class Proposal:
 
     def overlay(self) -> dict[str, Any]:
         """The keys of the `diff_drive_controller` block."""
-        return {
-            "feed_forward": self.feed_forward,
-            "pid_kp": self.after.kp,
-            "pid_ki": self.after.ki,
-            "pid_kd": self.after.kd,
-        }
+        gains = {f"pid_{name}": getattr(self.after, name) for name in ("kp", "ki", "kd")}
+        return {"feed_forward": self.feed_forward, **gains}
 
 
 def base_of(robot: Mapping[str, Any]) -> Base:
@@ -80,10 +76,8 @@ def feed_forward(found: Identification, base: Base, lifted: float, mass: float |
     if mass is not None:
         lifted = straight - mass * r**2 / (2 * h)
         if lifted <= 0:
-            raise ValueError(
-                f"--mass {mass:g} kg: the wheels feel no more than {2 * h * straight / r**2:.4g} kg. "
-                "Weigh it again, or look whether wheel_radius is right"
-            )
+            what = f"--mass {mass:g} kg: the wheels feel no more than {2 * h * straight / r**2:.4g} kg"
+            raise ValueError(f"{what}. Weigh it again, or look whether wheel_radius is right")
     lifted = min(lifted, LIGHTEST * straight, LIGHTEST * turning)
     return {
         "mass": 2 * h * (straight - lifted) / r**2 if mass is None else mass,
@@ -98,16 +92,9 @@ def loop_of(loops: Sequence[Mapping[str, Any]], found: Identification, lifted: f
     """The gains of `loops` (_robot_control.wheel_loops) on the measured robot; the fastest if the wheels differ."""
     quickest = max(loops, key=lambda loop: loop["kp"] / loop["model_inertia"])
     straight, turning = found.mean("straight").value, found.mean("turning").value
-    return Loop(
-        kp=quickest["kp"],
-        ki=quickest["ki"],
-        kd=quickest["kd"],
-        model_inertia=quickest["model_inertia"],
-        bandwidth=quickest["bandwidth"],
-        period=quickest["period"],
-        inertias=(lifted, turning, straight, 2 * straight - lifted),
-        damping=max(0.0, found.mean("damping").value),
-    )
+    shared = {name: quickest[name] for name in ("kp", "ki", "kd", "model_inertia", "bandwidth", "period")}
+    inertias = (lifted, turning, straight, 2 * straight - lifted)
+    return Loop(**shared, inertias=inertias, damping=max(0.0, found.mean("damping").value))
 
 
 def propose(
@@ -134,20 +121,13 @@ def propose(
         if loop.radius(delay + RESERVE) < 1 and gain_margin(loop, delay) >= GAIN_MARGIN:
             break
     else:
-        raise NoGainsError(
-            f"the torque is {delay} cycles late, {delay * found.period * 1000:.3g} ms beyond the bus: no gains bear "
-            "that. Look for the delay in the drive; nothing is written"
-        )
+        what = f"the torque is {delay} cycles late, {delay * found.period * 1000:.3g} ms beyond the bus"
+        raise NoGainsError(f"{what}: no gains bear that. Look for the delay in the drive; nothing is written")
     loop = replace(loop, kp=_rounded(loop.kp), ki=_rounded(loop.ki))
-    return Proposal(
-        {name: _rounded(value) for name, value in forward.items()},
-        before,
-        loop,
-        margins(before, delay),
-        margins(loop, delay),
-        derived_bear=step == 0,
-        weighed=weighed,
-    )
+    feed_forward = {name: _rounded(value) for name, value in forward.items()}
+    margins_before = margins(before, delay)
+    margins_after = margins(loop, delay)
+    return Proposal(feed_forward, before, loop, margins_before, margins_after, derived_bear=step == 0, weighed=weighed)
 
 
 def _rounded(value: float) -> float:

@@ -84,8 +84,7 @@ def signals_of(log: Log, rows: slice, base: Base, lag: int) -> Signals:
 
     def mean_of(column: str) -> FloatArray:
         sides = [[wheel.sign * log[f"{wheel.joint}_{column}"][rows] for wheel in base.beside(side)] for side in SIDES]
-        mean: FloatArray = np.mean(sides, axis=1).T
-        return mean
+        return np.asarray(np.mean(sides, axis=1).T)
 
     # The plan of cycle k is carried out from k + lag on.
     plan = mean_of("velocity_command")[: -lag or None]
@@ -121,11 +120,9 @@ def regression(signals: Signals, base: Base, period: float, width: int, shift: i
     planned_terms = _terms(planned, (plan[2:] - plan[:-2]) / (2 * period), sign, turning, base)
 
     used = averaged(known.astype(float), width) > 1 - 1e-9  # rounding of the sums
-    return Regression(
-        averaged((effort[1:-1] + effort[2:]) / 2, width)[used],
-        averaged(np.nan_to_num(moved), width)[used],
-        averaged(np.nan_to_num(planned_terms), width)[used],
-    )
+    torque = averaged((effort[1:-1] + effort[2:]) / 2, width)[used]
+    instruments = averaged(np.nan_to_num(planned_terms), width)[used]
+    return Regression(torque, averaged(np.nan_to_num(moved), width)[used], instruments)
 
 
 def _direction(speed: FloatArray, width: int) -> FloatArray:
@@ -139,14 +136,12 @@ def _direction(speed: FloatArray, width: int) -> FloatArray:
 
 def _spin(speed: FloatArray, base: Base) -> FloatArray:
     """rad/s or rad/s² of the robot, (rows,), from rad/s or rad/s² of its wheels."""
-    spin: FloatArray = base.radius * (speed[:, 1] - speed[:, 0]) / base.effective_wheel_base
-    return spin
+    return np.asarray(base.radius * (speed[:, 1] - speed[:, 0]) / base.effective_wheel_base)
 
 
 def _advance(speed: FloatArray, base: Base) -> FloatArray:
     """m/s or m/s² of the robot, (rows,), from rad/s or rad/s² of its wheels."""
-    advance: FloatArray = base.radius * speed.mean(axis=1)
-    return advance
+    return np.asarray(base.radius * speed.mean(axis=1))
 
 
 def _terms(

@@ -5,7 +5,7 @@ src/control/wheeled/wheel_loops/wheel_loop_stability.h.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import asdict, dataclass, replace
 
 from robot_control._robot_control import spectral_radius
 
@@ -32,21 +32,9 @@ class Loop:
 
     def radius(self, delay: int) -> float:
         """The largest spectral radius over all inertias, `delay` cycles beyond the bus' one."""
-        worst: float = max(
-            spectral_radius(
-                kp=self.kp,
-                ki=self.ki,
-                kd=self.kd,
-                model_inertia=self.model_inertia,
-                inertia=inertia,
-                damping=self.damping,
-                period=self.period,
-                bandwidth=self.bandwidth,
-                delay=delay,
-            )
-            for inertia in self.inertias
-        )
-        return worst
+        given = asdict(self)
+        inertias = given.pop("inertias")
+        return max(spectral_radius(**given, inertia=inertia, delay=delay) for inertia in inertias)
 
     def scaled(self, kp: float, ki: float) -> Loop:
         """The loop with kp and kd times `kp`, ki times `ki`."""
@@ -76,9 +64,7 @@ def gain_margin(loop: Loop, delay: int) -> float:
     def stable(factor: float) -> bool:
         return loop.scaled(factor, factor).radius(delay) < 1
 
-    if not stable(1.0):
-        return 0.0
-    return _last(stable, 1.0, MAX_GAIN)
+    return _last(stable, 1.0, MAX_GAIN) if stable(1.0) else 0.0
 
 
 def delay_margin(loop: Loop) -> int:

@@ -4,7 +4,7 @@ import argparse
 import json
 import sys
 
-from robot_control._robot_control import DriverError, ParameterError, RobotError
+from robot_control._robot_control import DriverError, ParameterError
 from robot_control.files.files import escaped, fit_for_message, given_path, one_message, write_text
 from robot_control.files.output_files import check_outputs
 from robot_control.setup.description import Description, describe, mjcf, stand
@@ -17,7 +17,7 @@ def main(arguments: list[str] | None = None) -> None:
     options = _parser().parse_args(arguments)
 
     fallen = None
-    with one_message("inspect_robot.py", RobotError, ParameterError, DriverError, OSError, ValueError):
+    with one_message("inspect_robot.py", DriverError, OSError, ValueError):
         check_outputs([options.mjcf, options.picture], [options.file, options.params])
         if options.picture is not None:
             check_picture(options.picture)
@@ -43,15 +43,11 @@ def main(arguments: list[str] | None = None) -> None:
 
 
 def _parser() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(
-        prog="inspect_robot.py",
-        description="Says what is understood of a robot description: wheels, sides, sizes, masses, and what was "
-        "assumed, repaired or ignored.",
-    )
+    what = "Says what is understood of a robot description: wheels, sides, sizes, masses, and what was assumed"
+    parser = argparse.ArgumentParser(prog="inspect_robot.py", description=f"{what}, repaired or ignored.")
     parser.add_argument("file", type=given_path, help="URDF, or .xacro")
-    parser.add_argument(
-        "--params", type=given_path, metavar="YAML", help="parameter file; its robot: block lies over the URDF"
-    )
+    meaning = "parameter file; its robot: block lies over the URDF"
+    parser.add_argument("--params", type=given_path, metavar="YAML", help=meaning)
     parser.add_argument("--json", action="store_true", help="the same as JSON")
     parser.add_argument("--mjcf", type=given_path, metavar="OUT.xml", help="write the model that MuJoCo simulates")
     parser.add_argument("--picture", type=given_path, metavar="OUT.png", help="draw the robot")

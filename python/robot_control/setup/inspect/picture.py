@@ -13,6 +13,7 @@ import numpy as np
 from matplotlib.colors import to_rgb
 from matplotlib.lines import Line2D
 from matplotlib.patches import Circle, Patch, Wedge
+from scipy.ndimage import uniform_filter
 
 from robot_control.robot.pose import rotation
 from robot_control.setup.inspect.rendering import Array, Part, View, Window, render
@@ -67,21 +68,13 @@ def _length(metres: float) -> str:
 
 
 def _parts(robot: dict[str, Any]) -> list[Part]:
-    colours = {wheel["joint"]: LEFT if wheel["side"] == "left" else RIGHT for wheel in _wheels(robot)}
-    colours |= {caster["joint"]: CASTER for caster in _casters(robot)}
+    colours = {wheel["joint"]: LEFT if wheel["side"] == "left" else RIGHT for wheel in robot.get("wheels", ())}
+    colours |= {caster["joint"]: CASTER for caster in robot.get("casters", ())}
     for leg in robot.get("legs", ()):
         colours |= dict.fromkeys(leg["joints"], LEFT if leg["place"].endswith("left") else RIGHT)
     colours |= {joint["name"]: OTHER for joint in robot["joints"] if joint["name"] not in colours}
     parts = [Part(triangles_in_base(shape), to_rgb(colours.get(shape["joint"], BODY))) for shape in robot["shapes"]]
     return [part for part in parts if part.triangles.size]
-
-
-def _wheels(robot: dict[str, Any]) -> list[dict[str, Any]]:
-    return list(robot.get("wheels", ()))
-
-
-def _casters(robot: dict[str, Any]) -> list[dict[str, Any]]:
-    return list(robot.get("casters", ()))
 
 
 def _extent(points: Array, margin: float) -> tuple[float, float, float, float]:
@@ -94,7 +87,7 @@ def _extent(points: Array, margin: float) -> tuple[float, float, float, float]:
 def _all_points(robot: dict[str, Any], parts: list[Part]) -> Array:
     wheels = [
         np.asarray(wheel["centre"]) + sign * wheel["radius"]
-        for wheel in (*_wheels(robot), *_casters(robot))
+        for wheel in (*robot.get("wheels", ()), *robot.get("casters", ()))
         for sign in (-1, 1)
     ]
     return np.concatenate([part.triangles.reshape(-1, 3) for part in parts] + [np.array(wheels).reshape(-1, 3)])
@@ -159,11 +152,8 @@ def _draw_shadow(axes: Axes, parts: list[Part], ground: float, size: float) -> N
     width = 300
     alpha = render(flat, CORNER, Window(*extent), width)[..., 3] / 255
     blur = max(1, round(0.02 * size * width / (extent[1] - extent[0])))
-    kernel = np.ones(2 * blur + 1) / (2 * blur + 1)
-    for axis in (0, 1):
-        alpha = np.apply_along_axis(np.convolve, axis, alpha, kernel, mode="same")[: alpha.shape[0], : alpha.shape[1]]
     shadow = np.zeros((*alpha.shape, 4))
-    shadow[..., 3] = 0.22 * alpha
+    shadow[..., 3] = 0.22 * uniform_filter(alpha, 2 * blur + 1, mode="constant")
     axes.imshow(shadow, extent=extent, zorder=2, interpolation="bilinear")
 
 
@@ -173,10 +163,10 @@ def _draw_side(axes: Axes, robot: dict[str, Any], parts: list[Part], ground: flo
     size = max(right - left, top - bottom)
     _show(axes, parts, FROM_THE_RIGHT, (left, right, bottom, top))
     axes.axhline(ground, color=FLOOR, linewidth=1.4, zorder=2)
-    for wheel in _wheels(robot):
+    for wheel in robot.get("wheels", ()):
         if wheel["side"] == "right":
             axes.add_patch(_circle((wheel["centre"][0], wheel["centre"][2]), wheel["radius"], RIGHT))
-    for caster in _casters(robot):
+    for caster in robot.get("casters", ()):
         axes.add_patch(_circle((caster["centre"][0], caster["centre"][2]), caster["radius"], CASTER))
     x, _, z = robot["centre_of_gravity"]
     _centre_of_gravity(axes, x, z, 0.022 * size)
@@ -188,12 +178,8 @@ def _draw_side(axes: Axes, robot: dict[str, Any], parts: list[Part], ground: flo
     axles = sorted({round(float(each[0]), 4) for each in _bearings(robot)})
     if axles[-1] - axles[0] > 0.02 * size:
         below = ground - 0.08 * size
-        _dimension_across(
-            axes,
-            (axles[0], below),
-            (axles[-1], below),
-            f"{'hips' if robot['kind'] == 'legs' else 'axles'} {_length(axles[-1] - axles[0])}",
-        )
+        text = f"{'hips' if robot['kind'] == 'legs' else 'axles'} {_length(axles[-1] - axles[0])}"
+        _dimension_across(axes, (axles[0], below), (axles[-1], below), text)
     _arrow(axes, (right - 0.14 * size, top + 0.05 * size), (right + 0.02 * size, top + 0.05 * size), "forward")
     axes.set_title("From its right")
     _frame(axes, left - 0.36 * size, right + 0.44 * size, min(bottom, ground) - 0.16 * size, top + 0.12 * size)
@@ -204,13 +190,15 @@ def _draw_height(axes: Axes, robot: dict[str, Any], ground: float, at: float) ->
     if robot["kind"] == "legs":
         _dimension(axes, (at, ground), (at, 0.0), f"base\n{_length(-ground)} high", 0.0)
         return
-    rear = min((wheel for wheel in _wheels(robot) if wheel["side"] == "right"), key=lambda wheel: wheel["centre"][0])
+    rear = min(
+        (wheel for wheel in robot.get("wheels", ()) if wheel["side"] == "right"), key=lambda wheel: wheel["centre"][0]
+    )
     _dimension(axes, (at, ground), (at, rear["centre"][2]), f"radius {_length(rear['radius'])}", rear["centre"][0])
 
 
 def _bearings(robot: dict[str, Any]) -> list[list[float]]:
     """Centres of the wheels, or of the hips."""
-    return [wheel["centre"] for wheel in _wheels(robot)] or [leg["hip"] for leg in robot["legs"]]
+    return [wheel["centre"] for wheel in robot.get("wheels", ())] or [leg["hip"] for leg in robot["legs"]]
 
 
 def _draw_above(axes: Axes, robot: dict[str, Any], parts: list[Part]) -> None:
@@ -218,13 +206,13 @@ def _draw_above(axes: Axes, robot: dict[str, Any], parts: list[Part]) -> None:
     left, right, bottom, top = _extent(FROM_ABOVE.project(points), 0.02)
     size = max(right - left, top - bottom)
     _show(axes, parts, FROM_ABOVE, (left, right, bottom, top))
-    for wheel in _wheels(robot):
+    for wheel in robot.get("wheels", ()):
         colour = LEFT if wheel["side"] == "left" else RIGHT
         (x, y, _), radius, half = wheel["centre"], wheel["radius"], wheel["width"] / 2
         axes.add_patch(
             plt.Rectangle((x - radius, y - half), 2 * radius, 2 * half, fill=False, ec=colour, linewidth=1.8, zorder=5)
         )
-    for caster in _casters(robot):
+    for caster in robot.get("casters", ()):
         axes.add_patch(_circle(caster["centre"][:2], caster["radius"], CASTER))
     x, y, _ = robot["centre_of_gravity"]
     _centre_of_gravity(axes, x, y, 0.022 * size)
@@ -237,10 +225,8 @@ def _draw_above(axes: Axes, robot: dict[str, Any], parts: list[Part]) -> None:
         else f"wheel base\n{_length(robot['wheel_base'])}"
     )
     at = left - 0.06 * size
-    _dimension(
-        axes, (at, float(np.mean(rights))), (at, float(np.mean(lefts))), named,
-        min(each[0] for each in _bearings(robot)),
-    )  # fmt: skip
+    measured = min(each[0] for each in _bearings(robot))
+    _dimension(axes, (at, float(np.mean(rights))), (at, float(np.mean(lefts))), named, measured)
     _arrow(axes, (right + 0.05 * size, 0), (right + 0.2 * size, 0), "forward")
     axes.set_title("From above")
     _frame(axes, left - 0.36 * size, right + 0.44 * size, bottom - 0.05 * size, top + 0.05 * size)
@@ -267,10 +253,8 @@ def _triad(axes: Axes, view: View, origin: Array, orientation: list[float], leng
 
 
 def _arrow(axes: Axes, begin: Sequence[float] | Array, end: Sequence[float] | Array, text: str) -> None:
-    axes.annotate(
-        "", (end[0], end[1]), (begin[0], begin[1]),
-        arrowprops={"arrowstyle": "-|>,head_length=0.7,head_width=0.35", "color": INK, "linewidth": 2.2}, zorder=9,
-    )  # fmt: skip
+    arrowprops = {"arrowstyle": "-|>,head_length=0.7,head_width=0.35", "color": INK, "linewidth": 2.2}
+    axes.annotate("", (end[0], end[1]), (begin[0], begin[1]), arrowprops=arrowprops, zorder=9)
     axes.annotate(
         text, ((begin[0] + end[0]) / 2, (begin[1] + end[1]) / 2), (0, 8), textcoords="offset points",
         ha="center", va="bottom", fontsize=10, color=INK, zorder=9,
@@ -301,9 +285,9 @@ def _dimension_across(axes: Axes, left: tuple[float, float], right: tuple[float,
 def _legend(figure: Figure, robot: dict[str, Any]) -> None:
     what = robot["kind"]
     entries: list[Any] = [Patch(color=LEFT, label=f"left {what}"), Patch(color=RIGHT, label=f"right {what}")]
-    if _casters(robot):
+    if robot.get("casters", ()):
         entries.append(Patch(color=CASTER, label="caster wheels"))
-    rolling = {"", *(wheel["joint"] for wheel in (*_wheels(robot), *_casters(robot)))}
+    rolling = {"", *(wheel["joint"] for wheel in (*robot.get("wheels", ()), *robot.get("casters", ())))}
     rolling.update(joint for leg in robot.get("legs", ()) for joint in leg["joints"])
     if any(shape["joint"] not in rolling for shape in robot["shapes"]):
         entries.append(Patch(color=OTHER, label="other moving parts"))

@@ -112,12 +112,9 @@ class _Canvas:
 
     def _outlines(self) -> NDArray[np.bool_]:
         edge = np.zeros(self.part.shape, dtype=bool)
-        for axis in (0, 1):
-            before = (slice(None, -1), slice(None)) if axis == 0 else (slice(None), slice(None, -1))
-            after = (slice(1, None), slice(None)) if axis == 0 else (slice(None), slice(1, None))
-            other = self.part[before] != self.part[after]
+        for before, after in ((np.s_[:-1], np.s_[1:]), (np.s_[:, :-1], np.s_[:, 1:])):
             creased = np.einsum("ijk,ijk->ij", self.normal[before], self.normal[after]) < CREASE
-            found = other | (creased & (self.part[before] >= 0))
+            found = (self.part[before] != self.part[after]) | (creased & (self.part[before] >= 0))
             edge[before] |= found
             edge[after] |= found
         return edge & (self.part >= 0)

@@ -2,6 +2,7 @@
 
 import math
 import textwrap
+from collections.abc import Iterator
 from typing import Any
 
 from robot_control.files.files import escaped_lines
@@ -32,17 +33,14 @@ def _body(robot: dict[str, Any]) -> list[str]:
     x, y, z = robot["centre_of_gravity"]
     imu = robot["imu"]
     place = f"{imu['link']} at {_vector(imu['position'])}" if imu["link"] else f"none: taken as in {robot['base_link']}"
+    yaw_inertia = f", yaw inertia {robot['yaw_inertia']:.4g} kg·m²" if "yaw_inertia" in robot else ""
     return [
         f"base               {robot['base_link']}, floor at z {ground_height(robot):.4g} m",
-        f"mass               {robot['mass']:.5g} kg" + _yaw_inertia(robot),
+        f"mass               {robot['mass']:.5g} kg{yaw_inertia}",
         f"centre of gravity  {_vector((x, y, z))}, {z - ground_height(robot):.4g} m above the floor",
         f"IMU                {place}",
         *_standing(robot),
     ]
-
-
-def _yaw_inertia(robot: dict[str, Any]) -> str:
-    return f", yaw inertia {robot['yaw_inertia']:.4g} kg·m²" if "yaw_inertia" in robot else ""
 
 
 def _standing(robot: dict[str, Any]) -> list[str]:
@@ -64,20 +62,15 @@ def _wheels(robot: dict[str, Any]) -> list[str]:
     ]
     for wheel in robot["wheels"]:
         limit = limits[wheel["joint"]]
-        rows.append(
-            (
-                wheel["joint"],
-                wheel["side"],
-                *(f"{value:.4f}" for value in wheel["centre"]),
-                f"{wheel['radius']:.4f}",
-                f"{wheel['width']:.4f}",
-                "forward" if wheel["sign"] > 0 else "reversed",
-                f"{limit['effort_limit']:.4g}",
-                f"{limit['velocity_limit']:.4g}" if limit["velocity_limit"] else "unknown",
-                f"{wheel['inertia']:.3g}",
-            )
-        )
+        turns = "forward" if wheel["sign"] > 0 else "reversed"
+        speed = f"{limit['velocity_limit']:.4g}" if limit["velocity_limit"] else "unknown"
+        limits_of = (turns, f"{limit['effort_limit']:.4g}", speed, f"{wheel['inertia']:.3g}")
+        rows.append((wheel["joint"], wheel["side"], *_sizes(wheel), *limits_of))
     return table(rows, left=2)
+
+
+def _sizes(wheel: dict[str, Any]) -> Iterator[str]:
+    return (f"{value:.4f}" for value in (*wheel["centre"], wheel["radius"], wheel["width"]))
 
 
 def _legs(robot: dict[str, Any]) -> list[str]:
@@ -86,19 +79,12 @@ def _legs(robot: dict[str, Any]) -> list[str]:
     rows: list[tuple[str, ...]] = [head]
     for leg in robot["legs"]:
         joints = [limits[name] for name in leg["joints"]]
-        rows.append(
-            (
-                leg["place"].replace("_", " "),
-                ", ".join(leg["joints"]),
-                *(f"{value:.4f}" for value in leg["hip"]),
-                f"{leg['length']:.4f}",
-                f"{leg['foot_radius']:.4f}" if leg["foot_radius"] else "no ball",
-                leg["bends"],
-                " ".join(f"{joint['effort_limit']:.4g}" for joint in joints),
-                " ".join(f"{joint['velocity_limit']:.4g}" for joint in joints),
-                " ".join(f"{angle:.2f}" for angle in leg["lying"]),
-            )
-        )
+        sizes = (f"{value:.4f}" for value in (*leg["hip"], leg["length"]))
+        foot = f"{leg['foot_radius']:.4f}" if leg["foot_radius"] else "no ball"
+        efforts, speeds = (" ".join(f"{each[of]:.4g}" for each in joints) for of in ("effort_limit", "velocity_limit"))
+        lying = " ".join(f"{angle:.2f}" for angle in leg["lying"])
+        names = leg["place"].replace("_", " "), ", ".join(leg["joints"])
+        rows.append((*names, *sizes, foot, leg["bends"], efforts, speeds, lying))
     rotor = f"rotors             {robot['rotor_inertia']:.3g} kg·m² at each joint (robot.leg_rotor_inertia)"
     return [*table(rows, left=2), "", rotor]
 
@@ -112,15 +98,7 @@ def _base(robot: dict[str, Any]) -> list[str]:
 
 def _casters(robot: dict[str, Any]) -> list[str]:
     rows: list[tuple[str, ...]] = [("caster wheel", "x [m]", "y [m]", "z [m]", "radius", "width")]
-    rows += [
-        (
-            caster["joint"],
-            *(f"{value:.4f}" for value in caster["centre"]),
-            f"{caster['radius']:.4f}",
-            f"{caster['width']:.4f}",
-        )
-        for caster in robot.get("casters", ())
-    ]
+    rows += [(caster["joint"], *_sizes(caster)) for caster in robot.get("casters", ())]
     return table(rows, left=1) if robot.get("casters") else []
 
 

@@ -19,12 +19,8 @@ def main() -> int:
     commands = parser.add_subparsers(dest="command", required=True)
     add = commands.add_parser("add", help="adds a user, or renews the address of one")
     add.add_argument("name")
-    add.add_argument(
-        "--role",
-        choices=[str(role) for role in Role],
-        default="watch",
-        help="watch: sees; operate: drives too; maintain: tunes too",
-    )
+    meaning = "watch: sees; operate: drives too; maintain: tunes too"
+    add.add_argument("--role", choices=[str(role) for role in Role], default="watch", help=meaning)
     remove = commands.add_parser("remove", help="removes a user and closes the user's pages")
     remove.add_argument("name")
     commands.add_parser("list", help="lists names and roles")

@@ -18,6 +18,7 @@ from robot_control.drive.path.waypoints import PathError, Waypoint, checked, pla
 from robot_control.files.files import printable
 from robot_control.loop.roles import Kind
 from robot_control.msg import FollowPathActionGoal
+from robot_control.robot.pose import Pose
 from robot_control.robot.robot_kind import ROLES, running_kind
 from robot_control.settings.files import in_range
 from robot_control.srv import InjectFault, SetGait, SetOdometry, SetParameters, SetPosture, Step
@@ -168,7 +169,7 @@ class Calls:
         pose = self._pose()
         if given["shape"] not in SHAPES or pose is None:
             raise PathError("no odometry" if pose is None else f"a shape is one of {', '.join(SHAPES)}")
-        return placed(SHAPES[given["shape"]](given["size"]), *pose)
+        return placed(SHAPES[given["shape"]](given["size"]), Pose(*pose))
 
     def _send_place(self, name: str, given: Mapping[str, Any]) -> str:
         frame = self._map_frame()

@@ -146,7 +146,7 @@ async def _frames(server: Server, backend: Backend) -> None:
 
 def main() -> int:
     """Entry point of scripts/console.py."""
-    given = arguments(rospy.myargv(sys.argv)[1:])
+    given = arguments(rospy.myargv()[1:])
     try:
         setup = setup_of(given)
         open_journal(FOLDER / JOURNAL)

@@ -33,20 +33,14 @@ def text(longest: int) -> Check:
 
 flag = FLAG[1]
 COUNT, SHARE, SPEED = in_range(0, 1 << 53, int), in_range(-1.0, 1.0), in_range(0.0, 100.0)
+AXES = ("linear", "angular", "lateral")
 TYPES: Mapping[str, Fields] = {
-    "drive": {
-        "number": COUNT,
-        "sent": in_range(0.0, 1e12),
-        "held": flag,
-        "linear": SHARE,
-        "angular": SHARE,
-        "lateral": SHARE,
-    },
+    "drive": {"number": COUNT, "sent": in_range(0.0, 1e12), "held": flag, **dict.fromkeys(AXES, SHARE)},
     "pong": {"name": text(32)},
     "take": {"force": flag},
     "hand_over": {"to": COUNT},
     "give_back": {},
-    "speeds": {"linear": SPEED, "angular": SPEED, "lateral": SPEED},
+    "speeds": dict.fromkeys(AXES, SPEED),
     "heartbeat": {"on": flag},
     "call": {"number": COUNT, "name": text(32), "arguments": lambda value: isinstance(value, dict)},
 }

@@ -1,9 +1,10 @@
 """The values of config/console.yaml, and those that follow from them."""
 
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 
-from robot_control.settings.files import SettingsError, number, overlaid, rules_of, wrong_values
+from robot_control.settings.files import number, rules_of, settings_of, wrong_values
 
 MARGIN = 0.1
 """s for the server's passes, the network beyond it and the robot's nodes; measured below 40 ms on an idle machine"""
@@ -32,7 +33,5 @@ RULES = rules_of(Settings, distance=number(0.001, 1000), link_gap=number(0.001, 
 
 def read_settings(*paths: Path) -> Settings:
     """The values of these files, each laid over the one before. Raises SettingsError with all problems, OSError."""
-    values, problems = overlaid(paths, lambda tree: wrong_values(tree, RULES))
-    if problems:
-        raise SettingsError("; ".join(problems))
-    return Settings(**{name: float(value) for name, value in values.items()})
+    wrong = partial(wrong_values, rules=RULES)
+    return settings_of(paths, wrong, lambda values: Settings(**{name: float(value) for name, value in values.items()}))

@@ -64,9 +64,8 @@ class Users:
             rows = json.loads(self.path.read_text(encoding="utf-8"))
             users = [_checked(User(**{**row, "role": Role[row["role"].upper()]})) for row in rows]
         except (ValueError, TypeError, KeyError, AttributeError, RecursionError):
-            raise UsersError(
-                f"{self.path}: is no file of console_users.py; remove it and add the users again"
-            ) from None
+            why = f"{self.path}: is no file of console_users.py; remove it and add the users again"
+            raise UsersError(why) from None
         return {user.name: user for user in users}
 
     def add(self, name: str, role: Role, now: float) -> str:

@@ -50,8 +50,7 @@ class View:
 
     def revoked(self, node: str) -> bool:
         """True if the controller refuses what the node requested before a stop."""
-        now = time.monotonic()
-        states = [self._topics[name].fresh(now, SILENCES["drive_state"]) for name in ("drive", "legs")]
+        states = [self._topics[name].fresh(time.monotonic(), SILENCES["drive_state"]) for name in ("drive", "legs")]
         return any(state is not None and node in state.revoked for state in states)
 
     def pose(self) -> tuple[float, float, float] | None:

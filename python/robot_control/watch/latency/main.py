@@ -43,9 +43,8 @@ class Listener:
 
     def nodes(self) -> dict[str, dict[str, str]]:
         """Node → values, of those that report."""
-        newest = sorted(self._reports.items(time.monotonic()).items())
-        values = {status.name: values_of(status) for _, (_, status) in newest}
-        return {node: each for node, each in values.items() if FIGURE in each}
+        newest = [status for _, (_, status) in sorted(self._reports.items(time.monotonic()).items())]
+        return {each.name: values for each in newest if FIGURE in (values := values_of(each))}
 
 
 def show(listener: Listener, seconds: float) -> None:
@@ -68,7 +67,7 @@ def main() -> None:
     )
     parser.add_argument("--seconds", type=float, default=0.0, help="end after so many seconds (0: at Ctrl-C)")
     parser.add_argument("--plot", type=given_path, metavar="FILE", help="at the end, draw the figures over time")
-    given = parser.parse_args(rospy.myargv(sys.argv)[1:])
+    given = parser.parse_args(rospy.myargv()[1:])
     if not 0 <= given.seconds < float("inf"):
         parser.error(f"--seconds {given.seconds:g} must be 0 (until Ctrl-C) or more")
     if given.plot:
@@ -83,10 +82,8 @@ def main() -> None:
         show(listener, given.seconds)
     if not listener.samples:
         listened = f" in {given.seconds:g} s" if given.seconds else ""
-        sys.exit(
-            f"latency.py: no node has reported{listened}; nodes report once per second, and only on the wall clock "
-            "(robot.clock: wall)"
-        )
+        what = f"latency.py: no node has reported{listened}"
+        sys.exit(f"{what}; nodes report once per second, and only on the wall clock (robot.clock: wall)")
     if given.plot:
         from robot_control.watch.latency.picture import draw  # noqa: PLC0415 (matplotlib takes a second)
 

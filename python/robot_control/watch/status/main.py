@@ -2,7 +2,6 @@
 
 import argparse
 import math
-import sys
 import time
 import xml.etree.ElementTree as ET
 
@@ -66,7 +65,7 @@ def main() -> None:
         prog="robot_status.py",
         description="Publishes the robot's state for a host on robot_status (robot_control/RobotStatus): latched, once "
         "per second and on every change. sim.launch and backend.launch start it.",
-    ).parse_args(rospy.myargv(sys.argv)[1:])
+    ).parse_args(rospy.myargv()[1:])
     with running_node("robot_status") as signals:
         status = Status()
         while signals.going_on():

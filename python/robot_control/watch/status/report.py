@@ -8,6 +8,7 @@ from diagnostic_msgs.msg import DiagnosticStatus
 
 from robot_control.loop.roles import Kind
 from robot_control.msg import RobotStatus, SafetyStatus
+from robot_control.robot.diagnosis.recent import values_of
 from robot_control.robot.safety_states import DRIVABLE
 
 MANUAL_SOURCES = frozenset({"joy_vel", "key_vel", "console_vel"})
@@ -28,7 +29,7 @@ class Reports:
     def value(self, node: str, key: str) -> str:
         """A value in a node's report; empty if it is not there."""
         report = self.diagnostics.get(node)
-        return next((pair.value for pair in report.values if pair.key == key), "") if report is not None else ""
+        return "" if report is None else values_of(report).get(key, "")
 
 
 def status_of(reports: Reports) -> RobotStatus:

@@ -47,5 +47,4 @@ def in_odom(places: Array, pose: Any) -> Array:  # noqa: ANN401 (geometry_msgs/P
     q, at = pose.orientation, pose.position
     w, axis = q.w, np.array([q.x, q.y, q.z])
     turned = places + 2 * np.cross(axis, np.cross(axis, places) + w * places)
-    result: Array = turned + np.array([at.x, at.y, at.z])
-    return result
+    return np.asarray(turned + np.array([at.x, at.y, at.z]))

@@ -1,7 +1,6 @@
 """view_markers.py's ROS side."""
 
 import argparse
-import sys
 
 import numpy as np
 import rospy
@@ -121,7 +120,7 @@ def main() -> None:
         prog="view_markers.py",
         description="Publishes for RViz, as view.launch starts it: forces of wheels or feet, ways of swinging feet, "
         "safety state and reasons as markers on view/markers, the path driven on view/path_driven.",
-    ).parse_args(rospy.myargv(sys.argv)[1:])
+    ).parse_args(rospy.myargv()[1:])
     with running_node("view_markers") as signals:
         view = View()
         while signals.going_on():

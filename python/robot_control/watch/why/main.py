@@ -104,15 +104,11 @@ def answer_live() -> int:
 
 def main() -> None:
     """Entry point of scripts/why.py."""
-    parser = argparse.ArgumentParser(
-        prog="why.py",
-        description="Why does the robot not move? Its state, causes with value and limit, what to do, and by whom.",
-        epilog="Another robot's: __ns:=robot2.",
-    )
-    parser.add_argument(
-        "--once", action="store_true", help="one answer; exit code 1 if something stands against motion, else 0"
-    )
-    given = parser.parse_args(rospy.myargv(sys.argv)[1:])
+    about = "Why does the robot not move? Its state, causes with value and limit, what to do, and by whom."
+    parser = argparse.ArgumentParser(prog="why.py", description=about, epilog="Another robot's: __ns:=robot2.")
+    meaning = "one answer; exit code 1 if something stands against motion, else 0"
+    parser.add_argument("--once", action="store_true", help=meaning)
+    given = parser.parse_args(rospy.myargv()[1:])
     try:
         sys.exit(answer_once() if given.once else answer_live())
     except KeyboardInterrupt:

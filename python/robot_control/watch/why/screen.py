@@ -1,7 +1,7 @@
 """The answer of why.py as lines of text, as wide as the screen; no ROS in here."""
 
 import textwrap
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
 from robot_control.files.files import escaped
@@ -73,9 +73,14 @@ def _rows(facts: Facts, answer: Answer, layout: Layout) -> Rows:
     yield from _circumstances(facts)
 
 
+def _list(label: str, texts: Iterable[str], style: str = "") -> Rows:
+    for text in texts:
+        yield label, text, style
+        label = ""
+
+
 def _to_do(answer: Answer) -> Rows:
-    for number, (actor, text) in enumerate(answer.actions):
-        yield "to do" if number == 0 else "", f"{actor}: {text}" if actor else text, BOLD
+    yield from _list("to do", (f"{actor}: {text}" if actor else text for actor, text in answer.actions), BOLD)
     for command in answer.commands:
         yield "", f"$ {command}", ""
     if answer.actions or answer.commands:
@@ -85,19 +90,19 @@ def _to_do(answer: Answer) -> Rows:
 def _safety(safety: Safety, facts: Facts, layout: Layout) -> Rows:
     since = f" for {_duration(safety.held)}" if layout.times else ""
     yield "safety", f"{safety.state}{since}, permit: {safety.permit}", ""
-    for number, cause in enumerate(sorted(safety.causes, key=lambda cause: not cause.first)):
+    causes = []
+    for cause in sorted(safety.causes, key=lambda cause: not cause.first):
         marks = [word for word, true in (("first", cause.first), ("still true", cause.active)) if true]
         measured = f": {cause.detail}" if cause.detail else ""
         mark = f" [{', '.join(marks)}]" if marks else ""
-        yield "causes" if number == 0 else "", f"{cause.name}: {cause.sentence}{measured}{mark}", ""
-    for number, warning in enumerate(safety.warnings):
-        yield "warnings" if number == 0 else "", warning, "33"
+        causes.append(f"{cause.name}: {cause.sentence}{measured}{mark}")
+    yield from _list("causes", causes)
+    yield from _list("warnings", safety.warnings, "33")
     if facts.speed_limit < float("inf"):
         what = "not" if facts.kind.legged else "no rim"
         whose = "a warning or clearance" if safety.warnings else "clearance"
         yield "limit", f"{what} faster than {facts.speed_limit:.3g} m/s, by {whose}", ""
-    for number, refusal in enumerate(safety.refusal):
-        yield "last reset" if number == 0 else "", f"refused: {refusal}", ""
+    yield from _list("last reset", (f"refused: {refusal}" for refusal in safety.refusal))
 
 
 def _nodes(facts: Facts) -> Rows:
@@ -150,28 +155,24 @@ def _gate(facts: Facts) -> Rows:
 
 
 def _circumstances(facts: Facts) -> Rows:
-    faults = facts.value(facts.driver, "injected")
+    estimator = facts.kind.estimator
+    faults, machine, suspicious = (facts.value(facts.driver, key) for key in ("injected", "machine", "suspicious"))
     if faults not in {"", "none"}:
         yield "injected", faults, "33"
-    late = [f"{node}: {facts.reports[node].message}" for node in facts.loop if facts.not_real_time(node)]
-    for number, text in enumerate(late):
-        yield "real time" if number == 0 else "", text, "33"
-    machine = facts.value(facts.driver, "machine")
+    said = {node: facts.reports[node].message for node in facts.loop if facts.there(node)}
+    yield from _list("real time", (f"{node}: {text}" for node, text in said.items() if "not real-time" in text), "33")
     if machine:
         yield "machine", machine, ""
-    suspicious = facts.value(facts.driver, "suspicious")
     if suspicious:
         yield "suspicious", suspicious, "33"
-    slip = facts.reasons(facts.kind.estimator, "slip").values()
-    if slip or "slip" in facts.value(facts.kind.estimator, "flags").split():
+    slip = facts.reasons(estimator, "slip").values()
+    if slip or "slip" in facts.value(estimator, "flags").split():
         yield "slip", "; ".join(slip) or "wheels and inertial sensors disagree", "33"
-    lost = facts.reasons(facts.kind.estimator, "estimate").values()
-    if lost:
-        yield "odometry", "; ".join(lost), "33"
-    degraded = facts.reasons(facts.kind.estimator, "degraded").values()
-    if degraded:
-        yield "odometry", f"degraded: {'; '.join(degraded)}", "33"
-    detection = facts.value(facts.kind.estimator, "slip_detection")
+    for key, prefix in (("estimate", ""), ("degraded", "degraded: ")):
+        reasons = facts.reasons(estimator, key).values()
+        if reasons:
+            yield "odometry", prefix + "; ".join(reasons), "33"
+    detection = facts.value(estimator, "slip_detection")
     if detection.startswith(("slow", "off")):
         yield "odometry", f"slip detection is {detection}", ""
     if not facts.master_answers and facts.received() is not None:

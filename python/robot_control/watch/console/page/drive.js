@@ -90,8 +90,8 @@ function move(event) {
 }
 
 for (const end of ["keyup", "pointerup"]) addEventListener(end, () => { released = ""; });
-for (const lost of ["blur", "pagehide", "freeze", "gamepaddisconnected"]) addEventListener(lost, release);
-for (const lost of ["freeze", "visibilitychange"]) document.addEventListener(lost, release);
+for (const event of ["blur", "pagehide", "freeze", "gamepaddisconnected"]) addEventListener(event, release);
+for (const event of ["freeze", "visibilitychange"]) document.addEventListener(event, release);
 addEventListener("contextmenu", (event) => { if (isHeld) { event.preventDefault(); release(); } });
 on("closed", () => { commands = false; release(); });
 on("authority", (authority) => {

@@ -93,8 +93,8 @@ on("authority", (authority) => {
 
 setInterval(() => {
   const dead = silent(), old = dead || performance.now() - slowAt > STATE_SILENCE;
-  const lost = "No connection to the console: everything below is old, and nothing is commanded.";
-  const text = dead ? lost : robotBanner.trim();
+  const noConnection = "No connection to the console: everything below is old, and nothing is commanded.";
+  const text = dead ? noConnection : robotBanner.trim();
   document.body.dataset.link = dead ? "silent" : "open";
   put("banner", text);
   if (dead) { put("who", "No connection."); put("dead-man", ""); }

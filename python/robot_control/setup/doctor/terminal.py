@@ -34,9 +34,8 @@ def python(system: System) -> Finding:
     if system.live and not importlib.util.find_spec("yaml"):
         return fault(f"{sys.executable} lacks yaml", f"call {SYSTEM_PYTHON}; scripts/setup installs what is missing")
     if first not in (SYSTEM_PYTHON, "/bin/python3"):
-        return warning(
-            f"python3 is {first}", f"call {SYSTEM_PYTHON}, or put /usr/bin first", "export PATH=/usr/bin:$PATH"
-        )
+        remedy = f"call {SYSTEM_PYTHON}, or put /usr/bin first"
+        return warning(f"python3 is {first}", remedy, "export PATH=/usr/bin:$PATH")
     return ok(first)
 
 
@@ -95,17 +94,12 @@ def ros_ip(system: System) -> Finding:
     if given.startswith("127.") and not remote_host(system):
         return ok(f"{given}: this machine alone")
     if given.startswith("127."):
-        return fault(
-            f"{given}, and the master is on {remote_host(system)}: no other machine can connect",
-            "set ROS_IP to an address of this machine",
-            *(f"export ROS_IP={each}" for each in sorted(own) if not each.startswith("127.")),
-        )
+        value = f"{given}, and the master is on {remote_host(system)}: no other machine can connect"
+        remedy = "set ROS_IP to an address of this machine"
+        return fault(value, remedy, *(f"export ROS_IP={each}" for each in sorted(own) if not each.startswith("127.")))
     if given not in own:
-        return fault(
-            f"{given} is no address of this machine",
-            f"set it to one of {', '.join(sorted(own))}, or unset it",
-            "unset ROS_IP",
-        )
+        remedy = f"set it to one of {', '.join(sorted(own))}, or unset it"
+        return fault(f"{given} is no address of this machine", remedy, "unset ROS_IP")
     return ok(given)
 
 
@@ -114,11 +108,8 @@ def master_address(system: System) -> Finding:
     given = system.environment.get("ROS_MASTER_URI", "")
     found = address(system)
     if found is None:
-        return fault(
-            f"ROS_MASTER_URI is {given!r}",
-            "set it to http://HOST:11311",
-            "export ROS_MASTER_URI=http://localhost:11311",
-        )
+        command = "export ROS_MASTER_URI=http://localhost:11311"
+        return fault(f"ROS_MASTER_URI is {given!r}", "set it to http://HOST:11311", command)
     numeric = re.fullmatch(r"[\d.]+", found[0])
     if not numeric and remote_host(system) and not _resolves(system, found[0]):
         return fault(f"{found[0]} of ROS_MASTER_URI has no address", "add it to /etc/hosts, or use its number")
@@ -132,11 +123,8 @@ def workspace(_: System) -> Finding:
     for folder in (here, *(here.parents[1] / "install" / name / inside for name in ("robot_control", ""))):
         if any(folder.glob("_robot_control.*.so")):
             return ok(str(folder))
-    return note(
-        f"{here} has no compiled part, nor has an install folder beside it",
-        "scripts/demo, or colcon build in the checkout",
-        "colcon build",
-    )
+    value = f"{here} has no compiled part, nor has an install folder beside it"
+    return note(value, "scripts/demo, or colcon build in the checkout", "colcon build")
 
 
 CHECKS = (
