@@ -16,9 +16,14 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <string>
 #include <string_view>
+#include <vector>
 
+#include "log/replay/field_differences.h"
+#include "log/replay/replicas.h"
 #include "log/replay/report.h"
+#include "log/replay/row_check.h"
 #include "log/replay/variant.h"
 #include "log/rows/joined_row.h"
 #include "log/rows/trace_row.h"
@@ -31,7 +36,7 @@ class Replay {
  public:
   /// `robot` is that of the log, composed with the log's parameters; `period` is in s. Throws as the laws do.
   Replay(const Robot& robot, double period);
-  ~Replay();
+  Replay(Replay&&) = delete;  // its parts refer to the report
 
   /// The laws with other parameters beside those of the log, before the first row; `watch` gets each cycle of each.
   void vary(const Robot& robot, std::function<void(const VariedRow&)> watch);
@@ -43,13 +48,34 @@ class Replay {
   void add(const JoinedRow& row);
 
   /// In the order of the log, with its message and the time under which that stands: every field is compared as well.
-  void add(const TraceRow& row, std::string_view message, std::int64_t time_ns);
+  void add(TraceRow row, std::string_view message, std::int64_t time_ns);
 
-  const ReplayReport& report() const noexcept;
+  const ReplayReport& report() const noexcept { return report_; }
 
  private:
-  struct Parts;
-  std::unique_ptr<Parts> parts_;
+  void run_laws(TraceRow& row);
+  void run(const TraceRow& row, DriverTrace& driver);
+  void run(const TraceRow& row, EstimatorTrace& trace);
+  void run(const TraceRow& row, ControllerTrace& trace);
+  void run(const TraceRow& row, MonitorTrace& trace);
+  std::string gate_input(const DriverTrace& driver, GateInput& input) const;
+  template <class Replica>
+  StateBefore before(Replica& replica, const LawRow& row);
+  template <class Replica, class Trace>
+  bool known(const TraceRow& row, Replica& replica, Trace& trace, StateBefore state, const std::string& missing);
+  template <class Replica, class Trace>
+  void compare(const TraceRow& row, Replica& replica, Trace& trace, FaultKind fault);
+  void differ(const TraceRow& row, LawName law, const std::vector<FieldDifference>& fields);
+
+  ReplayReport report_;
+  RowCheck row_check_;
+  SnapshotStore snapshots_;
+  GateReplica gate_;
+  LawReplica<EstimatorLaw, &EstimatorTrace::state, StateFrame> estimator_;
+  LawReplica<ControllerLaw, &ControllerTrace::command, CommandFrame> controller_;
+  LawReplica<MonitorLaw, &MonitorTrace::permit, Permit> monitor_;
+  std::unique_ptr<Variant> variant_;
+  std::function<void(const VariedRow&)> watch_;
 };
 
 }  // namespace robot_control

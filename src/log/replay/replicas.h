@@ -11,14 +11,6 @@
 
 namespace robot_control {
 
-/// The published frames, found by checksum.
-struct PublishedFrames {
-  FrameHistory<SensorFrame> sensors;
-  FrameHistory<StateFrame> state;
-  FrameHistory<CommandFrame> command;
-  FrameHistory<Permit> permit;
-};
-
 /// Finds the sensor frame that a node used. A driver that paused or ended published its last frame again, with that
 /// state.
 inline bool sensors_of(const FrameHistory<SensorFrame>& published, const FrameHead& head, std::uint64_t checksum,
@@ -40,14 +32,18 @@ inline bool sensors_of(const FrameHistory<SensorFrame>& published, const FrameHe
 struct GateReplica {
   Gate law;
   Continuity continuity;
+  FrameHistory<SensorFrame> published{};
 };
 
-/// `output` is that of the last cycle.
-template <class Law, class Frame>
+/// `output` is that of the last cycle, `kFrame` its place in the row. `published` are the frames, found by checksum.
+template <class Law, auto kFrame, class Frame>
 struct LawReplica {
+  static Frame& frame_of(auto& trace) noexcept { return trace.*kFrame; }
+
   std::unique_ptr<Law> law;
   Continuity continuity;
-  Frame output;
+  Frame output{};
+  FrameHistory<Frame> published{};
 };
 
 }  // namespace robot_control

@@ -3,9 +3,10 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <string_view>
 
-#include "log/replay/owned_row.h"
 #include "log/replay/report.h"
+#include "log/rows/trace_row.h"
 #include "signals/frame_head.h"
 #include "signals/injected_fault.h"
 
@@ -29,11 +30,12 @@ class RowCheck {
   /// `joints` of the robot. `report` lives longer.
   RowCheck(std::size_t joints, ReplayReport& report) noexcept : joints_(joints), report_(report) {}
 
-  /// Called in the order of the log. `row` holds its message, and the computed outputs in place of the logged ones.
-  void check(OwnedRow& row);
+  /// Called in the order of the log. `row` holds the computed outputs in place of the logged ones. `message` is its
+  /// message, and `time_ns` the time of that.
+  void check(TraceRow& row, std::string_view message, std::int64_t time_ns);
 
  private:
-  void place(OwnedRow& row) noexcept;
+  void place(TraceRow& row) noexcept;
 
   std::size_t joints_;
   ReplayReport& report_;
