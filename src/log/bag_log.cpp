@@ -52,10 +52,6 @@ void BagLog::write(const LawSnapshot& snapshot) {
   chunk_snapshot_ = true;
 }
 
-void BagLog::write(const TraceSummary& summary) {
-  chunk_.add(summary);
-}
-
 void BagLog::write_last(const TraceSummary& summary) {
   end_chunk();
   held_.clear();

@@ -64,7 +64,7 @@ class BagLog final : public RowLog {
   void write(const LawSnapshot& snapshot) override;
 
   /// Writes the figures of the timing beside the rows.
-  void write(const TraceSummary& summary);
+  void write(const TraceSummary& summary) { chunk_.add(summary); }
 
   /// Writes the figures of the whole log, after its last row; `close` follows. Without a row in the bag it does
   /// nothing.

@@ -36,10 +36,6 @@ LogFile::LogFile(std::string path, Room room) : path_(std::move(path)), room_(st
   if (file_ < 0) fail(kUnwritable, errno);
 }
 
-LogFile::~LogFile() {
-  end();
-}
-
 void LogFile::check_presence() {
   if (const int absence = absence_of(file_, path_); absence != 0) fail("is not there any more", absence);
 }

@@ -21,7 +21,7 @@ class LogFile {
   LogFile(std::string path, Room room);
 
   /// Closes the file and ignores errors; `close` reports them.
-  ~LogFile();
+  ~LogFile() { end(); }
   LogFile(const LogFile&) = delete;
   LogFile& operator=(const LogFile&) = delete;
 

@@ -283,10 +283,6 @@ VelocitySource Cia402Drive::velocity_source() const noexcept {
   return source == VelocitySource::kDrive && set_up() && velocity_ns_ == 0 ? VelocitySource::kNotSent : source;
 }
 
-void Cia402Drive::add_details(DriveStatus& status) const noexcept {
-  status.details[0] = emergency_;
-}
-
 std::string Cia402Drive::code_words(const DriveStatus& status) const {
   switch (status.cause) {
     case DriveCause::kDriveError:

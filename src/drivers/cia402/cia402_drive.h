@@ -38,7 +38,7 @@ class Cia402Drive final : public Drive {
 
   void restart(bool reset, std::int64_t now_ns) noexcept override;
   void advance(const DriveCommand& command, std::int64_t now_ns, FrameBatch& send) noexcept override;
-  void add_details(DriveStatus& status) const noexcept override;
+  void add_details(DriveStatus& status) const noexcept override { status.details[0] = emergency_; }
   VelocitySource velocity_source() const noexcept override;
   std::string code_words(const DriveStatus& status) const override;
 

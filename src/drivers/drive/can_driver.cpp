@@ -73,10 +73,6 @@ void CanDriver::start() {
   begin();
 }
 
-void CanDriver::reset() noexcept {
-  if (state_ == DriverState::kFault) begin();
-}
-
 void CanDriver::begin() noexcept {
   reset_ = true;
   state_ = DriverState::kStarting;

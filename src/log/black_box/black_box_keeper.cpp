@@ -32,10 +32,6 @@ BlackBoxKeeper::BlackBoxKeeper(const std::string& folder, std::size_t bytes, std
   }
 }
 
-void BlackBoxKeeper::make_box() {
-  box_ = std::make_unique<BlackBox>(folder_.ring(), bytes_, header_);
-}
-
 void BlackBoxKeeper::set_header(const LogHeader& header) {
   header_ = header;
   if (box_ != nullptr) box_->set_header(header);
@@ -71,10 +67,6 @@ void BlackBoxKeeper::check_size() {
       text.data(), text.size(), "telemetry.black_box of %.3g GB holds %.0f s of this robot; %.0f s need %.2g GB",
       static_cast<double>(bytes_) * 1e-9, held, kPromised, static_cast<double>(bytes_) * 1e-9 * 1.1 * kPromised / held);
   notes_.emplace_back(text.data());
-}
-
-BlackBoxKeeper::~BlackBoxKeeper() {
-  ends_.store(true);
 }
 
 BlackBoxKeeper::Outcome BlackBoxKeeper::save(const std::string& ring, IncidentKind kind, const std::string& why,

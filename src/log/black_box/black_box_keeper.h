@@ -27,7 +27,7 @@ class BlackBoxKeeper {
 
   /// Makes a black box of `bytes` in `folder` and keeps the newest `keep` incidents of each kind. Throws LogError.
   BlackBoxKeeper(const std::string& folder, std::size_t bytes, std::size_t keep, LogHeader header);
-  ~BlackBoxKeeper();
+  ~BlackBoxKeeper() { ends_.store(true); }
   BlackBoxKeeper(const BlackBoxKeeper&) = delete;
   BlackBoxKeeper& operator=(const BlackBoxKeeper&) = delete;
 
@@ -69,7 +69,7 @@ class BlackBoxKeeper {
     bool given_up = false;
     std::string note;
   };
-  void make_box();
+  void make_box() { box_ = std::make_unique<BlackBox>(folder_.ring(), bytes_, header_); }
   void check_ring(std::int64_t now_ns);
   void check_size();
   Outcome save(const std::string& ring, IncidentKind kind, const std::string& why, const GiveUp& give_up) const;

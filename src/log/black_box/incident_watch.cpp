@@ -1,7 +1,6 @@
 #include "log/black_box/incident_watch.h"
 
 #include <algorithm>
-#include <utility>
 
 namespace robot_control {
 
@@ -14,10 +13,6 @@ bool IncidentWatch::update(std::uint64_t causes, std::int64_t now_ns) noexcept {
   }
   if (stop || pending()) causes_to_save_ |= causes;
   return stop;
-}
-
-std::uint64_t IncidentWatch::clear() noexcept {
-  return std::exchange(causes_to_save_, 0);
 }
 
 }  // namespace robot_control

@@ -5,6 +5,7 @@
 /// A stop is latched when causes appear and there were none. Causes in the first update were latched before.
 
 #include <cstdint>
+#include <utility>
 
 namespace robot_control {
 
@@ -22,7 +23,7 @@ class IncidentWatch {
   bool due(std::int64_t now_ns) const noexcept { return pending() && now_ns >= due_ns_; }
 
   /// Returns the causes of the stops that are saved now, and forgets them.
-  std::uint64_t clear() noexcept;
+  std::uint64_t clear() noexcept { return std::exchange(causes_to_save_, 0); }
 
  private:
   bool seen_ = false;

@@ -49,10 +49,6 @@ void TrackingLoop::reset() noexcept {
   derive();
 }
 
-void TrackingLoop::assume_encoder_of(const TrackingLoop& other) noexcept {
-  if (quantum_.assume(other.quantum_)) derive();
-}
-
 void TrackingLoop::restart_from(double position, double velocity) noexcept {
   measured_ = position;
   travelled_ = 0;

@@ -48,7 +48,9 @@ class TrackingLoop {
   void reset() noexcept;
 
   /// Uses the encoder's count of another wheel until this one's angle changes.
-  void assume_encoder_of(const TrackingLoop& other) noexcept;
+  void assume_encoder_of(const TrackingLoop& other) noexcept {
+    if (quantum_.assume(other.quantum_)) derive();
+  }
 
   /// Restarts from this state; the encoder's count stays.
   void restart_from(double position, double velocity) noexcept;
