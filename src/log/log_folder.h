@@ -14,15 +14,14 @@
 #include <utility>
 #include <vector>
 
+#include "files/descriptor.h"
+
 namespace robot_control {
 
 class LogFolder {
  public:
   /// `quota`: bytes; 0: no limit.
   LogFolder(const std::string& directory, std::int64_t quota);
-  ~LogFolder();
-  LogFolder(const LogFolder&) = delete;
-  LogFolder& operator=(const LogFolder&) = delete;
 
   /// Returns the path of the running log and makes the folder. An earlier run.bag is renamed to the next number, where
   /// it is a regular file that holds a message. Throws LogError where an earlier log cannot be kept, or where another
@@ -49,7 +48,7 @@ class LogFolder {
 
   std::string directory_;
   std::int64_t quota_;
-  int lock_ = -1;           ///< descriptor of the folder
+  Descriptor lock_;         ///< of the folder
   std::vector<Kept> kept_;  ///< the oldest log stands last
   std::int64_t kept_bytes_ = 0;
   std::vector<std::string> removed_;
