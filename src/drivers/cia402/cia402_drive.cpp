@@ -194,9 +194,7 @@ void Cia402Drive::advance_power(const DriveCommand& command, std::int64_t now_ns
     next_reset_ns_ = now_ns + kResetCycles * period_ns_;
   }
   if (phase_ == Phase::kRunning) {
-    if (needs_velocity() && !has_velocity(now_ns)) {
-      return fail(DriveCause::kSilent, "velocity");
-    }
+    if (needs_velocity() && !has_velocity(now_ns)) return fail(DriveCause::kSilent, "velocity");
     set(DriveState::kRunning, DriveCause::kNone);
     read_voltage(now_ns, send);
     return send_command(Controlword::kEnableOperation, send, command);

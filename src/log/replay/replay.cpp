@@ -145,9 +145,7 @@ void Replay::compare(const TraceRow& row, Replica& replica, Trace& trace, FaultK
       replica.frame_of(expected).head = logged.head;
       fields = differences_of(trace, expected);
     }
-    if (fields.empty()) {
-      fields = {{"digest", std::to_string(law.output), std::to_string(computed.head.checksum)}};
-    }
+    if (fields.empty()) fields = {{"digest", std::to_string(law.output), std::to_string(computed.head.checksum)}};
     differ(row, replica.continuity.law(), fields);
   }
   publish(law, logged, &computed, replica.published);

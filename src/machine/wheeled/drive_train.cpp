@@ -72,9 +72,7 @@ void read_geometry(const RigidBodies& robot, const DriveTrainParameters& paramet
 
 void group_sides(DriveTrain& model) {
   JointGroup left{"left", {}}, right{"right", {}};
-  for (const WheelModel& wheel : model.wheels) {
-    (wheel.side == Side::kLeft ? left : right).joints.push_back(wheel.joint);
-  }
+  for (const WheelModel& wheel : model.wheels) (wheel.side == Side::kLeft ? left : right).joints.push_back(wheel.joint);
   model.groups = {left, right};
 }
 
