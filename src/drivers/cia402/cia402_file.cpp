@@ -2,7 +2,6 @@
 
 #include "drivers/cia402/canopen.h"
 #include "drivers/cia402/cia402_drive.h"
-#include "drivers/cia402/cia402_drives.h"
 #include "drivers/drive/can_drive_file.h"
 
 namespace robot_control {

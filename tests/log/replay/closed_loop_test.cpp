@@ -10,8 +10,8 @@
 #include <utility>
 #include <vector>
 
+#include "log/replay/continuity.h"
 #include "log/replay/recorded.h"
-#include "log/replay/replay_error.h"
 
 namespace robot_control {
 namespace {
