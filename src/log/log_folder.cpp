@@ -5,13 +5,13 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <charconv>
 #include <filesystem>
 #include <functional>
 #include <string_view>
 #include <system_error>
 
 #include "log/log_error.h"
-#include "log/numbered_name.h"
 
 namespace robot_control {
 namespace {
@@ -104,6 +104,16 @@ bool LogFolder::make_room(std::int64_t bytes) {
     kept_.pop_back();
   }
   return true;
+}
+
+std::optional<std::uint64_t> number_in(std::string_view name, std::string_view prefix,
+                                       std::string_view suffix) noexcept {
+  if (name.size() <= prefix.size() + suffix.size() || !name.starts_with(prefix) || !name.ends_with(suffix)) return {};
+  const char* const last = name.data() + name.size() - suffix.size();
+  std::uint64_t number = 0;
+  const auto [end, error] = std::from_chars(name.data() + prefix.size(), last, number);
+  if (error != std::errc() || end != last) return {};
+  return number;
 }
 
 }  // namespace robot_control

@@ -10,13 +10,19 @@
 /// folder itself) ends with the process. Some file systems have no locks; then there is none.
 
 #include <cstdint>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
 #include "files/descriptor.h"
 
 namespace robot_control {
+
+/// N of the file name PREFIX N SUFFIX ("run.7.csv"); nothing: it is another name.
+std::optional<std::uint64_t> number_in(std::string_view name, std::string_view prefix,
+                                       std::string_view suffix) noexcept;
 
 class LogFolder {
  public:

@@ -76,7 +76,7 @@ class ClosedLoop {
   /// Returns the rows that the four nodes published in the last step.
   const JoinedRow& row() const noexcept { return row_; }
 
-  /// Returns what the laser measures in the true state of the last step, whichever cycle it is (laser_parameters.h).
+  /// Returns what the laser measures in the true state of the last step, whichever cycle it is (LaserParameters).
   /// Without a laser there are no ranges.
   LaserScan scan() const;
 

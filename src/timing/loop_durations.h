@@ -23,7 +23,7 @@
 
 #include "signals/roles.h"
 #include "signals/trace.h"
-#include "timing/recent_durations.h"
+#include "timing/duration_histogram.h"
 
 namespace robot_control {
 

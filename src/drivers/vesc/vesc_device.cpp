@@ -4,6 +4,9 @@
 #include <cmath>
 #include <numbers>
 
+#include "drivers/drive/can_front.h"
+#include "drivers/vesc/vesc_parameters.h"
+
 namespace robot_control {
 namespace {
 
@@ -93,6 +96,31 @@ void VescDevice::send_statuses() {
 
 void VescDevice::send_temperature() {
   send(vesc::Status4{.transistors = kCoolVesc, .motor = fault() == DeviceFault::kHot ? kHotVesc : kCoolVesc});
+}
+
+namespace {
+
+constexpr double kVescCurrent = 10;  // A
+
+/// Without a torque constant in the file the motor gives its greatest torque at kVescCurrent.
+VescDeviceParameters device_of(const vesc::VescParameters& drive, const Brake& brake, double clock_ppm) {
+  const double torque = drive.drive.torque_limit / drive.drive.gear;
+  const double constant = drive.torque_constant > 0 ? drive.torque_constant : torque / kVescCurrent;
+  return {.node = static_cast<std::uint8_t>(drive.drive.node),
+          .pole_pairs = static_cast<double>(drive.pole_pairs),
+          .torque_constant = constant,
+          .max_current = torque / constant,
+          .status_period = drive.status_period,
+          .temperature_period = drive.temperature_period,
+          .brake_current = drive.drive.on_silence == SilenceReaction::kBrakes ? torque / constant : 0,
+          .speed_gain = motor_damping(drive.drive, brake),
+          .clock_ppm = clock_ppm};
+}
+
+}  // namespace
+
+std::unique_ptr<DeviceFront> make_vesc_front(const DriveFile& file, FrontSetup setup) {
+  return one_device_per_node<VescDevice>(file, std::move(setup), &device_of);
 }
 
 }  // namespace robot_control

@@ -10,7 +10,7 @@
 #include "files/descriptor.h"
 #include "files/given_path.h"
 #include "log/log_error.h"
-#include "log/numbered_name.h"
+#include "log/log_folder.h"
 
 namespace robot_control {
 namespace {

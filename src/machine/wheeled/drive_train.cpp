@@ -14,7 +14,6 @@
 #include "machine/wheeled/tipping.h"
 #include "machine/wheeled/wheel_suspicions.h"
 #include "machine/wheeled/wheels/drive_wheels.h"
-#include "machine/wheeled/wheels/rockers.h"
 #include "machine/wheeled/wheels/suspension.h"
 #include "machine/wheeled/wheels/wheel_drive.h"
 
