@@ -27,15 +27,15 @@
 
 namespace robot_control {
 
-/// Takes single shared libraries out of the locked memory of the process: unlocks code and constants of every library that is loaded now and whose file name begins with one of `names`, and
-/// gives up their pages. A thread that uses them later reads them from the file again, at the cost of a page fault.
-/// Writable segments hold relocated addresses and stay as they are, as do libraries whose code is relocated. Returns
-/// the number of bytes that were given up.
+/// Takes every library that is loaded now and whose file name begins with one of `names` out of the locked memory. Its
+/// code and constants are unlocked, and their pages given up. A thread that uses them later reads them from the file
+/// again, at the cost of a page fault. Writable segments hold relocated addresses and stay as they are, as do libraries
+/// whose code is relocated. Returns the number of bytes that were given up.
 std::size_t unlock_libraries(std::span<const std::string_view> names) noexcept;
 
-/// For an ordinary thread that must not wait for other programs, but is no part of the loop: gives the calling thread
-/// the lowest priority of SCHED_FIFO, before all ordinary threads of the machine and after every RealtimeThread. Threads that it starts are ordinary. Returns false and changes nothing if that is not granted
-/// (docs/realtime.md).
+/// For an ordinary thread that must not wait for other programs, but is no part of the loop. Gives the calling thread
+/// the lowest priority of SCHED_FIFO: before all ordinary threads of the machine, after every RealtimeThread. Threads
+/// that it starts are ordinary. Returns false and changes nothing if that is not granted (docs/realtime.md).
 bool precede_ordinary_threads() noexcept;
 
 inline constexpr const char* kLatencyDevice = "/dev/cpu_dma_latency";
@@ -94,7 +94,7 @@ class RealtimeError : public std::runtime_error {
 /// Locks all present and future memory of the process with CAP_IPC_LOCK or an unlimited RLIMIT_MEMLOCK. Under a finite
 /// limit nothing is locked, because later mappings and threads would fail at that limit. Locked memory is resident
 /// memory. So, when memory is locked, the allocator keeps two arenas that it never trims, and later threads get stacks
-/// of 1 MiB. Code of large libraries that no loop calls is not locked (unlock_libraries.h). Repeated calls return the
+/// of 1 MiB. Code of large libraries that no loop calls is not locked (unlock_libraries). Repeated calls return the
 /// result of the first call. With kOff nothing is requested. A refusal is not thrown here, but by RealtimeThread, which
 /// has it in its report.
 RealtimeReport prepare_process(RealtimePolicy policy);
