@@ -16,7 +16,7 @@
 #include "bindings/numpy_version.h"
 #include "configuration/live_parameters.h"
 #include "log/messages/message_types.h"
-#include "log/replay/replay_error.h"
+#include "log/replay/continuity.h"
 #include "log/trace_reader.h"
 #include "loop/log_header.h"
 #include "robots/robot_kind.h"

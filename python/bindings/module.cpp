@@ -245,7 +245,7 @@ void bind_closed_loop(py::module_& module) {
   py::class_<ClosedLoop>(module, "ClosedLoop")
       .def(py::init([](const std::string& path, const LayerValues& values) {
              check_numpy_version();
-             return ClosedLoop(parameters_from(path, values));
+             return std::make_unique<ClosedLoop>(parameters_from(path, values));
            }),
            "path"_a, "values"_a)
       .def(

@@ -13,24 +13,22 @@
 ///       timeout: 0           # s after which silence also locks; 0: only `true` locks
 ///       priority: 255        # masks every source of a lower priority
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
 namespace robot_control {
 
-struct CommandSource {
-  std::string name;
-  std::string topic;
-  double timeout = 0;  ///< s; 0: never
-  int priority = 0;
-  bool stamped = false;
-};
-
 struct CommandLock {
   std::string name;
   std::string topic;
   double timeout = 0;  ///< s; 0: silence does not lock
-  int priority = 0;
+  std::int64_t priority = 0;
+};
+
+/// The timeout 0 of a source means never.
+struct CommandSource : CommandLock {
+  bool stamped = false;
 };
 
 struct CommandSourceList {

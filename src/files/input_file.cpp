@@ -8,6 +8,8 @@
 #include <cerrno>
 #include <cstring>
 
+#include "files/descriptor.h"
+
 namespace robot_control {
 namespace {
 
@@ -29,22 +31,6 @@ std::string problem_of(const struct stat& status, std::size_t max_bytes) {
   return "has " + std::to_string(status.st_size) + " bytes, at most " + std::to_string(max_bytes) + " are read";
 }
 
-class InputDescriptor {
- public:
-  explicit InputDescriptor(const std::string& path)
-      : number_(open(path.c_str(), O_RDONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC)) {}
-  ~InputDescriptor() {
-    if (number_ >= 0) close(number_);
-  }
-  InputDescriptor(const InputDescriptor&) = delete;
-  InputDescriptor& operator=(const InputDescriptor&) = delete;
-
-  int number() const { return number_; }
-
- private:
-  int number_;
-};
-
 }  // namespace
 
 std::string input_file_problem(const std::string& path, std::size_t max_bytes) {
@@ -57,9 +43,9 @@ InputFile read_input_file(const std::string& path, std::size_t max_bytes) {
   InputFile result;
   const auto refused = [&](const std::string& problem) { return InputFile{.text = "", .problem = problem}; };
   if (const std::string problem = input_file_problem(path, max_bytes); !problem.empty()) return refused(problem);
-  const InputDescriptor file(path);
+  const Descriptor file(open(path.c_str(), O_RDONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC));
   struct stat status {};
-  if (file.number() < 0 || fstat(file.number(), &status) != 0) return refused(std::strerror(errno));
+  if (!file.open() || fstat(file.number(), &status) != 0) return refused(std::strerror(errno));
   if (const std::string problem = problem_of(status, max_bytes); !problem.empty()) return refused(problem);
   constexpr std::size_t kPiece = std::size_t{1} << 16U;
   result.text.reserve(static_cast<std::size_t>(status.st_size));

@@ -9,6 +9,8 @@
 #include <system_error>
 #include <utility>
 
+#include "files/descriptor.h"
+
 namespace robot_control {
 namespace {
 
@@ -19,39 +21,30 @@ constexpr mode_t kNewFile = 0644;  // minus the bits of the umask
 class OutputDescriptor {
  public:
   OutputDescriptor(std::string path, int flags)
-      : path_(std::move(path)), number_(open(path_.c_str(), flags | O_CLOEXEC | O_NOCTTY, kNewFile)) {
-    if (number_ < 0) fail();
+      : path_(std::move(path)), file_(open(path_.c_str(), flags | O_CLOEXEC | O_NOCTTY, kNewFile)) {
+    if (!file_.open()) fail();
   }
-  ~OutputDescriptor() {
-    if (number_ >= 0) ::close(number_);
-  }
-  OutputDescriptor(const OutputDescriptor&) = delete;
-  OutputDescriptor& operator=(const OutputDescriptor&) = delete;
 
   void write_all(const std::string& text) const {
-    for (std::size_t done = 0; done < text.size();) {
-      const ssize_t count = ::write(number_, text.data() + done, text.size() - done);
-      if (count < 0 && errno != EINTR) fail();
-      if (count > 0) done += static_cast<std::size_t>(count);
-    }
+    if (file_.write(text) != 0) fail();
   }
 
   void sync() const {
     // Pipes and devices have nothing to synchronise.
-    if (fsync(number_) != 0 && errno != EINVAL && errno != EROFS) fail();
+    if (fsync(file_.number()) != 0 && errno != EINVAL && errno != EROFS) fail();
   }
 
   void close() {
-    if (::close(std::exchange(number_, -1)) != 0) fail();
+    if (file_.close() != 0) fail();
   }
 
   /// Returns false if this user may not change the owner.
   bool copy_owner_and_mode(const struct stat& old) const {
     struct stat own {};
-    if (fstat(number_, &own) != 0) fail();
+    if (fstat(file_.number(), &own) != 0) fail();
     const bool other = own.st_uid != old.st_uid || own.st_gid != old.st_gid;
-    if (other && fchown(number_, old.st_uid, old.st_gid) != 0) return false;
-    if (fchmod(number_, old.st_mode & 07777U) != 0) fail();
+    if (other && fchown(file_.number(), old.st_uid, old.st_gid) != 0) return false;
+    if (fchmod(file_.number(), old.st_mode & 07777U) != 0) fail();
     return true;
   }
 
@@ -59,7 +52,7 @@ class OutputDescriptor {
   [[noreturn]] void fail() const { throw std::system_error(errno, std::generic_category(), path_); }
 
   std::string path_;
-  int number_;
+  Descriptor file_;
 };
 
 /// Returns the target of symbolic links, which need not exist.

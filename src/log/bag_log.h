@@ -2,7 +2,7 @@
 /// The log of every cycle is a ROS bag, run.bag, with the topics `trace_header` (latched, first), `trace`,
 /// `trace_snapshot` and, on the wall clock, `trace_summary`.
 ///
-/// Rows are collected in chunks of a second. If only motion is recorded (motion_watch.h), the chunks of the last
+/// Rows are collected in chunks of a second. If only motion is recorded (MotionWatch), the chunks of the last
 /// `before_ns` are held in memory and written when motion begins. A bag of the permitted size or length is closed and
 /// kept under the next number, and another one begins (log_folder.h). It begins with the next snapshots of the laws, so
 /// that it can be replayed from its begin. If none comes within `before_ns`, or the quota is small, it begins without.
@@ -24,11 +24,28 @@
 #include "log/log_folder.h"
 #include "log/log_parameters.h"
 #include "log/messages/log_messages.h"
-#include "log/motion_watch.h"
+#include "log/rows/joined_row.h"
 #include "log/rows/row_log.h"
 #include "signals/law_snapshot.h"
 
 namespace robot_control {
+
+/// If only motion is recorded (telemetry.record: motion), this watch decides which cycles are.
+///
+/// The robot moves while a velocity other than zero is requested, while the estimator reports no standstill, or while a
+/// node gives no frame. A change of the safety monitor's state or causes counts as motion. Motion ends `kAfter` later.
+class MotionWatch {
+ public:
+  static constexpr std::int64_t kAfter = 5'000'000'000;  ///< ns; the oscillation after a stop is recorded, too
+
+  /// True: the cycle is to be recorded.
+  bool step(const JoinedRow& row, std::int64_t time_ns) noexcept;
+
+ private:
+  std::uint64_t state_ = 0;
+  std::uint64_t causes_ = 0;
+  std::int64_t until_ns_ = 0;
+};
 
 class BagLog final : public RowLog {
  public:
@@ -64,7 +81,7 @@ class BagLog final : public RowLog {
   void write(const LawSnapshot& snapshot) override;
 
   /// Writes the figures of the timing beside the rows.
-  void write(const TraceSummary& summary);
+  void write(const TraceSummary& summary) { chunk_.add(summary); }
 
   /// Writes the figures of the whole log, after its last row; `close` follows. Without a row in the bag it does
   /// nothing.

@@ -10,6 +10,8 @@
 #include <string>
 #include <string_view>
 
+#include "files/descriptor.h"
+
 namespace robot_control {
 
 class LogFile {
@@ -20,11 +22,6 @@ class LogFile {
   /// Makes the folders above `path` and replaces the file. Throws LogError.
   LogFile(std::string path, Room room);
 
-  /// Closes the file and ignores errors; `close` reports them.
-  ~LogFile();
-  LogFile(const LogFile&) = delete;
-  LogFile& operator=(const LogFile&) = delete;
-
   /// Throws LogError where the file is not at its path any more.
   void check_presence();
 
@@ -34,20 +31,19 @@ class LogFile {
   /// Replaces the file's first bytes. Throws LogError.
   void replace_begin(std::string_view bytes);
 
-  /// Synchronises and closes the file. Throws LogError.
+  /// Synchronises and closes the file. Throws LogError. Without this call it is closed at last, and errors are ignored.
   void close();
 
-  bool open() const noexcept { return file_ >= 0; }
+  bool open() const noexcept { return file_.open(); }
   std::int64_t bytes() const noexcept { return bytes_; }  ///< size up to the end of the last whole part
   const std::string& path() const noexcept { return path_; }
 
  private:
-  void end() noexcept;
   [[noreturn]] void fail(const std::string& what, int error);
 
   std::string path_;
   Room room_;
-  int file_ = -1;
+  Descriptor file_;
   std::int64_t bytes_ = 0;
 };
 

@@ -2,18 +2,16 @@
 
 #include <fcntl.h>
 #include <sys/file.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
+#include <charconv>
 #include <filesystem>
 #include <functional>
 #include <string_view>
 #include <system_error>
 
 #include "log/log_error.h"
-#include "log/numbered_name.h"
 
 namespace robot_control {
 namespace {
@@ -32,31 +30,20 @@ LogFolder::LogFolder(const std::string& directory, std::int64_t quota) : directo
   list_kept();
 }
 
-LogFolder::~LogFolder() {
-  if (lock_ >= 0) close(lock_);
-}
-
 /// A folder that was removed and made again is locked again.
 void LogFolder::lock() {
   const std::string directory = directory_.empty() ? "." : directory_;
   std::error_code error;
   fs::create_directories(directory, error);  // an error shows when the log is opened
-  const int descriptor = open(directory.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  if (descriptor < 0) return;
-  struct stat own {};
-  struct stat present {};
-  const bool same = lock_ >= 0 && fstat(lock_, &own) == 0 && fstat(descriptor, &present) == 0 &&
-                    own.st_ino == present.st_ino && own.st_dev == present.st_dev;
-  const bool taken = !same && flock(descriptor, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK;
-  if (same || taken) close(descriptor);
-  if (taken) {
+  if (lock_.open() && lock_.absence_from(directory) == 0) return;
+  Descriptor folder(open(directory.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+  if (!folder.open()) return;
+  if (flock(folder.number(), LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
     throw LogError("folder " + directory +
                    " is used by another telemetry, which writes its logs there; name another one "
                    "(telemetry.directory)");
   }
-  if (same) return;
-  if (lock_ >= 0) close(lock_);
-  lock_ = descriptor;
+  lock_ = std::move(folder);
 }
 
 void LogFolder::list_kept() {
@@ -117,6 +104,16 @@ bool LogFolder::make_room(std::int64_t bytes) {
     kept_.pop_back();
   }
   return true;
+}
+
+std::optional<std::uint64_t> number_in(std::string_view name, std::string_view prefix,
+                                       std::string_view suffix) noexcept {
+  if (name.size() <= prefix.size() + suffix.size() || !name.starts_with(prefix) || !name.ends_with(suffix)) return {};
+  const char* const last = name.data() + name.size() - suffix.size();
+  std::uint64_t number = 0;
+  const auto [end, error] = std::from_chars(name.data() + prefix.size(), last, number);
+  if (error != std::errc() || end != last) return {};
+  return number;
 }
 
 }  // namespace robot_control

@@ -10,19 +10,24 @@
 /// folder itself) ends with the process. Some file systems have no locks; then there is none.
 
 #include <cstdint>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
+#include "files/descriptor.h"
+
 namespace robot_control {
+
+/// N of the file name PREFIX N SUFFIX ("run.7.csv"); nothing: it is another name.
+std::optional<std::uint64_t> number_in(std::string_view name, std::string_view prefix,
+                                       std::string_view suffix) noexcept;
 
 class LogFolder {
  public:
   /// `quota`: bytes; 0: no limit.
   LogFolder(const std::string& directory, std::int64_t quota);
-  ~LogFolder();
-  LogFolder(const LogFolder&) = delete;
-  LogFolder& operator=(const LogFolder&) = delete;
 
   /// Returns the path of the running log and makes the folder. An earlier run.bag is renamed to the next number, where
   /// it is a regular file that holds a message. Throws LogError where an earlier log cannot be kept, or where another
@@ -49,7 +54,7 @@ class LogFolder {
 
   std::string directory_;
   std::int64_t quota_;
-  int lock_ = -1;           ///< descriptor of the folder
+  Descriptor lock_;         ///< of the folder
   std::vector<Kept> kept_;  ///< the oldest log stands last
   std::int64_t kept_bytes_ = 0;
   std::vector<std::string> removed_;

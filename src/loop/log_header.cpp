@@ -8,7 +8,7 @@
 
 #include "files/input_file.h"
 #include "log/messages/message_types.h"
-#include "machine/joint_role.h"
+#include "machine/machine_model.h"
 
 namespace robot_control {
 namespace {

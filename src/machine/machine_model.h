@@ -5,6 +5,8 @@
 /// It is read from a URDF with urdfdom; positions come from a KDL tree at the zero pose. `base` is the frame of the
 /// root link (REP 103: x forward, y left, z up).
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -22,6 +24,12 @@ enum class JointRole {
   kPassive,  ///< not driven: no effort limit is given, it follows another joint, or the robot's kind leaves it free
   kHeld,     ///< has an actuator that the controller does not drive (arm, lift, gripper), and is always braked
 };
+
+/// Returns "driven", "passive" or "held".
+constexpr const char* name_of(JointRole role) noexcept {
+  constexpr std::array<const char*, 3> kNames{"driven", "passive", "held"};
+  return kNames[static_cast<std::size_t>(role)];
+}
 
 /// Holds a range in rad or m, lower < upper.
 struct JointRange {

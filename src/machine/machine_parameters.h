@@ -13,7 +13,7 @@ namespace robot_control {
 struct MachineParameters {
   std::optional<double> mass;                ///< kg
   std::optional<Vector3> centre_of_gravity;  ///< m, base axes
-  std::string imu_link;                      ///< empty: found by its name, else the IMU is in the base (imu_place.h)
+  std::string imu_link;                      ///< empty: found by its name, else the IMU is in the base
   std::optional<Vector3> imu_position;       ///< m, base axes
   std::optional<Vector3> imu_orientation;  ///< rad, roll, pitch and yaw of the IMU's axes in the base's, as URDF's rpy
 };

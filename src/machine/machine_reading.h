@@ -32,7 +32,8 @@ MassSum sum_of_masses(const RigidBodies& bodies);
 /// Sets mass and centre of gravity. A given centre is noted if it differs by more than 1 % of `length` (m).
 void read_masses(const RigidBodies& bodies, const MachineParameters& parameters, double length, MachineModel& machine);
 
-/// Sets link and pose of the IMU (imu_place.h).
+/// Sets link and pose of the IMU. Without a name that is "imu_link", or the first link in the file with a word that
+/// begins with "imu" or "gyro". Throws RobotError if a given link does not exist or moves, or a number is not finite.
 void read_imu(const RigidBodies& bodies, const MachineParameters& parameters, double length, MachineModel& machine);
 
 /// Returns the notes with those of equal words in one, which names all their elements.

@@ -71,34 +71,6 @@ void put_value(const std::string& path, const YAML::Node& value, const std::stri
   });
 }
 
-void read_document(const YAML::Node& root, const std::string& source, const std::filesystem::path& folder,
-                   ParameterTree& tree, ProblemList& problems) {
-  if (!root.IsMap()) {
-    problems.add({source, "", "must consist of blocks, such as robot:", "", ""});
-    return;
-  }
-  for_each_key(root, "", source, problems, [&](const auto& block, const auto& block_origin, const YAML::Node& keys) {
-    tree.blocks.push_back({block, block_origin});
-    if (keys.IsNull()) return;
-    if (!keys.IsMap()) {
-      problems.add(
-          {printable(block), "", "must be a block of keys", block_origin, "indent `key: value` lines below it"});
-      return;
-    }
-    for_each_key(
-        keys, block + ".", source, problems, [&](const auto& name, const auto& origin, const YAML::Node& value) {
-          put_value(block + "." + name, value, origin, source, problems,
-                    [&](const std::string& path, Entry entry, const std::string& at) {
-                      entry.origin = at;
-                      entry.folder = folder;
-                      const auto [old, fresh] = tree.entries.emplace(path, std::move(entry));
-                      if (fresh) return;
-                      problems.add({printable(path), "", "given twice, first at " + old->second.origin, at, ""});
-                    });
-        });
-  });
-}
-
 /// Documents counts the documents of a text and finds their tags, which YAML::Node does not show.
 class Documents : public YAML::EventHandler {
   using Mark = YAML::Mark;
@@ -243,6 +215,34 @@ void lay_request_over(const std::string& block, const std::string& text, Paramet
   } catch (const YAML::Exception& error) {
     refuse(form + ", is not YAML: " + printable(error.msg));
   }
+}
+
+void read_document(const YAML::Node& root, const std::string& source, const std::filesystem::path& folder,
+                   ParameterTree& tree, ProblemList& problems) {
+  if (!root.IsMap()) {
+    problems.add({source, "", "must consist of blocks, such as robot:", "", ""});
+    return;
+  }
+  for_each_key(root, "", source, problems, [&](const auto& block, const auto& block_origin, const YAML::Node& keys) {
+    tree.blocks.push_back({block, block_origin});
+    if (keys.IsNull()) return;
+    if (!keys.IsMap()) {
+      problems.add(
+          {printable(block), "", "must be a block of keys", block_origin, "indent `key: value` lines below it"});
+      return;
+    }
+    for_each_key(
+        keys, block + ".", source, problems, [&](const auto& name, const auto& origin, const YAML::Node& value) {
+          put_value(block + "." + name, value, origin, source, problems,
+                    [&](const std::string& path, Entry entry, const std::string& at) {
+                      entry.origin = at;
+                      entry.folder = folder;
+                      const auto [old, fresh] = tree.entries.emplace(path, std::move(entry));
+                      if (fresh) return;
+                      problems.add({printable(path), "", "given twice, first at " + old->second.origin, at, ""});
+                    });
+        });
+  });
 }
 
 ParameterTree read_tree(const std::string& yaml_path, const std::vector<Overlay>& overlays, ProblemList& problems,

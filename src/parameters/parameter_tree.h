@@ -54,6 +54,10 @@ ParameterTree read_tree(const std::string& yaml_path, const std::vector<Overlay>
                         std::optional<Problem> (*foreign)(const std::string& path, const YAML::Node& root),
                         const std::string& base_path = "");
 
+/// Adds a map of blocks, which stands in the file `source`. A path in it refers to `folder`.
+void read_document(const YAML::Node& root, const std::string& source, const std::filesystem::path& folder,
+                   ParameterTree& tree, ProblemList& problems);
+
 /// Lays a request over the tree. The request is the text of a YAML map of keys of `block`, with at most kMaxRequest
 /// bytes. Any other text is one problem.
 void lay_request_over(const std::string& block, const std::string& text, ParameterTree& tree, ProblemList& problems);

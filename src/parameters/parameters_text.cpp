@@ -9,15 +9,14 @@ namespace {
 
 struct ValueText {
   std::string operator()(const double* value) const { return yaml_number(*value); }
-  std::string operator()(const std::optional<double>* value) const { return *value ? yaml_number(**value) : ""; }
   template <std::size_t N>
   std::string operator()(const std::array<double, N>* value) const {
     std::string text;
     for (const double number : *value) text += (text.empty() ? "" : ", ") + yaml_number(number);
     return "[" + text + "]";
   }
-  template <std::size_t N>
-  std::string operator()(const std::optional<std::array<double, N>>* value) const {
+  template <class Value>
+  std::string operator()(const std::optional<Value>* value) const {
     return *value ? (*this)(&**value) : "";
   }
   std::string operator()(const std::int64_t* value) const { return std::to_string(*value); }

@@ -13,18 +13,14 @@ std::string range_of(const Key& key, std::string_view noun) {
 
 struct Rule {
   std::string operator()(const double*) const { return range_of(key, "a number"); }
-  std::string operator()(const std::optional<double>*) const { return range_of(key, "a number"); }
   std::string operator()(const std::int64_t*) const { return range_of(key, "a whole number"); }
   std::string operator()(const std::uint64_t*) const { return range_of(key, "a whole number"); }
   std::string operator()(const NumberList<3>*) const { return range_of(key, "a list of three numbers, each"); }
-  std::string operator()(const std::optional<NumberList<3>>*) const {
-    return (*this)(static_cast<NumberList<3>*>(nullptr));
-  }
-  std::string operator()(const std::optional<NumberList<4>>*) const {
-    return range_of(key, "a list of four numbers, each");
-  }
-  std::string operator()(const std::optional<NumberList<6>>*) const {
-    return range_of(key, "a list of six numbers, each");
+  std::string operator()(const NumberList<4>*) const { return range_of(key, "a list of four numbers, each"); }
+  std::string operator()(const NumberList<6>*) const { return range_of(key, "a list of six numbers, each"); }
+  template <class Value>
+  std::string operator()(const std::optional<Value>*) const {
+    return (*this)(static_cast<const Value*>(nullptr));
   }
   std::string operator()(const bool*) const { return "true or false"; }
   std::string operator()(const std::string*) const {

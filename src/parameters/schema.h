@@ -17,12 +17,12 @@ struct Block {
 };
 
 struct Schema {
-  std::vector<Block> blocks;
+  std::vector<Block> blocks = {};
   /// Checks the rules across keys after every value was read.
-  std::function<void(const Schema& schema, GivenValues& given)> check;
+  std::function<void(const Schema& schema, GivenValues& given)> check = [](const Schema&, GivenValues&) {};
 
   /// Returns the remedy for a key of another package ("wheel_radius_multiplier"); "" if no such package has it.
-  std::string (*other_package_remedy)(std::string_view key);
+  std::string (*other_package_remedy)(std::string_view key) = [](std::string_view) { return std::string(); };
 };
 
 /// Returns "block.key" or "block.group.key".

@@ -51,22 +51,27 @@ class Reader {
   Reader(const Entry& entry, const std::string& path, const Key& key, ProblemList& problems)
       : entry_(entry), path_(path), key_(key), problems_(problems) {}
 
-  bool operator()(double* to) { return number(*to); }
-  bool operator()(std::int64_t* to) { return number(*to); }
-  bool operator()(std::uint64_t* to) { return number(*to); }
-
-  bool operator()(std::optional<double>* to) {
-    double value = 0;
-    if (!number(value)) return false;
+  template <class Number>
+  bool operator()(Number* to) {
+    return number(entry_, *to);
+  }
+  template <class Value>
+  bool operator()(std::optional<Value>* to) {
+    Value value{};
+    if (!(*this)(&value)) return false;
     *to = value;
     return true;
   }
-
-  bool operator()(NumberList<3>* to) { return numbers<NumberList<3>>(*to); }
-  bool operator()(std::optional<NumberList<3>>* to) { return numbers<NumberList<3>>(*to); }
-  bool operator()(std::optional<NumberList<4>>* to) { return numbers<NumberList<4>>(*to); }
-  bool operator()(std::optional<NumberList<6>>* to) { return numbers<NumberList<6>>(*to); }
-
+  template <std::size_t N>
+  bool operator()(NumberList<N>* to) {
+    NumberList<N> value{};
+    if (entry_.kind != Entry::Kind::kList || entry_.items.size() != N) return refuse("must be " + rule_of(key_));
+    for (std::size_t i = 0; i < N; ++i) {
+      if (!number(entry_.items[i], value[i])) return false;
+    }
+    *to = value;
+    return true;
+  }
   bool operator()(std::vector<std::string>* to) {
     // A single name stands for a list of one.
     const std::vector<Entry> items = entry_.kind == Entry::Kind::kList ? entry_.items : std::vector{entry_};
@@ -117,11 +122,6 @@ class Reader {
   }
 
   template <class Number>
-  bool number(Number& to) {
-    return number(entry_, to);
-  }
-
-  template <class Number>
   bool number(const Entry& entry, Number& to) {
     if (entry.kind != Entry::Kind::kPlain) return refuse("must be " + rule_of(key_));
     if (not_finite(entry.text)) return refuse("must be finite, " + rule_of(key_));
@@ -130,19 +130,6 @@ class Reader {
     const auto real = static_cast<double>(value);
     const bool off = (key_.traits & kZeroIsOff) != 0 && value == Number{0};
     if (!off && !(real >= key_.min && real <= key_.max)) return refuse("must be " + rule_of(key_));
-    to = value;
-    return true;
-  }
-
-  template <class Array, class To>
-  bool numbers(To& to) {
-    Array value{};
-    if (entry_.kind != Entry::Kind::kList || entry_.items.size() != value.size()) {
-      return refuse("must be " + rule_of(key_));
-    }
-    for (std::size_t i = 0; i < value.size(); ++i) {
-      if (!number(entry_.items[i], value[i])) return false;
-    }
     to = value;
     return true;
   }

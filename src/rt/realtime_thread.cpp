@@ -1,5 +1,7 @@
 #include "rt/realtime_thread.h"
 
+#include <fcntl.h>
+#include <link.h>
 #include <linux/capability.h>
 #include <malloc.h>
 #include <pthread.h>
@@ -12,6 +14,7 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
+#include <cstdint>
 #include <cstring>
 #include <fstream>
 #include <future>
@@ -20,7 +23,6 @@
 #include <utility>
 
 #include "rt/crash_report.h"
-#include "rt/unlock_libraries.h"
 #include "rt/wait_count.h"
 
 namespace robot_control {
@@ -219,6 +221,86 @@ void RealtimeThread::join() {
   if (thread_->joined) return;
   pthread_join(thread_->handle, nullptr);
   thread_->joined = true;
+}
+
+namespace {
+
+std::string remedy_of(int error) {
+  if (error == EACCES || error == EPERM) return "scripts/privileges install, or in a container the device itself";
+  return "leave robot.cpu_dma_latency out, or use a kernel with CONFIG_CPU_IDLE and its device";
+}
+
+}  // namespace
+
+LatencyRequest::LatencyRequest(std::int32_t latency_us, const char* device)
+    : descriptor_(open(device, O_WRONLY | O_CLOEXEC)) {
+  if (descriptor_ >= 0 && write(descriptor_, &latency_us, sizeof latency_us) == sizeof latency_us) return;
+  const int error = errno;
+  refusal_ = "cpu_dma_latency " + std::to_string(latency_us) + " us is not granted (" + device + ": " +
+             std::strerror(error) + "; remedy: " + remedy_of(error) + ")";
+}
+
+LatencyRequest::~LatencyRequest() {
+  if (descriptor_ >= 0) close(descriptor_);
+}
+
+bool precede_ordinary_threads() noexcept {
+  constexpr int kLowest = 1;
+  if (rlimit limit{}; getrlimit(RLIMIT_RTPRIO, &limit) == 0 && limit.rlim_cur < kLowest) {
+    limit.rlim_cur = limit.rlim_max;
+    setrlimit(RLIMIT_RTPRIO, &limit);
+  }
+  const sched_param parameter{.sched_priority = kLowest};
+  return sched_setscheduler(0, SCHED_FIFO | SCHED_RESET_ON_FORK, &parameter) == 0;
+}
+
+namespace {
+
+struct Search {
+  std::span<const std::string_view> names;
+  std::size_t bytes = 0;
+};
+
+bool wanted(const Search& search, std::string_view path) noexcept {
+  const std::string_view file = path.substr(path.rfind('/') + 1);
+  return std::ranges::any_of(search.names, [&](std::string_view name) { return file.starts_with(name); });
+}
+
+/// Returns whether code is changed when the library is loaded. Then its pages cannot be read from the file again.
+bool relocates_code(const dl_phdr_info& library) noexcept {
+  for (const ElfW(Phdr) & segment : std::span(library.dlpi_phdr, library.dlpi_phnum)) {
+    if (segment.p_type != PT_DYNAMIC) continue;
+    const auto* entry =
+        reinterpret_cast<const ElfW(Dyn)*>(library.dlpi_addr + segment.p_vaddr);  // NOLINT(performance-no-int-to-ptr)
+    for (; entry->d_tag != DT_NULL; ++entry) {
+      if (entry->d_tag == DT_TEXTREL || (entry->d_tag == DT_FLAGS && (entry->d_un.d_val & DF_TEXTREL) != 0))
+        return true;
+    }
+  }
+  return false;
+}
+
+int unlock(dl_phdr_info* library, std::size_t /*size*/, void* argument) {
+  auto& search = *static_cast<Search*>(argument);
+  if (!wanted(search, library->dlpi_name) || relocates_code(*library)) return 0;
+  const auto page = static_cast<std::uintptr_t>(sysconf(_SC_PAGESIZE));
+  for (const ElfW(Phdr) & segment : std::span(library->dlpi_phdr, library->dlpi_phnum)) {
+    if (segment.p_type != PT_LOAD || (segment.p_flags & PF_W) != 0) continue;
+    const std::uintptr_t begin = (library->dlpi_addr + segment.p_vaddr) / page * page;
+    const std::uintptr_t end = (library->dlpi_addr + segment.p_vaddr + segment.p_memsz + page - 1) / page * page;
+    auto* const memory = reinterpret_cast<void*>(begin);  // NOLINT(performance-no-int-to-ptr)
+    if (munlock(memory, end - begin) == 0 && madvise(memory, end - begin, MADV_DONTNEED) == 0)
+      search.bytes += end - begin;
+  }
+  return 0;
+}
+
+}  // namespace
+
+std::size_t unlock_libraries(std::span<const std::string_view> names) noexcept {
+  Search search{.names = names};
+  dl_iterate_phdr(&unlock, &search);
+  return search.bytes;
 }
 
 }  // namespace robot_control

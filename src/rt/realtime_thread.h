@@ -6,7 +6,7 @@
 /// the stacks of later threads small and locks the memory. Then the ordinary threads are started, at last the
 /// RealtimeThread. That thread sets its core and SCHED_FIFO itself immediately before the body runs, so that no other
 /// thread inherits them. While it exists, the idle states of the processors are limited, if that is requested
-/// (latency_request.h).
+/// (LatencyRequest).
 ///
 /// Each refused request is reported with its remedy: "<what> (<why>; remedy: <line of /etc/security/limits.d or
 /// capability>)". Under kRequired a refusal is an error at start-up. The core needs no privilege and is set under every
@@ -17,14 +17,52 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <span>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "parameters/block.h"
-#include "rt/latency_request.h"
 
 namespace robot_control {
+
+/// Takes every library that is loaded now and whose file name begins with one of `names` out of the locked memory. Its
+/// code and constants are unlocked, and their pages given up. A thread that uses them later reads them from the file
+/// again, at the cost of a page fault. Writable segments hold relocated addresses and stay as they are, as do libraries
+/// whose code is relocated. Returns the number of bytes that were given up.
+std::size_t unlock_libraries(std::span<const std::string_view> names) noexcept;
+
+/// For an ordinary thread that must not wait for other programs, but is no part of the loop. Gives the calling thread
+/// the lowest priority of SCHED_FIFO: before all ordinary threads of the machine, after every RealtimeThread. Threads
+/// that it starts are ordinary. Returns false and changes nothing if that is not granted (docs/realtime.md).
+bool precede_ordinary_threads() noexcept;
+
+inline constexpr const char* kLatencyDevice = "/dev/cpu_dma_latency";
+
+/// A LatencyRequest limits how deep the processors of the machine may sleep while they are idle.
+///
+/// A processor needs up to some hundred µs to leave a deep idle state. A 32-bit number of µs that is written
+/// to /dev/cpu_dma_latency excludes the idle states with a longer exit latency; 0 permits polling alone. The smallest
+/// of all requests holds for all processors. A request ends when its descriptor is closed, also by the end of the
+/// process. Source: the kernel's documentation, power/pm_qos_interface.
+class LatencyRequest {
+ public:
+  LatencyRequest() = default;  ///< requests nothing
+
+  /// Opens the device and writes the request. A refusal is no exception: `refusal` returns it.
+  explicit LatencyRequest(std::int32_t latency_us, const char* device = kLatencyDevice);
+  LatencyRequest(const LatencyRequest&) = delete;
+  LatencyRequest& operator=(const LatencyRequest&) = delete;
+  ~LatencyRequest();
+
+  /// Returns what was refused, why, and the remedy; "" if the request is in force or nothing was requested.
+  const std::string& refusal() const noexcept { return refusal_; }
+
+ private:
+  int descriptor_ = -1;
+  std::string refusal_;
+};
 
 enum class RealtimePolicy {
   kRequired,   ///< the node starts only if everything is granted
@@ -56,7 +94,7 @@ class RealtimeError : public std::runtime_error {
 /// Locks all present and future memory of the process with CAP_IPC_LOCK or an unlimited RLIMIT_MEMLOCK. Under a finite
 /// limit nothing is locked, because later mappings and threads would fail at that limit. Locked memory is resident
 /// memory. So, when memory is locked, the allocator keeps two arenas that it never trims, and later threads get stacks
-/// of 1 MiB. Code of large libraries that no loop calls is not locked (unlock_libraries.h). Repeated calls return the
+/// of 1 MiB. Code of large libraries that no loop calls is not locked (unlock_libraries). Repeated calls return the
 /// result of the first call. With kOff nothing is requested. A refusal is not thrown here, but by RealtimeThread, which
 /// has it in its report.
 RealtimeReport prepare_process(RealtimePolicy policy);

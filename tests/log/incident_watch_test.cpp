@@ -1,4 +1,4 @@
-#include "log/black_box/incident_watch.h"
+#include "log/black_box/black_box_keeper.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "log/motion_watch.h"
+#include "log/bag_log.h"
 
 #include <gtest/gtest.h>
 

@@ -31,7 +31,7 @@
 #include <optional>
 #include <string>
 
-#include "machine/wheeled/wheel_command.h"
+#include "machine/wheeled/drive_train_parameters.h"
 
 namespace robot_control {
 

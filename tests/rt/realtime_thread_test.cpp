@@ -17,8 +17,6 @@
 #include <string_view>
 #include <thread>
 
-#include "rt/thread_priority.h"
-#include "rt/unlock_libraries.h"
 #include "support/allocation_guard.h"
 #include "support/file_content.h"
 #include "support/processes/child_process.h"

@@ -7,7 +7,6 @@
 #include <random>
 #include <vector>
 
-#include "timing/recent_durations.h"
 
 namespace robot_control {
 namespace {

@@ -13,7 +13,7 @@
 #include "files/output_file.h"
 #include "parameters/parameter_tree.h"
 #include "parameters/parameters_text.h"
-#include "parameters/value_reader.h"
+#include "parameters/tree_reader.h"
 #include "signals/roles.h"
 
 namespace robot_control {
@@ -59,32 +59,6 @@ Keys keys(Content& content) {
       {"gyro_bias", &content.learned.gyro_bias, "rad/s", -kGyroBiasMax, kGyroBiasMax},
       {"gyro_bias_deviation", &content.learned.gyro_bias_deviation, "rad/s", 0, 10},
   };
-}
-
-Content content_of(const ParameterTree& tree, const std::string& path, ProblemList& problems) {
-  Content content;
-  const Block block{kBlock, keys(content)};
-  for (const BlockEntry& found : tree.blocks) {
-    if (found.name != kBlock) problems.add({printable(found.name), "", "unknown block", found.origin, kRemedy});
-  }
-  for (const auto& found : tree.entries) {
-    const std::string& name = found.first;
-    const Entry& entry = found.second;
-    const bool known = std::ranges::any_of(block.keys, [&](const Key& key) { return name == path_of(block, key); });
-    if (!known && name.starts_with(std::string(kBlock) + ".")) {
-      problems.add({printable(name), as_written(entry), "unknown key", entry.origin, kRemedy});
-    }
-  }
-  for (const Key& key : block.keys) {
-    const std::string name = path_of(block, key);
-    const auto entry = tree.entries.find(name);
-    if (entry == tree.entries.end()) {
-      problems.add({name, "", "missing", path, kRemedy});
-    } else {
-      read_value(entry->second, name, key, problems);
-    }
-  }
-  return content;
 }
 
 /// Compares two numbers. Numbers are written with all digits, so only rounding may differ.
@@ -190,10 +164,13 @@ std::optional<LearnedCalibration> read_calibration(const std::string& path, cons
   const auto status =
       std::filesystem::status(path, error);  // a link to a file that does not exist yet counts as no file
   if (status.type() == std::filesystem::file_type::not_found) return {};
-  const ParameterTree tree = read_tree(path, {}, problems, &peer_problem);
+  ParameterTree tree = read_tree(path, {}, problems, &peer_problem);
   if (tree.blocks.empty() && problems.empty()) problems.add({path, "", "holds no calibration", "", kRemedy});
   problems.throw_if_any(subject);
-  const Content found = content_of(tree, path, problems);
+  Content found;
+  const Schema schema{.blocks = {{kBlock, keys(found)}},
+                      .other_package_remedy = [](std::string_view) { return std::string(kRemedy); }};
+  read_blocks(std::move(tree), schema, schema.blocks, path, problems);
   problems.throw_if_any(subject);
   check_owner(found, content_of(LearnedCalibration{}, robot, parameters), path, problems);
   problems.throw_if_any(subject);

@@ -33,10 +33,6 @@ DriveKinematics::DriveKinematics(const DriveTrain& robot)
   }
 }
 
-SidePair DriveKinematics::rim_speeds(const PlanarTwist& twist) const noexcept {
-  return {twist.linear - half_base_ * twist.angular, twist.linear + half_base_ * twist.angular};
-}
-
 WheelValues DriveKinematics::joint_speeds(const PlanarTwist& twist) const noexcept {
   const SidePair rim = rim_speeds(twist);
   WheelValues speeds{};

@@ -24,7 +24,9 @@ class DriveKinematics {
   explicit DriveKinematics(const DriveTrain& robot);
 
   /// Returns the speeds of the rims over the ground in m/s, forward positive.
-  SidePair rim_speeds(const PlanarTwist& twist) const noexcept;
+  SidePair rim_speeds(const PlanarTwist& twist) const noexcept {
+    return {twist.linear - half_base_ * twist.angular, twist.linear + half_base_ * twist.angular};
+  }
 
   /// Returns rad/s (rad/s² for an acceleration) of each wheel's joint, in the joint's own sign.
   WheelValues joint_speeds(const PlanarTwist& twist) const noexcept;

@@ -17,7 +17,9 @@ class BoardFile final : public BoardBlocks {
 
   std::string_view line_block() const override { return "board"; }
   /// kMaxSilence cycles, and no longer than the watchdog of a board waits for an order.
-  double tolerated_silence() const override;
+  double tolerated_silence() const override {
+    return std::min(static_cast<double>(kMaxSilence) * request().period(), kWatchdog);
+  }
   std::unique_ptr<Driver> make_driver(const DriveMotors& motors, LineEnd end, DriverClock clock) const override;
 
  private:
@@ -25,10 +27,6 @@ class BoardFile final : public BoardBlocks {
 };
 
 }  // namespace
-
-double BoardFile::tolerated_silence() const {
-  return std::min(static_cast<double>(kMaxSilence) * request().period(), kWatchdog);
-}
 
 std::unique_ptr<Driver> BoardFile::make_driver(const DriveMotors& motors, LineEnd end, DriverClock clock) const {
   return std::make_unique<BoardDriver>(parameters_of(*this), motors.brakes, motors.joint_count, request().period(),

@@ -178,10 +178,6 @@ bool BoardFront::inject_board(std::string_view component, std::string_view kind)
   return true;
 }
 
-std::string BoardFront::fault_words() const {
-  return "board (with ok, off, reset, brown_out, fault, e_stop, other_protocol)";
-}
-
 std::unique_ptr<DeviceFront> make_board_front(const DriveFile& file, FrontSetup setup) {
   return std::make_unique<BoardFront>(parameters_of(dynamic_cast<const BoardBlocks&>(file)), setup.motors.brakes,
                                       file.request().period(), std::move(setup));

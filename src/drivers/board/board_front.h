@@ -52,7 +52,9 @@ class BoardFront final : public SerialFront {
   void step_board() override;
   double step_wheel(std::size_t joint, double seconds) override;
   bool inject_board(std::string_view component, std::string_view kind) override;
-  std::string fault_words() const override;
+  std::string fault_words() const override {
+    return "board (with ok, off, reset, brown_out, fault, e_stop, other_protocol)";
+  }
   std::size_t joint_of(std::size_t wheel) const;
   std::uint32_t time_us() const;
   std::int64_t counted(std::size_t joint) const;  // since the beginning

@@ -2,10 +2,14 @@
 
 #include <algorithm>
 
+#include "drivers/cia402/cia402_parameters.h"
+#include "drivers/drive/can_front.h"
+
 namespace robot_control {
 namespace {
 
 using namespace cia402;  // NOLINT(google-build-using-namespace): the objects of this device
+using canopen::entry_of;
 using canopen::NmtCommand;
 using canopen::NmtState;
 using canopen::SdoSide;
@@ -18,11 +22,9 @@ constexpr ObjectAddress kControlword{0x6040, 0}, kStatusword{0x6041, 0}, kTarget
 }  // namespace
 
 Cia402Device::Cia402Device(const Cia402DeviceParameters& parameters, VirtualCan& bus, std::vector<DeviceMotor*> motors)
-    : parameters_(parameters),
-      bus_(bus),
-      party_(bus.join([this](const can_frame& frame, std::int64_t now_ns) { receive(frame, now_ns); })) {
+    : Device(bus), parameters_(parameters) {
   for (DeviceMotor* motor : motors) axes_.push_back({.motor = motor});
-  boot(-kBootNs);
+  boot();
 }
 
 std::uint32_t Cia402Device::at(const ObjectAddress& object, unsigned axis) const {
@@ -104,8 +106,7 @@ void Cia402Device::add_pdos() {
   }
 }
 
-void Cia402Device::boot(std::int64_t now_ns) {
-  boot_ns_ = now_ns + kBootNs;
+void Cia402Device::boot() {
   announced_ = false;
   nmt_ = NmtState::kPreOperational;
   host_ns_ = -1;
@@ -116,26 +117,21 @@ void Cia402Device::boot(std::int64_t now_ns) {
   add_objects();
 }
 
-void Cia402Device::inject(DeviceFault fault) {
-  if (fault == DeviceFault::kReset || (fault_ == DeviceFault::kOff && fault != DeviceFault::kOff)) boot(bus_.now_ns());
-  fault_ = fault;
-  if (fault == DeviceFault::kOtherZero) axes_[0].zero += kOtherZero;
-  if (fault == DeviceFault::kReleased) axes_[0].power = PowerState::kSwitchOnDisabled;
-  if (fault == DeviceFault::kEncoder) fail(0, kSensorFault);
-  if (fault == DeviceFault::kUnderVoltage) fail(0, kSupplyTooLow);
-  if (fault == DeviceFault::kOff) {
+void Cia402Device::begin_fault() {
+  if (fault() == DeviceFault::kOtherZero) axes_[0].zero += kOtherZero;
+  if (fault() == DeviceFault::kReleased) axes_[0].power = PowerState::kSwitchOnDisabled;
+  if (fault() == DeviceFault::kEncoder) fail(0, kSensorFault);
+  if (fault() == DeviceFault::kUnderVoltage) fail(0, kSupplyTooLow);
+  if (fault() == DeviceFault::kOff) {
     for (const Axis& axis : axes_) axis.motor->torque = 0;
   }
 }
 
-void Cia402Device::step(std::int64_t now_ns) {
-  now_ns_ = now_ns;
-  if (fault_ == DeviceFault::kOff || now_ns < boot_ns_) return;
+void Cia402Device::run(std::int64_t now_ns, double /*seconds*/) {
   const auto own = [this](double ns) { return static_cast<std::int64_t>(ns / (1 + 1.0e-6 * parameters_.clock_ppm)); };
   const std::int64_t heartbeat = own(1.0e6 * objects_.value(kHeartbeatProducer));
   if (!announced_ || (heartbeat > 0 && now_ns - heartbeat_ns_ >= heartbeat)) {
-    bus_.send(party_,
-              canopen::encode_heartbeat({.node = parameters_.node, .state = announced_ ? nmt_ : NmtState::kBootUp}));
+    transmit(canopen::encode_heartbeat({.node = parameters_.node, .state = announced_ ? nmt_ : NmtState::kBootUp}));
     announced_ = true;
     heartbeat_ns_ = now_ns;
   }
@@ -146,7 +142,7 @@ void Cia402Device::step(std::int64_t now_ns) {
 
 void Cia402Device::lose_host() {
   host_ns_ = -1;
-  bus_.send(party_, canopen::encode_emergency({.node = parameters_.node, .code = kHostLost, .error_register = 0x11}));
+  transmit(canopen::encode_emergency({.node = parameters_.node, .code = kHostLost, .error_register = 0x11}));
   if (objects_.value(kErrorBehaviour) == 0) nmt_ = NmtState::kPreOperational;
   for (unsigned axis = 0; axis < axes_.size(); ++axis) {
     Axis& each = axes_[axis];
@@ -199,8 +195,8 @@ double Cia402Device::brake_torque(unsigned axis) {
 
 void Cia402Device::update_axis(unsigned axis) {
   Axis& own = axes_[axis];
-  const double seconds = 1.0e-9 * static_cast<double>(bus_.now_ns() - own.updated_ns);
-  own.updated_ns = bus_.now_ns();
+  const double seconds = 1.0e-9 * static_cast<double>(bus_ns() - own.updated_ns);
+  own.updated_ns = bus_ns();
   const bool brakes = own.power == PowerState::kQuickStopActive || own.power == PowerState::kFaultReactionActive;
   if (own.power == PowerState::kOperationEnabled) {
     own.motor->torque = driven_torque(axis, seconds);
@@ -238,7 +234,7 @@ void Cia402Device::fail(unsigned axis, std::uint16_t code) {
   own.power = at(kFaultReactionOption, axis) == 0 ? PowerState::kFault : PowerState::kFaultReactionActive;
   objects_.set(on_axis(kErrorCode, axis), code);
   objects_.set(kErrorRegister, 1);
-  bus_.send(party_, canopen::encode_emergency({.node = parameters_.node, .code = code, .error_register = 1}));
+  transmit(canopen::encode_emergency({.node = parameters_.node, .code = code, .error_register = 1}));
 }
 
 void Cia402Device::obey(unsigned axis, std::uint16_t controlword) {
@@ -247,7 +243,7 @@ void Cia402Device::obey(unsigned axis, std::uint16_t controlword) {
   own.controlword = controlword;
   using enum PowerState;
   if (own.power == kFault) {
-    if (rising && fault_ != DeviceFault::kEncoder && fault_ != DeviceFault::kUnderVoltage)
+    if (rising && fault() != DeviceFault::kEncoder && fault() != DeviceFault::kUnderVoltage)
       own.power = kSwitchOnDisabled;
     return;
   }
@@ -270,7 +266,7 @@ void Cia402Device::obey(unsigned axis, std::uint16_t controlword) {
 }
 
 void Cia402Device::receive(const can_frame& frame, std::int64_t now_ns) {
-  if (fault_ == DeviceFault::kOff || now_ns < boot_ns_ || !is_standard_data(frame)) return;
+  if (!is_standard_data(frame)) return;
   if (const auto nmt = canopen::decode_nmt(frame)) return receive_nmt(*nmt);
   if (frame.can_id == canopen::kSync && nmt_ == NmtState::kOperational) return send_states();
   if (const auto heartbeat = canopen::decode_heartbeat(frame)) {
@@ -294,7 +290,7 @@ void Cia402Device::receive_nmt(const canopen::NmtRequest& request) {
       nmt_ = NmtState::kPreOperational;
       break;
     default:
-      boot(bus_.now_ns());
+      reboot();
   }
 }
 
@@ -305,10 +301,8 @@ std::uint32_t Cia402Device::refusal(const canopen::SdoMessage& request) const {
   const bool active = (objects_.value({static_cast<std::uint16_t>(index - 0x200), 1}) & canopen::kPdoDisabled) == 0;
   if (nmt_ != NmtState::kPreOperational || active) return 0x0800'0022;
   if (request.object.sub == 0) return 0;
-  const std::uint32_t entry = canopen::expedited_value(request);
-  const ObjectAddress object{static_cast<std::uint16_t>(entry >> 16U), static_cast<std::uint8_t>(entry >> 8U & 0xFFU)};
   if (objects_.value({index, 0}) != 0) return 0x0800'0022;
-  return objects_.has(object) ? 0 : 0x0604'0041;
+  return objects_.has(entry_of(canopen::expedited_value(request)).object) ? 0 : 0x0604'0041;
 }
 
 void Cia402Device::receive_sdo(const canopen::SdoMessage& request) {
@@ -321,32 +315,26 @@ void Cia402Device::receive_sdo(const canopen::SdoMessage& request) {
       obey(axis, static_cast<std::uint16_t>(canopen::expedited_value(request)));
     }
   }
-  bus_.send(party_, encode_sdo(SdoSide::kResponse, parameters_.node, answer));
+  transmit(encode_sdo(SdoSide::kResponse, parameters_.node, answer));
 }
 
-canopen::Pdo Cia402Device::mapped_pdo(PdoKind kind, std::uint8_t number) const {
-  Pdo pdo{.kind = kind, .number = number, .mapping = {}};
+void Cia402Device::map(Pdo& pdo) const {
   const auto count = objects_.value({pdo.mapping_index(), 0});
   for (std::uint8_t i = 1; i <= count && i <= canopen::kMaxPdoEntries; ++i) {
-    const std::uint32_t entry = objects_.value({pdo.mapping_index(), i});
-    pdo.mapping.entries[pdo.mapping.count++] = {
-        .object = {static_cast<std::uint16_t>(entry >> 16U), static_cast<std::uint8_t>(entry >> 8U & 0xFFU)},
-        .bits = static_cast<std::uint8_t>(entry & 0xFFU)};
+    pdo.mapping.entries[pdo.mapping.count++] = entry_of(objects_.value({pdo.mapping_index(), i}));
   }
-  return pdo;
 }
 
-bool Cia402Device::enabled(PdoKind kind, std::uint8_t number) const {
-  const Pdo pdo{.kind = kind, .number = number, .mapping = {}};
+bool Cia402Device::enabled(const Pdo& pdo) const {
   return (objects_.value({pdo.parameters(), 1}) & canopen::kPdoDisabled) == 0 &&
          objects_.value({pdo.mapping_index(), 0}) > 0;
 }
 
 void Cia402Device::receive_command(const can_frame& frame) {
   for (std::uint8_t number = 1; number <= kPdos; ++number) {
-    const Pdo unmapped{.kind = PdoKind::kReceive, .number = number, .mapping = {}};
-    if (frame.can_id != unmapped.cob_id(parameters_.node) || !enabled(PdoKind::kReceive, number)) continue;
-    const Pdo pdo = mapped_pdo(PdoKind::kReceive, number);
+    Pdo pdo{.kind = PdoKind::kReceive, .number = number, .mapping = {}};
+    if (frame.can_id != pdo.cob_id(parameters_.node) || !enabled(pdo)) continue;
+    map(pdo);
     std::array<std::int64_t, canopen::kMaxPdoEntries> values{};
     if (!decode_pdo(pdo, parameters_.node, frame, values)) continue;
     for (std::size_t i = 0; i < pdo.mapping.count; ++i) {
@@ -367,15 +355,40 @@ void Cia402Device::send_states() {
   }
   ++syncs_;
   for (std::uint8_t number = 1; number <= kPdos; ++number) {
-    if (!enabled(PdoKind::kTransmit, number)) continue;
-    const Pdo unmapped{.kind = PdoKind::kTransmit, .number = number, .mapping = {}};
-    const std::uint32_t type = objects_.value({unmapped.parameters(), 2});
+    Pdo pdo{.kind = PdoKind::kTransmit, .number = number, .mapping = {}};
+    if (!enabled(pdo)) continue;
+    const std::uint32_t type = objects_.value({pdo.parameters(), 2});
     if (type == 0 || type > canopen::kMaxSyncs || syncs_ % type != 0) continue;
-    const Pdo pdo = mapped_pdo(PdoKind::kTransmit, number);
+    map(pdo);
     std::array<std::int64_t, canopen::kMaxPdoEntries> values{};
     for (std::size_t i = 0; i < pdo.mapping.count; ++i) values[i] = objects_.value(pdo.mapping.entries[i].object);
-    bus_.send(party_, encode_pdo(pdo, parameters_.node, values));
+    transmit(encode_pdo(pdo, parameters_.node, values));
   }
+}
+
+namespace {
+
+Cia402DeviceParameters device_of(const Cia402Parameters& drive, const Brake& brake, double clock_ppm) {
+  Cia402DeviceParameters device;
+  device.node = static_cast<std::uint8_t>(drive.drive.node);
+  device.fixed_mapping = drive.pdos == PdoSource::kFixed;
+  device.rated_torque = drive.rated_torque != 0 ? drive.rated_torque : drive.drive.torque_limit / drive.drive.gear;
+  if (drive.counts_per_turn != 0) device.counts_per_turn = drive.counts_per_turn;
+  if (drive.velocity_unit != 0) device.velocity_unit = drive.velocity_unit;
+  if (drive.vendor != 0) device.vendor = static_cast<std::uint32_t>(drive.vendor);
+  if (drive.product != 0) device.product = static_cast<std::uint32_t>(drive.product);
+  device.brake_damping = motor_damping(drive.drive, brake);
+  device.brake_stiffness = brake.stiffness / (drive.drive.gear * drive.drive.gear);
+  device.brake_hold_speed = brake.hold_speed * drive.drive.gear;
+  if (drive.drive.takes_speeds) device.supported_modes = Cia402DeviceParameters::kSpeedModes;
+  device.clock_ppm = clock_ppm;
+  return device;
+}
+
+}  // namespace
+
+std::unique_ptr<DeviceFront> make_cia402_front(const DriveFile& file, FrontSetup setup) {
+  return one_device_per_node<Cia402Device>(file, std::move(setup), &device_of);
 }
 
 }  // namespace robot_control

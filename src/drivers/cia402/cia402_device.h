@@ -42,10 +42,6 @@ class Cia402Device final : public Device {
   /// One axis per motor.
   Cia402Device(const Cia402DeviceParameters& parameters, VirtualCan& bus, std::vector<DeviceMotor*> motors);
 
-  void step(std::int64_t now_ns) override;
-  /// Faults of a motor belong to the first axis.
-  void inject(DeviceFault fault) override;
-
   ObjectDictionary& objects() { return objects_; }
   cia402::PowerState power(std::size_t axis = 0) const { return axes_.at(axis).power; }
   canopen::NmtState nmt() const { return nmt_; }
@@ -66,14 +62,16 @@ class Cia402Device final : public Device {
   void add_objects();
   void add_axis_objects(unsigned axis);
   void add_pdos();
-  void boot(std::int64_t now_ns);
-  void receive(const can_frame& frame, std::int64_t now_ns);
+  void boot() override;
+  void begin_fault() override;  // one of a motor belongs to the first axis
+  void receive(const can_frame& frame, std::int64_t now_ns) override;
+  void run(std::int64_t now_ns, double seconds) override;
   void receive_nmt(const canopen::NmtRequest& request);
   void receive_sdo(const canopen::SdoMessage& request);
   void receive_command(const can_frame& frame);
   std::uint32_t refusal(const canopen::SdoMessage& request) const;
-  canopen::Pdo mapped_pdo(canopen::PdoKind kind, std::uint8_t number) const;
-  bool enabled(canopen::PdoKind kind, std::uint8_t number) const;
+  void map(canopen::Pdo& pdo) const;
+  bool enabled(const canopen::Pdo& pdo) const;
   void send_states();
   void lose_host();
   void update_axis(unsigned axis);
@@ -88,14 +86,9 @@ class Cia402Device final : public Device {
   std::uint32_t at(const canopen::ObjectAddress& object, unsigned axis) const;
 
   Cia402DeviceParameters parameters_;
-  VirtualCan& bus_;
-  std::size_t party_;
   std::vector<Axis> axes_;
   ObjectDictionary objects_;
-  DeviceFault fault_ = DeviceFault::kNone;
   canopen::NmtState nmt_ = canopen::NmtState::kPreOperational;
-  std::int64_t now_ns_ = 0;
-  std::int64_t boot_ns_ = 0;
   std::uint32_t syncs_ = 0;  // that were received
   bool announced_ = false;   // The boot-up message was sent.
   std::int64_t heartbeat_ns_ = 0;

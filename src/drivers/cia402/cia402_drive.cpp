@@ -194,9 +194,7 @@ void Cia402Drive::advance_power(const DriveCommand& command, std::int64_t now_ns
     next_reset_ns_ = now_ns + kResetCycles * period_ns_;
   }
   if (phase_ == Phase::kRunning) {
-    if (needs_velocity() && !has_velocity(now_ns)) {
-      return fail(DriveCause::kSilent, "velocity");
-    }
+    if (needs_velocity() && !has_velocity(now_ns)) return fail(DriveCause::kSilent, "velocity");
     set(DriveState::kRunning, DriveCause::kNone);
     read_voltage(now_ns, send);
     return send_command(Controlword::kEnableOperation, send, command);
@@ -281,10 +279,6 @@ void Cia402Drive::send_nmt(NmtCommand command, std::int64_t now_ns, FrameBatch& 
 VelocitySource Cia402Drive::velocity_source() const noexcept {
   const VelocitySource source = setup_.velocity_source();
   return source == VelocitySource::kDrive && set_up() && velocity_ns_ == 0 ? VelocitySource::kNotSent : source;
-}
-
-void Cia402Drive::add_details(DriveStatus& status) const noexcept {
-  status.details[0] = emergency_;
 }
 
 std::string Cia402Drive::code_words(const DriveStatus& status) const {

@@ -5,18 +5,20 @@
 ///   enable operation → running
 ///
 /// Each step of the power state machine waits for the statusword of the one before. In `running` the axis receives
-/// controlword and target in each cycle, and answers each SYNC (cia402_drives.h). In a fault the controlword requests
+/// controlword and target in each cycle, and answers each SYNC (drive_set.h). In a fault the controlword requests
 /// a quick stop. A velocity with a PDO of its own replaces that of the position's PDO before it. One that the drive
 /// file demands is judged for silence by itself; any other one is used while it comes. The error of a drive is reset
 /// with the operator's reset alone.
 
 #include <cstdint>
 #include <optional>
+#include <vector>
 
 #include "drivers/cia402/cia402_parameters.h"
 #include "drivers/cia402/drive_setup.h"
 #include "drivers/cia402/power_state.h"
 #include "drivers/drive/drive.h"
+#include "drivers/drive/drive_set.h"
 
 namespace robot_control::cia402 {
 
@@ -38,7 +40,7 @@ class Cia402Drive final : public Drive {
 
   void restart(bool reset, std::int64_t now_ns) noexcept override;
   void advance(const DriveCommand& command, std::int64_t now_ns, FrameBatch& send) noexcept override;
-  void add_details(DriveStatus& status) const noexcept override;
+  void add_details(DriveStatus& status) const noexcept override { status.details[0] = emergency_; }
   VelocitySource velocity_source() const noexcept override;
   std::string code_words(const DriveStatus& status) const override;
 
@@ -85,5 +87,8 @@ class Cia402Drive final : public Drive {
   bool has_voltage_ = true;
   std::int64_t next_voltage_ns_ = 0;
 };
+
+/// Returns the drives of these joints with their host. Two axes of one node belong together.
+DriveSet cia402_drives(const std::vector<Cia402Parameters>& joints, std::uint8_t host_node, double period);
 
 }  // namespace robot_control::cia402

@@ -2,7 +2,6 @@
 
 #include "drivers/cia402/canopen.h"
 #include "drivers/cia402/cia402_drive.h"
-#include "drivers/cia402/cia402_drives.h"
 #include "drivers/drive/can_drive_file.h"
 
 namespace robot_control {
@@ -41,21 +40,21 @@ class Cia402File final : public CanFileOf<Cia402Parameters> {
 
   explicit Cia402File(DriveFileRequest request);
 
-  DriveSet drives() const override;
+  DriveSet drives() const override {
+    return cia402_drives(joints(), static_cast<std::uint8_t>(bus.host_node), request().period());
+  }
   DriveCapability capability(std::size_t joint) const override;
 
  private:
   void check(const Cia402Parameters& joint, JointValues& values) const override;
   /// The velocity.
-  void leave_out_frames() override;
+  void leave_out_frames() override {
+    for (Cia402Parameters& joint : joints_) joint.velocity_has_room = false;
+  }
 };
 
 Cia402File::Cia402File(DriveFileRequest given) : CanFileOf(std::move(given)) {
   every_.host_timeout = std::max(every_.host_timeout, kMinTimeoutPeriods / request().rate);
-}
-
-DriveSet Cia402File::drives() const {
-  return cia402_drives(joints(), static_cast<std::uint8_t>(bus.host_node), request().period());
 }
 
 DriveCapability Cia402File::capability(std::size_t joint) const {
@@ -63,10 +62,6 @@ DriveCapability Cia402File::capability(std::size_t joint) const {
   const Cia402Parameters& parameters = joints()[joint];
   if (parameters.torque_slope > 0) capability.torque_rate = parameters.torque_slope * parameters.drive.gear;
   return capability;
-}
-
-void Cia402File::leave_out_frames() {
-  for (Cia402Parameters& joint : joints_) joint.velocity_has_room = false;
 }
 
 void Cia402File::check(const Cia402Parameters& joint, JointValues& values) const {

@@ -135,14 +135,6 @@ void DriveSetup::add_pdo_steps(std::uint8_t index, const char* subject) {
   for (std::size_t i = first; i < steps_.size(); ++i) steps_[i].pdo = index;
 }
 
-Pdo& DriveSetup::pdo(std::uint8_t index) noexcept {
-  return index == 0 ? pdos_.command : index == 1 ? pdos_.state : pdos_.velocity;
-}
-
-ObjectAddress DriveSetup::own(const ObjectAddress& object) const noexcept {
-  return on_axis(object, static_cast<unsigned>(parameters_.axis));
-}
-
 void DriveSetup::restart() noexcept {
   next_ = 0;
   client_.cancel();
@@ -275,10 +267,6 @@ void DriveSetup::judge_modes(bool present, std::uint32_t modes) noexcept {
     refuse(DriveCause::kLacks,
            speeds ? "velocity mode in its supported modes (6502)" : "torque mode in its supported modes (6502)");
   }
-}
-
-double DriveSetup::quotient(bool present, std::uint32_t denominator) const noexcept {
-  return present && denominator != 0 ? numerator_ / denominator : 0;
 }
 
 void DriveSetup::judge_counts() noexcept {

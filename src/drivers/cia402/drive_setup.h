@@ -102,7 +102,9 @@ class DriveSetup {
   void evaluate(const Step& step, bool present, std::uint32_t value) noexcept;
   void judge_modes(bool present, std::uint32_t modes) noexcept;
   /// Returns the ratio of the last numerator to this number; 0: the drive has no such objects.
-  double quotient(bool present, std::uint32_t denominator) const noexcept;
+  double quotient(bool present, std::uint32_t denominator) const noexcept {
+    return present && denominator != 0 ? numerator_ / denominator : 0;
+  }
   void judge_counts() noexcept;
   void judge_torque(const Step& step, bool present, std::uint32_t value) noexcept;
   void judge_silence(const Step& step, bool present, std::uint32_t value) noexcept;
@@ -115,8 +117,12 @@ class DriveSetup {
   void judge_pdo(Pdo& found, const Pdo& needed, bool complete) noexcept;
   void refuse(DriveCause cause, const char* subject, std::uint64_t code = 0, double found = 0,
               double expected = 0) noexcept;
-  Pdo& pdo(std::uint8_t index) noexcept;
-  ObjectAddress own(const ObjectAddress& object) const noexcept;
+  Pdo& pdo(std::uint8_t index) noexcept {
+    return index == 0 ? pdos_.command : index == 1 ? pdos_.state : pdos_.velocity;
+  }
+  ObjectAddress own(const ObjectAddress& object) const noexcept {
+    return on_axis(object, static_cast<unsigned>(parameters_.axis));
+  }
 
   Cia402Parameters parameters_;
   std::vector<Step> steps_;

@@ -8,10 +8,6 @@ using canopen::ObjectAddress;
 using canopen::SdoCommand;
 using canopen::SdoMessage;
 
-void ObjectDictionary::add(const ObjectAddress& object, std::uint32_t value, std::uint8_t bytes, bool writable) {
-  entries_[key(object)] = {.value = value, .bytes = bytes, .writable = writable};
-}
-
 std::uint32_t ObjectDictionary::value(const ObjectAddress& object) const {
   const auto found = entries_.find(key(object));
   return found == entries_.end() ? 0 : found->second.value;

@@ -17,7 +17,9 @@ class ObjectDictionary {
     bool writable = false;
   };
 
-  void add(const canopen::ObjectAddress& object, std::uint32_t value, std::uint8_t bytes, bool writable);
+  void add(const canopen::ObjectAddress& object, std::uint32_t value, std::uint8_t bytes, bool writable) {
+    entries_[key(object)] = {.value = value, .bytes = bytes, .writable = writable};
+  }
   bool has(const canopen::ObjectAddress& object) const { return entries_.contains(key(object)); }
   void remove(const canopen::ObjectAddress& object) { entries_.erase(key(object)); }
 

@@ -8,14 +8,6 @@ void SdoClient::begin(const SdoMessage& request) noexcept {
   tries_ = 0;
 }
 
-void SdoClient::read(const ObjectAddress& object) noexcept {
-  begin({.command = SdoCommand::kUpload, .object = object});
-}
-
-void SdoClient::write(const SdoWrite& write) noexcept {
-  begin(expedited_download(write.object, write.value, write.bytes));
-}
-
 void SdoClient::receive(const can_frame& frame) noexcept {
   const auto answer = decode_sdo(SdoSide::kResponse, node_, frame);
   if (!answer || result_ != Result::kPending || tries_ == 0 || answer->object != request_.object) return;

@@ -18,8 +18,8 @@ class SdoClient {
 
   explicit SdoClient(std::uint8_t node) noexcept : node_(node) {}
 
-  void read(const ObjectAddress& object) noexcept;
-  void write(const SdoWrite& write) noexcept;
+  void read(const ObjectAddress& object) noexcept { begin({.command = SdoCommand::kUpload, .object = object}); }
+  void write(const SdoWrite& write) noexcept { begin(expedited_download(write.object, write.value, write.bytes)); }
   void cancel() noexcept { result_ = Result::kIdle; }
 
   void receive(const can_frame& frame) noexcept;

@@ -13,10 +13,6 @@ std::optional<DriveFile::Overload> CanDriveFile::overload() {
   return Overload{.key = "bit_rate", .value = shortest(bus.bit_rate), .rule = *problem};
 }
 
-LineEnd CanDriveFile::open_line(RealtimePolicy /*policy*/, const DriverClock& /*clock*/) const {
-  return CanSocket::open(bus.address);
-}
-
 std::unique_ptr<Driver> CanDriveFile::make_driver(const DriveMotors& motors, LineEnd line, DriverClock clock) const {
   return std::make_unique<CanDriver>(bus, drives(), motors.brakes, motors.joint_count, request().period(),
                                      std::get<CanSocket>(std::move(line)), std::move(clock));

@@ -48,7 +48,9 @@ class CanDriveFile : public DriveFile {
   Keys line_keys() override { return keys(bus); }
   std::optional<Overload> overload() override;
   const std::string& address() const override { return bus.address; }
-  LineEnd open_line(RealtimePolicy policy, const DriverClock& clock) const override;
+  LineEnd open_line(RealtimePolicy /*policy*/, const DriverClock& /*clock*/) const override {
+    return CanSocket::open(bus.address);
+  }
   std::unique_ptr<Driver> make_driver(const DriveMotors& motors, LineEnd line, DriverClock clock) const override;
 
   /// Returns the drives of all joints.

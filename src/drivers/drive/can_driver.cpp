@@ -73,10 +73,6 @@ void CanDriver::start() {
   begin();
 }
 
-void CanDriver::reset() noexcept {
-  if (state_ == DriverState::kFault) begin();
-}
-
 void CanDriver::begin() noexcept {
   reset_ = true;
   state_ = DriverState::kStarting;
@@ -218,9 +214,7 @@ DriveCommand CanDriver::wanted(std::size_t joint, const JointCommand& command) n
 
 void CanDriver::write(std::span<const JointCommand> commands) noexcept {
   const bool obeys = !stopped_ && state_ == DriverState::kRunning && commands.size() == joint_count_;
-  for (std::size_t i = 0; i < drives_.size(); ++i) {
-    commands_[i] = wanted(i, obeys ? commands[i] : JointCommand{});
-  }
+  for (std::size_t i = 0; i < drives_.size(); ++i) commands_[i] = wanted(i, obeys ? commands[i] : JointCommand{});
   reset_ = false;
   send_commands(now_ns_);
 }

@@ -39,7 +39,9 @@ class CanDriver final : public Driver {
             double period, CanSocket socket, DriverClock clock);
 
   void start() override;
-  void reset() noexcept override;
+  void reset() noexcept override {
+    if (state_ == DriverState::kFault) begin();
+  }
   void read(SensorFrame& sensors) noexcept override;
   void write(std::span<const JointCommand> commands) noexcept override;
   /// The next `write` brakes. Until then the drives have no torque: a drive keeps the last one that it was sent.

@@ -13,6 +13,7 @@
 #include <random>
 #include <span>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 #include "drivers/drive/can_drive_file.h"
@@ -81,10 +82,11 @@ inline double motor_damping(const DriveParameters& drive, const Brake& brake) {
   return brake.damping / (drive.gear * drive.gear);
 }
 
-/// Returns the front of a drive file with one device per node, make(joint, brake, clock_ppm, bus, motors). `joint` and
-/// `brake` are those of the node's first axis.
-template <class Parameters, class Make>
-std::unique_ptr<DeviceFront> one_device_per_node(const DriveFile& file, FrontSetup setup, Make make) {
+/// Returns the front of a drive file with one device per node, of device_of(joint, brake, clock_ppm). `joint` and
+/// `brake` are those of the node's first axis. A device turns one motor, or all motors of its node.
+template <class Device, class Parameters, class Of>
+std::unique_ptr<DeviceFront> one_device_per_node(const DriveFile& file, FrontSetup setup,
+                                                 Of (*device_of)(const Parameters&, const Brake&, double)) {
   const auto& drives = dynamic_cast<const CanFileOf<Parameters>&>(file);
   const std::vector<Parameters>& joints = drives.joints();
   const std::vector<Brake>& brakes = setup.motors.brakes;
@@ -103,7 +105,12 @@ std::unique_ptr<DeviceFront> one_device_per_node(const DriveFile& file, FrontSet
       its_motors.push_back(motors[joint]);
     }
     const std::size_t first = of_node.front();
-    front->add_device(make(joints[first], brakes[first], front->next_clock_ppm(), front->bus(), its_motors), of_node);
+    const Of device = device_of(joints[first], brakes[first], front->next_clock_ppm());
+    if constexpr (std::is_constructible_v<Device, Of, VirtualCan&, DeviceMotor&>) {
+      front->add_device(std::make_unique<Device>(device, front->bus(), *its_motors.front()), of_node);
+    } else {
+      front->add_device(std::make_unique<Device>(device, front->bus(), its_motors), of_node);
+    }
   }
   return front;
 }

@@ -52,10 +52,52 @@ class Device {
   static constexpr double kOtherZero = 7.0;  ///< rad
 
   virtual ~Device() = default;
+  Device(const Device&) = delete;
+  Device& operator=(const Device&) = delete;
 
   /// Runs the device until `now_ns`: its timers, its state machine, and its motor control once.
-  virtual void step(std::int64_t now_ns) = 0;
-  virtual void inject(DeviceFault fault) = 0;
+  void step(std::int64_t now_ns) {
+    const double seconds = 1.0e-9 * static_cast<double>(now_ns - now_ns_);
+    now_ns_ = now_ns;
+    if (!silent(now_ns)) run(now_ns, seconds);
+  }
+  void inject(DeviceFault fault) {
+    const bool boots = fault == DeviceFault::kReset || (fault_ == DeviceFault::kOff && fault != DeviceFault::kOff);
+    if (boots) reboot();
+    fault_ = fault;
+    begin_fault();
+  }
+
+ protected:
+  explicit Device(VirtualCan& bus)
+      : bus_(bus), party_(bus.join([this](const can_frame& frame, std::int64_t now_ns) {
+          if (!silent(now_ns)) receive(frame, now_ns);
+        })) {}
+
+  /// The device is silent for kBootNs.
+  void reboot() {
+    boot_ns_ = bus_.now_ns() + kBootNs;
+    boot();
+  }
+  void transmit(const can_frame& frame) { bus_.send(party_, frame); }
+  DeviceFault fault() const { return fault_; }
+  /// Time of the bus, which is ahead of the last step while frames arrive.
+  std::int64_t bus_ns() const { return bus_.now_ns(); }
+  /// Time of the last step.
+  std::int64_t now_ns() const { return now_ns_; }
+
+ private:
+  bool silent(std::int64_t now_ns) const { return fault_ == DeviceFault::kOff || now_ns < boot_ns_; }
+  virtual void boot() = 0;
+  virtual void begin_fault() = 0;
+  virtual void receive(const can_frame& frame, std::int64_t now_ns) = 0;
+  virtual void run(std::int64_t now_ns, double seconds) = 0;  // `seconds` since the last step
+
+  VirtualCan& bus_;
+  std::size_t party_;
+  DeviceFault fault_ = DeviceFault::kNone;
+  std::int64_t now_ns_ = 0;
+  std::int64_t boot_ns_ = 0;
 };
 
 /// A timer of a device: it expires each `period` s of the device's own clock.

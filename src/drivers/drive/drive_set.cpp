@@ -2,10 +2,6 @@
 
 namespace robot_control {
 
-void DriveSet::receive(const can_frame& frame, std::int64_t now_ns) noexcept {
-  for (const auto& drive : drives_) drive->receive(frame, now_ns);
-}
-
 void DriveSet::step(std::span<const DriveCommand> commands, std::int64_t now_ns, FrameBatch& send) noexcept {
   for (std::size_t i = 0; i < drives_.size(); ++i) {
     drives_[i]->step(i < commands.size() ? commands[i] : DriveCommand{}, now_ns, send);

@@ -26,7 +26,9 @@ class DriveSet {
   Drive& operator[](std::size_t joint) noexcept { return *drives_[joint]; }
   const Drive& operator[](std::size_t joint) const noexcept { return *drives_[joint]; }
 
-  void receive(const can_frame& frame, std::int64_t now_ns) noexcept;
+  void receive(const can_frame& frame, std::int64_t now_ns) noexcept {
+    for (const auto& drive : drives_) drive->receive(frame, now_ns);
+  }
   /// Runs one cycle, with one command per joint.
   void step(std::span<const DriveCommand> commands, std::int64_t now_ns, FrameBatch& send) noexcept;
 

@@ -1,6 +1,6 @@
 #include "drivers/line/bus_watch.h"
 
-#include "drivers/line/can_errors.h"
+#include <linux/can/error.h>
 
 namespace robot_control {
 
@@ -38,6 +38,51 @@ std::string words(const BusStatus& status) {
   } else {
     text += "; look at the cable and its terminators, the bit rate, and how much is sent";
   }
+  return text;
+}
+
+namespace {
+
+struct ErrorWords {
+  canid_t error_class;
+  unsigned byte;  // of the data; 0: the class alone counts
+  std::uint8_t bits;
+  const char* words;
+};
+
+constexpr ErrorWords kWords[] = {
+    {CAN_ERR_BUSOFF, 0, 0, "bus-off: the controller takes no part until it is restarted"},
+    {CAN_ERR_RESTARTED, 0, 0, "controller restarted"},
+    {CAN_ERR_ACK, 0, 0, "no acknowledgement: no other node is awake at this bit rate"},
+    {CAN_ERR_TX_TIMEOUT, 0, 0, "transmit timeout"},
+    {CAN_ERR_LOSTARB, 0, 0, "lost arbitration"},
+    {CAN_ERR_BUSERROR, 0, 0, "bus error"},
+    {CAN_ERR_TRX, 0, 0, "transceiver: a wire is broken or shorted"},
+    {CAN_ERR_CRTL, 1, CAN_ERR_CRTL_RX_OVERFLOW, "receive buffer overflow"},
+    {CAN_ERR_CRTL, 1, CAN_ERR_CRTL_TX_OVERFLOW, "transmit buffer overflow"},
+    {CAN_ERR_CRTL, 1, CAN_ERR_CRTL_RX_WARNING, "many receive errors"},
+    {CAN_ERR_CRTL, 1, CAN_ERR_CRTL_TX_WARNING, "many transmit errors"},
+    {CAN_ERR_CRTL, 1, CAN_ERR_CRTL_RX_PASSIVE, "error passive by receive errors"},
+    {CAN_ERR_CRTL, 1, CAN_ERR_CRTL_TX_PASSIVE, "error passive by transmit errors"},
+    {CAN_ERR_CRTL, 1, CAN_ERR_CRTL_ACTIVE, "error active again"},
+    {CAN_ERR_PROT, 2, CAN_ERR_PROT_BIT, "single bit error"},
+    {CAN_ERR_PROT, 2, CAN_ERR_PROT_FORM, "frame format error"},
+    {CAN_ERR_PROT, 2, CAN_ERR_PROT_STUFF, "bit stuffing error: is the bit rate that of the other nodes?"},
+    {CAN_ERR_PROT, 2, CAN_ERR_PROT_BIT0, "no dominant bit could be sent"},
+    {CAN_ERR_PROT, 2, CAN_ERR_PROT_BIT1, "no recessive bit could be sent"},
+    {CAN_ERR_PROT, 2, CAN_ERR_PROT_OVERLOAD, "bus overload"},
+};
+
+}  // namespace
+
+std::string can_error_words(const can_frame& error) {
+  std::string text;
+  for (const ErrorWords& each : kWords) {
+    if ((error.can_id & each.error_class) == 0 || (each.byte != 0 && (error.data[each.byte] & each.bits) == 0))
+      continue;
+    text += (text.empty() ? "" : ", ") + std::string(each.words);
+  }
+  if (text.empty() && error.can_id != 0) text = "the controller reports errors without a reason";
   return text;
 }
 

@@ -13,9 +13,15 @@
 #include <string>
 
 #include "drivers/line/can_bus.h"
+#include "drivers/line/can_frame.h"
 #include "signals/sensor_frame.h"
 
 namespace robot_control {
+
+/// Error frames of a CAN controller in words, for messages. Source: linux/can/error.h.
+///
+/// Returns everything that the frame reports, separated by commas; "" of a frame without an identifier.
+std::string can_error_words(const can_frame& error);
 
 /// A copy of it may be put into words by another thread.
 struct BusStatus {

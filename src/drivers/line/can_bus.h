@@ -74,7 +74,7 @@ class CanBus {
   CanState state() const noexcept { return state_; }
   const CanCounts& counts() const noexcept { return counts_; }
 
-  /// Returns the last frame that `error_frames` counts (can_errors.h); one without an identifier: there was none.
+  /// Returns the last frame that `error_frames` counts (bus_watch.h); one without an identifier: there was none.
   const can_frame& last_error_frame() const noexcept { return last_error_frame_; }
 
  private:

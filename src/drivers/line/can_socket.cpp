@@ -35,32 +35,20 @@ sockaddr* generic(void* address) {
 }
 
 /// The folder while its names change hands.
-class LockedFolder {
- public:
-  explicit LockedFolder(const std::string& path) : path_(path) {
-    if (mkdir(path.c_str(), 0700) != 0 && errno != EEXIST)
-      fail(reason(), "its parent folder must exist and be writable");
-    descriptor_ = ::open(path.c_str(), O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
-    struct stat status {};
-    if (descriptor_ < 0 || fstat(descriptor_, &status) != 0) fail(reason(), "name a folder of your own");
-    if (status.st_uid != geteuid() || (status.st_mode & (S_IWGRP | S_IWOTH)) != 0) {
-      fail("other users may write to this folder", "name a folder of your own: chmod 700");
-    }
-    flock(descriptor_, LOCK_EX);
+Descriptor locked_folder(const std::string& path) {
+  const auto fail = [&](const std::string& problem, const std::string& remedy) {
+    refuse(kFolderPrefix + path, problem, remedy);
+  };
+  if (mkdir(path.c_str(), 0700) != 0 && errno != EEXIST) fail(reason(), "its parent folder must exist and be writable");
+  Descriptor folder(open(path.c_str(), O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC));
+  struct stat status {};
+  if (!folder.open() || fstat(folder.number(), &status) != 0) fail(reason(), "name a folder of your own");
+  if (status.st_uid != geteuid() || (status.st_mode & (S_IWGRP | S_IWOTH)) != 0) {
+    fail("other users may write to this folder", "name a folder of your own: chmod 700");
   }
-  ~LockedFolder() { ::close(descriptor_); }
-  LockedFolder(const LockedFolder&) = delete;
-  LockedFolder& operator=(const LockedFolder&) = delete;
-
- private:
-  [[noreturn]] void fail(const std::string& problem, const std::string& remedy) {
-    if (descriptor_ >= 0) ::close(descriptor_);
-    refuse(kFolderPrefix + path_, problem, remedy);
-  }
-
-  std::string path_;
-  int descriptor_ = -1;
-};
+  flock(folder.number(), LOCK_EX);
+  return folder;
+}
 
 sockaddr_un party_address(const std::string& folder, unsigned party) {
   sockaddr_un address{};
@@ -74,16 +62,14 @@ sockaddr_un party_address(const std::string& folder, unsigned party) {
   return address;
 }
 
-int datagram_socket() {
-  return socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
+Descriptor datagram_socket() {
+  return Descriptor(socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
 }
 
 /// Returns whether the name is left over from an ended process.
 bool abandoned(sockaddr_un address) {
-  const int probe = datagram_socket();
-  const bool refused = connect(probe, generic(&address), sizeof address) != 0 && errno == ECONNREFUSED;
-  ::close(probe);
-  return refused;
+  const Descriptor probe = datagram_socket();
+  return connect(probe.number(), generic(&address), sizeof address) != 0 && errno == ECONNREFUSED;
 }
 
 }  // namespace
@@ -105,22 +91,13 @@ CanSocket::CanSocket(int descriptor, std::span<const can_filter> filters)
 
 CanSocket CanSocket::line_end(int descriptor) {
   CanSocket end(-1);
-  end.descriptor_ = descriptor;
+  end.descriptor_ = Descriptor(descriptor);
   end.is_line_ = true;
   return end;
 }
 
-CanSocket::CanSocket(CanSocket&& other) noexcept
-    : descriptor_(std::exchange(other.descriptor_, -1)),
-      filters_(std::move(other.filters_)),
-      parties_(std::move(other.parties_)),
-      own_party_(other.own_party_),
-      is_line_(other.is_line_) {}
-
 CanSocket::~CanSocket() {
-  if (descriptor_ < 0) return;
   if (own_party_ < parties_.size()) unlink(parties_[own_party_].sun_path);
-  ::close(descriptor_);
 }
 
 bool CanSocket::passes(canid_t id) const noexcept {
@@ -133,16 +110,16 @@ bool CanSocket::passes(canid_t id) const noexcept {
 
 void CanSocket::request_time_stamps() const noexcept {
   const int on = 1;  // a socket that has none of these is still a socket
-  setsockopt(descriptor_, SOL_SOCKET, SO_TIMESTAMPNS, &on, sizeof on);
-  setsockopt(descriptor_, SOL_SOCKET, SO_RXQ_OVFL, &on, sizeof on);
+  setsockopt(descriptor(), SOL_SOCKET, SO_TIMESTAMPNS, &on, sizeof on);
+  setsockopt(descriptor(), SOL_SOCKET, SO_RXQ_OVFL, &on, sizeof on);
 }
 
 void CanSocket::open_interface(const std::string& name) {
   if (name.empty() || name.size() >= IFNAMSIZ) {
     refuse(name, "this is no name of an interface", "write can0, or unix:FOLDER");
   }
-  descriptor_ = socket(PF_CAN, SOCK_RAW | SOCK_CLOEXEC | SOCK_NONBLOCK, CAN_RAW);
-  if (descriptor_ < 0) {
+  descriptor_ = Descriptor(socket(PF_CAN, SOCK_RAW | SOCK_CLOEXEC | SOCK_NONBLOCK, CAN_RAW));
+  if (!descriptor_.open()) {
     const bool absent = errno == EAFNOSUPPORT;
     refuse(name, absent ? "this kernel has no CAN" : reason(),
            "load the modules can and can_raw, or use unix:FOLDER for simulated drives");
@@ -153,15 +130,15 @@ void CanSocket::open_interface(const std::string& name) {
   if (address.can_ifindex == 0) refuse(name, reason(), "`ip link` lists the interfaces");
   ifreq state{};
   name.copy(state.ifr_name, name.size());
-  if (ioctl(descriptor_, SIOCGIFFLAGS, &state) == 0 && (state.ifr_flags & IFF_UP) == 0) {
+  if (ioctl(descriptor(), SIOCGIFFLAGS, &state) == 0 && (state.ifr_flags & IFF_UP) == 0) {
     refuse(name, "the interface is down",
            "ip link set " + printable(name) + " up type can bitrate BIT_RATE restart-ms 100");
   }
   const can_err_mask_t errors = CAN_ERR_MASK;
-  if (setsockopt(descriptor_, SOL_CAN_RAW, CAN_RAW_ERR_FILTER, &errors, sizeof errors) != 0 ||
-      (!filters_.empty() && setsockopt(descriptor_, SOL_CAN_RAW, CAN_RAW_FILTER, filters_.data(),
+  if (setsockopt(descriptor(), SOL_CAN_RAW, CAN_RAW_ERR_FILTER, &errors, sizeof errors) != 0 ||
+      (!filters_.empty() && setsockopt(descriptor(), SOL_CAN_RAW, CAN_RAW_FILTER, filters_.data(),
                                        static_cast<socklen_t>(filters_.size() * sizeof(can_filter))) != 0) ||
-      bind(descriptor_, generic(&address), sizeof address) != 0) {
+      bind(descriptor(), generic(&address), sizeof address) != 0) {
     refuse(name, reason(), "is it a CAN interface?");
   }
   request_time_stamps();
@@ -170,9 +147,9 @@ void CanSocket::open_interface(const std::string& name) {
 void CanSocket::open_folder(const std::string& folder) {
   for (unsigned party = 0; party < kMaxParties; ++party) parties_.push_back(party_address(folder, party));
   own_party_ = kMaxParties;
-  const LockedFolder lock(folder);
+  const Descriptor lock = locked_folder(folder);
   descriptor_ = datagram_socket();
-  if (descriptor_ < 0) refuse(kFolderPrefix + folder, reason(), "close other programs");
+  if (!descriptor_.open()) refuse(kFolderPrefix + folder, reason(), "close other programs");
   for (const sockaddr_un& party : parties_) {
     if (abandoned(party)) unlink(party.sun_path);
   }
@@ -186,7 +163,7 @@ void CanSocket::open_folder(const std::string& folder) {
 
 void CanSocket::bind_first_free_name() {
   for (unsigned party = 0; party < kMaxParties; ++party) {
-    if (bind(descriptor_, generic(&parties_[party]), sizeof(sockaddr_un)) == 0) {
+    if (bind(descriptor(), generic(&parties_[party]), sizeof(sockaddr_un)) == 0) {
       own_party_ = party;
       return;
     }

@@ -17,6 +17,8 @@
 #include <string>
 #include <vector>
 
+#include "files/descriptor.h"
+
 namespace robot_control {
 
 inline constexpr unsigned kMaxParties = 16;
@@ -35,11 +37,11 @@ class CanSocket {
   /// frames, without time stamps.
   static CanSocket line_end(int descriptor);
 
-  CanSocket(CanSocket&& other) noexcept;
+  CanSocket(CanSocket&&) noexcept = default;
   CanSocket& operator=(CanSocket&&) = delete;
   ~CanSocket();
 
-  int descriptor() const noexcept { return descriptor_; }
+  int descriptor() const noexcept { return descriptor_.number(); }
 
   /// Returns the addresses of all parties of a folder, whether they are there or not; none elsewhere.
   std::span<sockaddr_un> parties() noexcept { return parties_; }
@@ -59,7 +61,7 @@ class CanSocket {
   void bind_first_free_name();
   void request_time_stamps() const noexcept;
 
-  int descriptor_ = -1;
+  Descriptor descriptor_;
   std::vector<can_filter> filters_;
   std::vector<sockaddr_un> parties_;
   unsigned own_party_ = 0;

@@ -31,10 +31,6 @@ PseudoTerminal::PseudoTerminal(std::string path) : path_(std::move(path)) {
   plug();
 }
 
-PseudoTerminal::~PseudoTerminal() {
-  unplug();
-}
-
 void PseudoTerminal::plug() {
   unplug();
   std::array<char, 64> name{};

@@ -11,7 +11,7 @@ class PseudoTerminal final : public SerialLine {
   /// A link that leads nowhere is replaced. Throws DriverError if `path` is taken by anything else, as by the link of a
   /// running simulator, or cannot be made.
   explicit PseudoTerminal(std::string path);
-  ~PseudoTerminal() override;
+  ~PseudoTerminal() override { unplug(); }
   PseudoTerminal(const PseudoTerminal&) = delete;
   PseudoTerminal& operator=(const PseudoTerminal&) = delete;
 

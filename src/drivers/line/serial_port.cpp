@@ -72,56 +72,48 @@ bool is_bit_rate(unsigned bit_rate) noexcept {
 
 SerialPort::SerialPort(std::string address, unsigned bit_rate, const RealtimeParameters& thread,
                        std::function<std::int64_t()> clock, std::string links)
-    : address_(std::move(address)), bit_rate_(bit_rate), clock_(std::move(clock)) {
+    : address_(std::move(address)),
+      bit_rate_(bit_rate),
+      clock_(std::move(clock)),
+      file_(open("/dev/null", O_RDWR | O_CLOEXEC)) {
   if (!address_.starts_with("/dev/serial/")) address_ = by_id(address_, links);
-  descriptor_ = open("/dev/null", O_RDWR | O_CLOEXEC);
-  if (descriptor_ < 0) throw DriverError(std::string("/dev/null cannot be opened: ") + std::strerror(errno));
-  try {
-    try_open();
-    thread_ = std::make_unique<RealtimeThread>(thread, [this] { run(); });
-  } catch (...) {
-    close(descriptor_);
-    throw;
-  }
+  if (!file_.open()) throw DriverError(std::string("/dev/null cannot be opened: ") + std::strerror(errno));
+  try_open();
+  thread_ = std::make_unique<RealtimeThread>(thread, [this] { run(); });
 }
 
 SerialPort::~SerialPort() {
   ending_ = true;
   thread_.reset();
-  close(descriptor_);
 }
 
 /// Returns false if there is no device. Throws DriverError if it cannot be used.
 bool SerialPort::try_open() {
-  const int device = open(address_.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
-  if (device < 0 && (errno == ENOENT || errno == ENXIO || errno == ENODEV || errno == EIO)) return false;
+  const Descriptor device(open(address_.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC));
+  if (!device.open() && (errno == ENOENT || errno == ENXIO || errno == ENODEV || errno == EIO)) return false;
   const auto refuse = [&](const std::string& why) {
-    if (device >= 0) close(device);
     throw DriverError("the serial line " + address_ + " cannot be used: " + why);
   };
-  if (device < 0 && errno == EBUSY) refuse("another program uses it. End that program");
-  if (device < 0) {
+  if (!device.open() && errno == EBUSY) refuse("another program uses it. End that program");
+  if (!device.open()) {
     refuse(std::string(std::strerror(errno)) +
            (errno == EACCES ? ". Add this user to the group dialout, and log in again" : ""));
   }
-  if (isatty(device) == 0) refuse("it is no tty. State the device of the board (board.address)");
-  if (flock(device, LOCK_EX | LOCK_NB) != 0) refuse("another program uses it. End that program");
-  ioctl(device, TIOCEXCL);
-  make_raw(device, bit_rate_);
-  request_low_latency(device);
-  dup2(device, descriptor_);
-  close(device);
-  fcntl(descriptor_, F_SETFD, FD_CLOEXEC);
+  if (isatty(device.number()) == 0) refuse("it is no tty. State the device of the board (board.address)");
+  if (flock(device.number(), LOCK_EX | LOCK_NB) != 0) refuse("another program uses it. End that program");
+  ioctl(device.number(), TIOCEXCL);
+  make_raw(device.number(), bit_rate_);
+  request_low_latency(device.number());
+  dup2(device.number(), file_.number());
+  fcntl(file_.number(), F_SETFD, FD_CLOEXEC);
   connected_ = true;
   return true;
 }
 
 void SerialPort::disconnect() noexcept {
   connected_ = false;
-  const int nothing = open("/dev/null", O_RDWR | O_CLOEXEC);
-  if (nothing < 0) return;
-  dup2(nothing, descriptor_);
-  close(nothing);
+  const Descriptor nothing(open("/dev/null", O_RDWR | O_CLOEXEC));
+  if (nothing.open()) dup2(nothing.number(), file_.number());
 }
 
 void SerialPort::run() noexcept {
@@ -134,14 +126,14 @@ void SerialPort::run() noexcept {
       }
       continue;
     }
-    pollfd wait{.fd = descriptor_, .events = POLLIN, .revents = 0};
+    pollfd wait{.fd = file_.number(), .events = POLLIN, .revents = 0};
     if (poll(&wait, 1, kRetryMs) > 0) read_available();
   }
 }
 
 void SerialPort::read_available() noexcept {
   SerialChunk chunk;
-  const ssize_t got = read(descriptor_, chunk.bytes.data(), chunk.bytes.size());
+  const ssize_t got = read(file_.number(), chunk.bytes.data(), chunk.bytes.size());
   if (got < 0 && (errno == EAGAIN || errno == EINTR)) return;
   if (got <= 0) {
     disconnect();
@@ -168,7 +160,7 @@ bool SerialPort::receive(SerialChunk& chunk) noexcept {
 
 bool SerialPort::send(std::span<const std::uint8_t> bytes) noexcept {
   if (!connected_) return false;
-  return write(descriptor_, bytes.data(), bytes.size()) == static_cast<ssize_t>(bytes.size());
+  return write(file_.number(), bytes.data(), bytes.size()) == static_cast<ssize_t>(bytes.size());
 }
 
 }  // namespace robot_control

@@ -15,6 +15,7 @@
 #include <memory>
 
 #include "drivers/line/serial_line.h"
+#include "files/descriptor.h"
 #include "rt/realtime_thread.h"
 
 namespace robot_control {
@@ -52,7 +53,7 @@ class SerialPort final : public SerialLine {
   std::string address_;
   unsigned bit_rate_;
   std::function<std::int64_t()> clock_;
-  int descriptor_ = -1;
+  Descriptor file_;
   std::atomic<bool> connected_ = false;
   std::atomic<bool> ending_ = false;
   std::array<SerialChunk, kChunks> chunks_{};

@@ -29,10 +29,6 @@ std::optional<SerialFaults> serial_faults(std::string_view word) {
 VirtualSerial::VirtualSerial(double bit_rate, std::uint64_t seed)
     : byte_ns_(bit_rate > 0 ? static_cast<std::int64_t>(1.0e9 * kBitsPerByte / bit_rate) : 0), random_(seed) {}
 
-std::unique_ptr<SerialLine> VirtualSerial::driver_end() {
-  return std::make_unique<End>(*this, to_driver_, to_device_);
-}
-
 bool VirtualSerial::receive(Way& way, SerialChunk& chunk) const noexcept {
   chunk.size = 0;
   if (faults_.stalled) return false;

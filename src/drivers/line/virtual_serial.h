@@ -40,7 +40,7 @@ class VirtualSerial {
   VirtualSerial(double bit_rate, std::uint64_t seed);
 
   /// The line outlives its ends.
-  std::unique_ptr<SerialLine> driver_end();
+  std::unique_ptr<SerialLine> driver_end() { return std::make_unique<End>(*this, to_driver_, to_device_); }
   SerialLine& device_end() noexcept { return device_end_; }
 
   void advance(std::int64_t now_ns) noexcept { now_ns_ = now_ns; }

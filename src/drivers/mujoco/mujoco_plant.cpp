@@ -240,10 +240,6 @@ void MujocoPlant::simulate(std::span<const JointCommand> commands) noexcept {
   collect();
 }
 
-void MujocoPlant::stop() noexcept {
-  stopped_ = true;
-}
-
 void MujocoPlant::truth(TruthFrame& truth) noexcept {
   const FrameHead head = truth.head;
   truth = truth_;
@@ -253,10 +249,6 @@ void MujocoPlant::truth(TruthFrame& truth) noexcept {
 std::uint64_t MujocoPlant::scan_cycles() const noexcept {
   const double rate = parameters_.laser.rate;
   return rate > 0 ? static_cast<std::uint64_t>(std::max(1.0, std::round(1 / (rate * period_)))) : 0;
-}
-
-void MujocoPlant::inject(const InjectedFaults& faults) noexcept {
-  injected_ = faults;
 }
 
 void MujocoPlant::substep(void* plant) {

@@ -69,7 +69,7 @@ class MujocoPlant final : public Simulator {
   void start() override;
   void read(SensorFrame& sensors) noexcept override;
   void write(std::span<const JointCommand> commands) noexcept override;
-  void stop() noexcept override;
+  void stop() noexcept override { stopped_ = true; }
   bool accepts(JointMode mode) const noexcept override {
     const bool own_loops = parameters_.drive == SimulatedDrive::kVelocity;
     return own_loops ? mode == JointMode::kBrake || mode == JointMode::kDriveVelocity : JointLaw::computes(mode);
@@ -78,7 +78,7 @@ class MujocoPlant final : public Simulator {
     return input != MachineInput::kJointEffort || parameters_.drive == SimulatedDrive::kTorque;
   }
   void truth(TruthFrame& truth) noexcept override;
-  void inject(const InjectedFaults& faults) noexcept override;
+  void inject(const InjectedFaults& faults) noexcept override { injected_ = faults; }
   std::uint64_t scan_cycles() const noexcept override;
   LaserScan scan(const TruthFrame& truth) override { return laser_ ? laser_->scan(truth) : LaserScan{}; }
 

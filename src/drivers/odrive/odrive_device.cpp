@@ -4,9 +4,11 @@
 #include <bit>
 #include <limits>
 
+#include "drivers/drive/can_front.h"
 #include "drivers/odrive/odrive_errors.h"
 #include "drivers/odrive/odrive_messages_05.h"
 #include "drivers/odrive/odrive_messages_06.h"
+#include "drivers/odrive/odrive_parameters.h"
 
 namespace robot_control {
 namespace {
@@ -27,17 +29,15 @@ constexpr std::uint64_t kUnknownSupply05 = 0x8000'0000;
 }  // namespace
 
 OdriveDevice::OdriveDevice(const OdriveDeviceParameters& parameters, VirtualCan& bus, DeviceMotor& motor)
-    : parameters_(parameters),
-      bus_(bus),
+    : Device(bus),
+      parameters_(parameters),
       motor_(motor),
-      party_(bus.join([this](const can_frame& frame, std::int64_t now_ns) { receive(frame, now_ns); })),
       heartbeat_timer_(parameters.heartbeat_period, parameters.clock_ppm, 0.1 + 0.07 * parameters.node),
       estimates_timer_(parameters.estimates_period, parameters.clock_ppm, 0.3 + 0.09 * parameters.node),
       effort_timer_(parameters.effort_period, parameters.clock_ppm, 0.5 + 0.03 * parameters.node),
       watchdog_timer_(parameters.watchdog_timeout, parameters.clock_ppm, 1) {}
 
-void OdriveDevice::boot(std::int64_t now_ns) {
-  boot_ns_ = now_ns + kBootNs;
+void OdriveDevice::boot() {
   state_ = AxisState::kIdle;
   clear_errors();
   disarm_reason_ = 0;
@@ -48,21 +48,19 @@ void OdriveDevice::boot(std::int64_t now_ns) {
   motor_.torque = 0;
 }
 
-void OdriveDevice::inject(DeviceFault fault) {
-  if (fault == DeviceFault::kReset || (fault_ == DeviceFault::kOff && fault != DeviceFault::kOff)) boot(bus_.now_ns());
-  fault_ = fault;
-  if (fault == DeviceFault::kOtherZero || fault == DeviceFault::kSlipped) zero_ += kOtherZero;
-  if (fault == DeviceFault::kReleased) state_ = AxisState::kIdle;
-  if (fault == DeviceFault::kOff) motor_.torque = 0;
+void OdriveDevice::begin_fault() {
+  if (fault() == DeviceFault::kOtherZero || fault() == DeviceFault::kSlipped) zero_ += kOtherZero;
+  if (fault() == DeviceFault::kReleased) state_ = AxisState::kIdle;
+  if (fault() == DeviceFault::kOff) motor_.torque = 0;
   report_fault();
 }
 
 void OdriveDevice::report_fault() {
-  if (fault_ == DeviceFault::kEncoder) {
+  if (fault() == DeviceFault::kEncoder) {
     encoder_error_ = kNoResponse05;
     fail(is_06() ? kMissingEstimate06 : kEncoderFailed05);
   }
-  if (fault_ == DeviceFault::kUnderVoltage) {
+  if (fault() == DeviceFault::kUnderVoltage) {
     motor_error_ = kUnknownSupply05;
     fail(is_06() ? kUnderVoltage06 : kMotorFailed05);
   }
@@ -80,10 +78,7 @@ void OdriveDevice::fail(std::uint32_t error) {
   motor_.torque = 0;
 }
 
-void OdriveDevice::step(std::int64_t now_ns) {
-  const double seconds = 1.0e-9 * static_cast<double>(now_ns - now_ns_);
-  now_ns_ = now_ns;
-  if (fault_ == DeviceFault::kOff || now_ns < boot_ns_) return;
+void OdriveDevice::run(std::int64_t now_ns, double seconds) {
   const bool watched = !is_06() || state_ == AxisState::kClosedLoopControl;
   if (watched && watchdog_timer_.expired(now_ns)) fail(is_06() ? kWatchdogExpired06 : kWatchdogExpired05);
   if (state_ == AxisState::kClosedLoopControl && std::abs(motor_.velocity) > kVelocityTolerance * velocity_limit_) {
@@ -92,7 +87,7 @@ void OdriveDevice::step(std::int64_t now_ns) {
   }
   const bool closed = state_ == AxisState::kClosedLoopControl;
   if (!closed) speed_loop_.reset();
-  motor_.torque = closed ? (fault_ == DeviceFault::kSlipped ? -1 : 1) * driven_torque(seconds) : 0;
+  motor_.torque = closed ? (fault() == DeviceFault::kSlipped ? -1 : 1) * driven_torque(seconds) : 0;
   if (heartbeat_timer_.expired(now_ns)) send_heartbeat();
   if (estimates_timer_.expired(now_ns)) send_estimates();
   if (effort_timer_.expired(now_ns)) is_06() ? send_torques() : send_current();
@@ -129,7 +124,7 @@ void OdriveDevice::send_heartbeat() {
 
 void OdriveDevice::send_estimates() {
   const double velocity =
-      fault_ == DeviceFault::kNotFinite ? std::numeric_limits<double>::quiet_NaN() : motor_.velocity;
+      fault() == DeviceFault::kNotFinite ? std::numeric_limits<double>::quiet_NaN() : motor_.velocity;
   send(EncoderEstimates{.position = measured_position(), .velocity = velocity});
 }
 
@@ -143,14 +138,13 @@ void OdriveDevice::send_torques() {
 }
 
 void OdriveDevice::receive(const can_frame& frame, std::int64_t now_ns) {
-  if (fault_ == DeviceFault::kOff || now_ns < boot_ns_ || is_extended(frame) || node_of(frame) != parameters_.node)
-    return;
+  if (is_extended(frame) || node_of(frame) != parameters_.node) return;
   if (state_ == AxisState::kClosedLoopControl || !is_06()) watchdog_timer_.restart(now_ns);
   is_remote_request(frame) ? receive_request(frame) : receive_command(frame);
 }
 
 void OdriveDevice::receive_request(const can_frame& frame) {
-  const bool low = fault_ == DeviceFault::kUnderVoltage;
+  const bool low = fault() == DeviceFault::kUnderVoltage;
   if (requests<EncoderEstimates>(frame)) send_estimates();
   if (requests<Iq>(frame)) send_current();
   if (requests<BusVoltageCurrent>(frame)) send(BusVoltageCurrent{.voltage = low ? kLowSupply : kSupply, .current = 1});
@@ -170,14 +164,14 @@ void OdriveDevice::receive_request(const can_frame& frame) {
   if (requests<v06::Error>(frame)) send(v06::Error{.active = error_, .disarm_reason = disarm_reason_});
   if (requests<v06::Torques>(frame)) send_torques();
   if (requests<v06::Temperature>(frame)) {
-    send(v06::Temperature{.transistors = kCool, .motor = fault_ == DeviceFault::kHot ? kHotMotor : kCool});
+    send(v06::Temperature{.transistors = kCool, .motor = fault() == DeviceFault::kHot ? kHotMotor : kCool});
   }
 }
 
 void OdriveDevice::receive_command(const can_frame& frame) {
   if (const auto wanted = decode<SetAxisState>(frame)) {
     const bool closes = wanted->state == AxisState::kClosedLoopControl && error_ == 0;
-    if (closes && state_ != AxisState::kClosedLoopControl) watchdog_timer_.restart(now_ns_);
+    if (closes && state_ != AxisState::kClosedLoopControl) watchdog_timer_.restart(now_ns());
     state_ = closes ? AxisState::kClosedLoopControl : AxisState::kIdle;
     if (closes) report_fault();
   }
@@ -215,6 +209,32 @@ void OdriveDevice::receive_sdo(const can_frame& frame) {
     const auto timeout = static_cast<float>(parameters_.watchdog_timeout);
     send(v06::TxSdo{.endpoint = sdo->endpoint, .value = std::bit_cast<std::uint32_t>(timeout)});
   }
+}
+
+namespace {
+
+constexpr double kOdriveWatchdog = 0.1;  // s, where the drive file says that it coasts on silence
+
+OdriveDeviceParameters device_of(const OdriveParameters& drive, const Brake& brake, double clock_ppm) {
+  return {.node = static_cast<std::uint8_t>(drive.drive.node),
+          .firmware = drive.firmware == Firmware::k05 ? Firmware::k05 : Firmware::k06,
+          .serial_number = drive.serial_number != 0 ? drive.serial_number : 1 + drive.drive.node,
+          .torque_constant = drive.torque_constant,
+          .counts_per_turn = drive.counts_per_turn,
+          .heartbeat_period = drive.heartbeat_period,
+          .estimates_period = drive.estimates_period,
+          .effort_period = drive.effort_period,
+          .watchdog_timeout = drive.drive.on_silence == SilenceReaction::kCoasts ? kOdriveWatchdog : 0,
+          .enable_watchdog_endpoint = static_cast<std::uint16_t>(drive.enable_watchdog_endpoint),
+          .watchdog_timeout_endpoint = static_cast<std::uint16_t>(drive.watchdog_timeout_endpoint),
+          .speed_gain = motor_damping(drive.drive, brake),
+          .clock_ppm = clock_ppm};
+}
+
+}  // namespace
+
+std::unique_ptr<DeviceFront> make_odrive_front(const DriveFile& file, FrontSetup setup) {
+  return one_device_per_node<OdriveDevice>(file, std::move(setup), &device_of);
 }
 
 }  // namespace robot_control

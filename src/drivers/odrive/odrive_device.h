@@ -37,18 +37,17 @@ class OdriveDevice final : public Device {
  public:
   OdriveDevice(const OdriveDeviceParameters& parameters, VirtualCan& bus, DeviceMotor& motor);
 
-  void step(std::int64_t now_ns) override;
-  void inject(DeviceFault fault) override;
-
   odrive::AxisState state() const { return state_; }
   double set_point() const { return input_torque_; }
 
  private:
-  void receive(const can_frame& frame, std::int64_t now_ns);
+  void boot() override;
+  void begin_fault() override;
+  void receive(const can_frame& frame, std::int64_t now_ns) override;
+  void run(std::int64_t now_ns, double seconds) override;
   void receive_request(const can_frame& frame);
   void receive_command(const can_frame& frame);
   void receive_sdo(const can_frame& frame);
-  void boot(std::int64_t now_ns);
   void fail(std::uint32_t error);
   void report_fault();  ///< An error that is still there comes again when the axis closes its loop.
   void clear_errors();
@@ -60,7 +59,7 @@ class OdriveDevice final : public Device {
   void send_torques();
   template <class Message>
   void send(const Message& message) {
-    bus_.send(party_, odrive::encode(parameters_.node, message));
+    transmit(odrive::encode(parameters_.node, message));
   }
   template <class Message>
   bool requests(const can_frame& frame) const {
@@ -69,14 +68,8 @@ class OdriveDevice final : public Device {
   bool is_06() const { return parameters_.firmware == odrive::Firmware::k06; }
 
   OdriveDeviceParameters parameters_;
-  VirtualCan& bus_;
   DeviceMotor& motor_;
-  std::size_t party_;
-  DeviceFault fault_ = DeviceFault::kNone;
   DeviceTimer heartbeat_timer_, estimates_timer_, effort_timer_, watchdog_timer_;
-  std::int64_t now_ns_ = 0;
-  std::int64_t boot_ns_ = 0;  // The device is silent until then.
-
   odrive::AxisState state_ = odrive::AxisState::kIdle;
   std::uint32_t error_ = 0, disarm_reason_ = 0;
   std::uint64_t motor_error_ = 0;

@@ -100,28 +100,15 @@ constexpr NamedBit kNames06[] = {
     {0x40000000, "CALIBRATION_ERROR"},
 };
 
-std::span<const NamedBit> names_of(ErrorKind kind) {
-  switch (kind) {
-    case ErrorKind::kAxis05:
-      return kAxisNames05;
-    case ErrorKind::kMotor05:
-      return kMotorNames05;
-    case ErrorKind::kEncoder05:
-      return kEncoderNames05;
-    case ErrorKind::kController05:
-      return kControllerNames05;
-    case ErrorKind::kAny06:
-      return kNames06;
-  }
-  return {};
-}
+constexpr std::span<const NamedBit> kNames[] = {kAxisNames05, kMotorNames05, kEncoderNames05, kControllerNames05,
+                                                kNames06};  // by ErrorKind
 
 }  // namespace
 
 std::string error_names(ErrorKind kind, std::uint64_t error) {
   if (error == 0) return "NONE";
   std::string text;
-  for (const NamedBit& named : names_of(kind)) {
+  for (const NamedBit& named : kNames[static_cast<std::size_t>(kind)]) {
     if ((error & named.bit) == 0) continue;
     text += text.empty() ? named.name : std::string(" ") + named.name;
     error &= ~named.bit;

@@ -41,10 +41,6 @@ std::int32_t RoboclawFront::counts(std::size_t wheel) const {
       static_cast<std::int64_t>(std::floor(counts_per_rad(parameters_.wheels[wheel]) * turned)));
 }
 
-void RoboclawFront::stop() {
-  for (Wheel& wheel : wheels_) wheel.driven = false;
-}
-
 /// A byte that can begin no request, and a request with a wrong CRC, are dropped.
 void RoboclawFront::receive_byte(std::uint8_t byte) {
   request_.add(byte, 1);
@@ -161,10 +157,6 @@ bool RoboclawFront::inject_board(std::string_view component, std::string_view ki
   for (std::size_t i = 0; i < wheels_.size(); ++i) wheels_[i].stuck = counts(i);
   stuck_ = kind == "stuck";
   return true;
-}
-
-std::string RoboclawFront::fault_words() const {
-  return "board (with ok, off, reset, brown_out, fault, no_gains), encoder (with ok, stuck)";
 }
 
 std::unique_ptr<DeviceFront> make_roboclaw_front(const DriveFile& file, FrontSetup setup) {

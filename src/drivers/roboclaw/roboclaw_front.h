@@ -44,13 +44,17 @@ class RoboclawFront final : public SerialFront {
 
   void receive_byte(std::uint8_t byte);
   void obey();
-  void stop();
+  void stop() {
+    for (Wheel& wheel : wheels_) wheel.driven = false;
+  }
   void answer(roboclaw::Packet data);
   std::int32_t counts(std::size_t wheel) const;
   void step_board() override;
   double step_wheel(std::size_t joint, double seconds) override;
   bool inject_board(std::string_view component, std::string_view kind) override;
-  std::string fault_words() const override;
+  std::string fault_words() const override {
+    return "board (with ok, off, reset, brown_out, fault, no_gains), encoder (with ok, stuck)";
+  }
   std::size_t joint_of(std::size_t motor) const;
 
   RoboclawParameters parameters_;

@@ -99,9 +99,7 @@ class DriveFileReader {
 
  private:
   void read(ParameterTree tree, std::vector<Block> blocks, const std::function<void(GivenValues&)>& check) {
-    const Schema schema{.blocks = std::move(blocks),
-                        .check = [&](const Schema&, GivenValues& given) { check(given); },
-                        .other_package_remedy = [](std::string_view) { return std::string(); }};
+    const Schema schema{.blocks = std::move(blocks), .check = [&](const Schema&, GivenValues& given) { check(given); }};
     read_blocks(std::move(tree), schema, schema.blocks, path_, problems_);
   }
 

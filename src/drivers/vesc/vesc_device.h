@@ -33,32 +33,25 @@ class VescDevice final : public Device {
 
   VescDevice(const VescDeviceParameters& parameters, VirtualCan& bus, DeviceMotor& motor);
 
-  void step(std::int64_t now_ns) override;
-  void inject(DeviceFault fault) override;
-
  private:
   enum class Order : std::uint8_t { kNone, kCurrent, kBrake, kSpeed };
 
-  void receive(const can_frame& frame, std::int64_t now_ns);
+  void boot() override;
+  void begin_fault() override;
+  void receive(const can_frame& frame, std::int64_t now_ns) override;
+  void run(std::int64_t now_ns, double seconds) override;
   void obey(Order order, double value);
-  void boot(std::int64_t now_ns);
-  bool silent(std::int64_t now_ns) const { return fault_ == DeviceFault::kOff || now_ns < boot_ns_; }
   double driven_torque(double seconds);
   void send_statuses();
   void send_temperature();
   template <class Message>
   void send(const Message& message) {
-    bus_.send(party_, vesc::encode(parameters_.node, message));
+    transmit(vesc::encode(parameters_.node, message));
   }
 
   VescDeviceParameters parameters_;
-  VirtualCan& bus_;
   DeviceMotor& motor_;
-  std::size_t party_;
-  DeviceFault fault_ = DeviceFault::kNone;
   DeviceTimer status_timer_, temperature_timer_, timeout_timer_;
-  std::int64_t now_ns_ = 0;
-  std::int64_t boot_ns_ = 0;      // The device is silent until then.
   std::int64_t released_ns_ = 0;  // The motor is released until then.
   Order order_ = Order::kNone;
   double value_ = 0;  // A, or rad/s of the motor

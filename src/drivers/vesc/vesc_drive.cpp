@@ -46,9 +46,7 @@ void VescDrive::restart(bool /*reset*/, std::int64_t /*now_ns*/) noexcept {
 
 void VescDrive::receive(const can_frame& frame, std::int64_t now_ns) noexcept {
   if (!is_extended_data(frame) || (node_of(frame) != node() && node_of(frame) != kEveryNode)) return;
-  if (commands_motion(command_of(frame))) {
-    return fail(DriveCause::kForeignCommander, "", frame.can_id & CAN_EFF_MASK);
-  }
+  if (commands_motion(command_of(frame))) return fail(DriveCause::kForeignCommander, "", frame.can_id & CAN_EFF_MASK);
   if (node_of(frame) != node()) return;
   seen_ = true;
   if (const auto status = decode<Status>(frame)) receive_status(*status, now_ns);

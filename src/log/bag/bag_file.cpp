@@ -14,22 +14,16 @@
 
 namespace robot_control {
 
-BagFile::BagFile(const std::string& path) : descriptor_(-1) {
+BagFile::BagFile(const std::string& path) {
   if (const std::string problem = input_file_problem(path, kMaxBag); !problem.empty()) {
     throw std::runtime_error(problem);
   }
-  descriptor_ = open(path.c_str(), O_RDONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC);
-  if (descriptor_ < 0) throw std::runtime_error(std::strerror(errno));
+  file_ = Descriptor(open(path.c_str(), O_RDONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC));
+  if (!file_.open()) throw std::runtime_error(std::strerror(errno));
   struct stat status {};
-  if (fstat(descriptor_, &status) != 0 || !S_ISREG(status.st_mode)) {
-    close(descriptor_);
+  if (fstat(file_.number(), &status) != 0 || !S_ISREG(status.st_mode))
     throw std::runtime_error("is no regular file any more");
-  }
   size_ = static_cast<std::uint64_t>(status.st_size);
-}
-
-BagFile::~BagFile() {
-  close(descriptor_);
 }
 
 std::string_view BagFile::read(std::uint64_t offset, std::size_t count, const std::string& field) {
@@ -52,7 +46,7 @@ std::size_t BagFile::fill(std::uint64_t offset, std::size_t count) {
   window_.resize(count);
   std::size_t got = 0;
   while (got < count) {
-    const ssize_t more = pread(descriptor_, window_.data() + got, count - got, static_cast<off_t>(offset + got));
+    const ssize_t more = pread(file_.number(), window_.data() + got, count - got, static_cast<off_t>(offset + got));
     if (more < 0 && errno == EINTR) continue;
     if (more < 0) throw BagError({.offset = offset + got}, "data", std::strerror(errno));
     if (more == 0) break;

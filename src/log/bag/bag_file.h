@@ -6,6 +6,8 @@
 #include <string>
 #include <string_view>
 
+#include "files/descriptor.h"
+
 namespace robot_control {
 
 inline constexpr std::uint64_t kMaxBag = std::uint64_t{16} << 30U;  ///< bytes; an hour of trace has 2.5 GB
@@ -14,9 +16,6 @@ class BagFile {
  public:
   /// Throws std::runtime_error if the path is no regular file, cannot be read or is larger than kMaxBag.
   explicit BagFile(const std::string& path);
-  ~BagFile();
-  BagFile(const BagFile&) = delete;
-  BagFile& operator=(const BagFile&) = delete;
 
   std::uint64_t size() const { return size_; }
 
@@ -27,7 +26,7 @@ class BagFile {
  private:
   std::size_t fill(std::uint64_t offset, std::size_t count);
 
-  int descriptor_;
+  Descriptor file_;
   std::uint64_t size_ = 0;
   std::uint64_t begin_ = 0;  // offset of `window_` in the file
   std::string window_;

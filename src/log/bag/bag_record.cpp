@@ -83,14 +83,6 @@ BagOp BagHeader::op() const {
   return static_cast<BagOp>(op);
 }
 
-std::uint32_t BagHeader::u32(std::string_view name) const {
-  return bag_number<std::uint32_t>(sized(name, sizeof(std::uint32_t)).value);
-}
-
-std::uint64_t BagHeader::u64(std::string_view name) const {
-  return bag_number<std::uint64_t>(sized(name, sizeof(std::uint64_t)).value);
-}
-
 std::uint64_t BagHeader::time_ns(std::string_view name) const {
   const Field& field = sized(name, sizeof(std::uint64_t));
   return bag_time_ns(field.value, place_ + field.offset, std::string(name));

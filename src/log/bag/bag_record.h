@@ -51,8 +51,12 @@ class BagHeader {
   /// The following functions return the value of a field. They throw BagError if the field is missing or has another
   /// size.
   BagOp op() const;
-  std::uint32_t u32(std::string_view name) const;
-  std::uint64_t u64(std::string_view name) const;
+  std::uint32_t u32(std::string_view name) const {
+    return bag_number<std::uint32_t>(sized(name, sizeof(std::uint32_t)).value);
+  }
+  std::uint64_t u64(std::string_view name) const {
+    return bag_number<std::uint64_t>(sized(name, sizeof(std::uint64_t)).value);
+  }
   std::uint64_t time_ns(std::string_view name) const;
   std::string_view text(std::string_view name) const;
 

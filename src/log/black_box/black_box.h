@@ -14,6 +14,7 @@
 #include <cstdint>
 #include <string>
 
+#include "files/descriptor.h"
 #include "log/log_chunk.h"
 #include "log/rows/join.h"
 #include "signals/law_snapshot.h"
@@ -29,7 +30,6 @@ class BlackBox {
   /// Makes the folder with room for the newest `bytes`. Throws LogError if it cannot be made, or if the disk has no
   /// room; then nothing is left of it.
   BlackBox(const std::string& folder, std::size_t bytes, const LogHeader& header);
-  ~BlackBox();
   BlackBox(const BlackBox&) = delete;
   BlackBox& operator=(const BlackBox&) = delete;
 
@@ -75,11 +75,11 @@ class BlackBox {
   bool append(std::string_view bytes);
 
   std::string folder_;
-  int lock_;  ///< descriptor of the folder
+  Descriptor lock_;  ///< of the folder
   LogHeader header_;
   std::size_t bag_bytes_ = 0;
   std::size_t bags_ = 0;
-  int bag_ = -1;             ///< descriptor of the present bag
+  Descriptor bag_;           ///< the present one
   std::uint64_t begun_ = 0;  ///< number of bags that were begun
   std::size_t at_ = 0;       ///< position in the present bag
   bool failed_ = false;

@@ -2,15 +2,15 @@
 
 #include <fcntl.h>
 #include <sys/file.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <filesystem>
 #include <system_error>
 
+#include "files/descriptor.h"
 #include "files/given_path.h"
 #include "log/log_error.h"
-#include "log/numbered_name.h"
+#include "log/log_folder.h"
 
 namespace robot_control {
 namespace {
@@ -26,11 +26,8 @@ std::string prefix_of(IncidentKind kind) {
 
 /// The result is true if a process writes this ring now.
 bool in_use(const std::string& ring) {
-  const int folder = open(ring.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  if (folder < 0) return false;
-  const bool locked = flock(folder, LOCK_SH | LOCK_NB) != 0;
-  close(folder);
-  return locked;
+  const Descriptor folder(open(ring.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+  return folder.open() && flock(folder.number(), LOCK_SH | LOCK_NB) != 0;
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 
 #include <sys/resource.h>
 
+#include <algorithm>
 #include <array>
 #include <chrono>
 #include <cstdio>
@@ -30,10 +31,6 @@ BlackBoxKeeper::BlackBoxKeeper(const std::string& folder, std::size_t bytes, std
     for (const std::string& ring : std::exchange(unsaved_, {})) report(save(ring, IncidentKind::kCrash, kCrashed, {}));
     make_box();
   }
-}
-
-void BlackBoxKeeper::make_box() {
-  box_ = std::make_unique<BlackBox>(folder_.ring(), bytes_, header_);
 }
 
 void BlackBoxKeeper::set_header(const LogHeader& header) {
@@ -71,10 +68,6 @@ void BlackBoxKeeper::check_size() {
       text.data(), text.size(), "telemetry.black_box of %.3g GB holds %.0f s of this robot; %.0f s need %.2g GB",
       static_cast<double>(bytes_) * 1e-9, held, kPromised, static_cast<double>(bytes_) * 1e-9 * 1.1 * kPromised / held);
   notes_.emplace_back(text.data());
-}
-
-BlackBoxKeeper::~BlackBoxKeeper() {
-  ends_.store(true);
 }
 
 BlackBoxKeeper::Outcome BlackBoxKeeper::save(const std::string& ring, IncidentKind kind, const std::string& why,
@@ -146,6 +139,17 @@ void BlackBoxKeeper::finish(const GiveUp& late) {
     report(std::move(outcome));
   }
   if (box_ != nullptr) box_->mark_ended();
+}
+
+bool IncidentWatch::update(std::uint64_t causes, std::int64_t now_ns) noexcept {
+  const bool stop = std::exchange(seen_, true) && causes_ == 0 && causes != 0;
+  causes_ = causes;
+  if (stop) {
+    if (!pending()) latest_ns_ = now_ns + kMaxDelay;
+    due_ns_ = std::min(now_ns + kAfter, latest_ns_);
+  }
+  if (stop || pending()) causes_to_save_ |= causes;
+  return stop;
 }
 
 }  // namespace robot_control

@@ -14,10 +14,37 @@
 
 #include "log/black_box/black_box.h"
 #include "log/black_box/black_box_folder.h"
-#include "log/black_box/incident_watch.h"
 #include "log/black_box/saved_black_box.h"
 
 namespace robot_control {
+
+/// A black box is saved `kAfter` after a latched stop. A further stop before that time is saved with it. The delay is
+/// at most `kMaxDelay` after the first stop, so that the rows before that one are still present.
+///
+/// A stop is latched when causes appear and there were none. Causes in the first update were latched before.
+class IncidentWatch {
+ public:
+  static constexpr std::int64_t kAfter = 5'000'000'000;      ///< ns; the oscillation after the stop has ended
+  static constexpr std::int64_t kMaxDelay = 30'000'000'000;  ///< ns; a black box holds a minute or more
+
+  /// `causes` are the present Permit::causes; true: there is a new stop.
+  bool update(std::uint64_t causes, std::int64_t now_ns) noexcept;
+
+  /// True: there was a stop that is not saved.
+  bool pending() const noexcept { return causes_to_save_ != 0; }
+
+  bool due(std::int64_t now_ns) const noexcept { return pending() && now_ns >= due_ns_; }
+
+  /// Returns the causes of the stops that are saved now, and forgets them.
+  std::uint64_t clear() noexcept { return std::exchange(causes_to_save_, 0); }
+
+ private:
+  bool seen_ = false;
+  std::uint64_t causes_ = 0;
+  std::uint64_t causes_to_save_ = 0;
+  std::int64_t latest_ns_ = 0;  ///< latest time at which saving is due
+  std::int64_t due_ns_ = 0;
+};
 
 class BlackBoxKeeper {
  public:
@@ -27,7 +54,7 @@ class BlackBoxKeeper {
 
   /// Makes a black box of `bytes` in `folder` and keeps the newest `keep` incidents of each kind. Throws LogError.
   BlackBoxKeeper(const std::string& folder, std::size_t bytes, std::size_t keep, LogHeader header);
-  ~BlackBoxKeeper();
+  ~BlackBoxKeeper() { ends_.store(true); }
   BlackBoxKeeper(const BlackBoxKeeper&) = delete;
   BlackBoxKeeper& operator=(const BlackBoxKeeper&) = delete;
 
@@ -69,7 +96,7 @@ class BlackBoxKeeper {
     bool given_up = false;
     std::string note;
   };
-  void make_box();
+  void make_box() { box_ = std::make_unique<BlackBox>(folder_.ring(), bytes_, header_); }
   void check_ring(std::int64_t now_ns);
   void check_size();
   Outcome save(const std::string& ring, IncidentKind kind, const std::string& why, const GiveUp& give_up) const;

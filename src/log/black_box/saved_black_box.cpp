@@ -13,7 +13,7 @@
 
 #include "log/bag/bag_error.h"
 #include "log/bag_log.h"
-#include "log/numbered_name.h"
+#include "log/log_folder.h"
 #include "log/trace_reader.h"
 
 namespace robot_control {

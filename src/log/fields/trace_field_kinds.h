@@ -162,18 +162,14 @@ TraceField& add_numbers(TraceFields& to, std::string_view name, std::string_view
     std::size_t size = Max;
     if constexpr (kList) size = from.number<std::uint32_t>();
     if (size > Max) return false;
-    for (std::size_t i = 0; i < size; ++i) {
-      Get{}(part_of<Part>(row), i) = static_cast<Value>(from.number<Wire>());
-    }
+    for (std::size_t i = 0; i < size; ++i) Get{}(part_of<Part>(row), i) = static_cast<Value>(from.number<Wire>());
     return true;
   };
   using Member = std::conditional_t<std::is_floating_point_v<Value>, double, std::uint64_t>;
   result.member_type = wire_name<Member>() + (elements.empty() ? "" : "[" + std::to_string(Max) + "]");
   result.write_member = [](const JoinedRow& row, std::string& bytes) {
     const Part* part = part_of<Part>(row);
-    for (std::size_t i = 0; part != nullptr && i < Max; ++i) {
-      write_number(bytes, static_cast<Member>(Get{}(*part, i)));
-    }
+    for (std::size_t i = 0; part != nullptr && i < Max; ++i) write_number(bytes, static_cast<Member>(Get{}(*part, i)));
   };
   return result;
 }

@@ -136,10 +136,6 @@ TraceField& add_field(TraceFields& to, std::string_view name, std::string_view t
       .name = std::string(name), .type = std::string(type).append(elements), .comment = std::string(comment)});
 }
 
-TraceField& TraceField::shown() {
-  return shown({name});
-}
-
 TraceField& TraceField::shown(const std::vector<std::string>& names) {
   for (std::size_t i = 0; i < names.size(); ++i) {
     columns.push_back(plain);

@@ -90,7 +90,7 @@ struct TraceField {
 
   /// These functions add columns. Without names, the column has the name of the field; with names, each of the first
   /// elements has a column.
-  TraceField& shown();
+  TraceField& shown() { return shown({name}); }
   TraceField& shown(const std::vector<std::string>& names);
   TraceField& shown_per_joint(std::string suffix);
   TraceField& shown_per_contact();

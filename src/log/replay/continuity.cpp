@@ -1,6 +1,5 @@
 #include "log/replay/continuity.h"
 
-#include "log/replay/replay_error.h"
 #include "loop/build_id.h"
 #include "signals/checksum.h"
 

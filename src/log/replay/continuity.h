@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <map>
+#include <stdexcept>
 #include <string>
 #include <tuple>
 
@@ -11,6 +12,11 @@
 #include "signals/law_snapshot.h"
 
 namespace robot_control {
+
+/// A log cannot be replayed; the message names the reason and the remedy.
+struct ReplayError : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
 
 /// The snapshots of all laws.
 class SnapshotStore {

@@ -9,10 +9,6 @@ std::string_view name_of(LawName law) noexcept {
   return kLawNames[static_cast<std::size_t>(law)];
 }
 
-void ReplayReport::add(ReplayDifference difference) {
-  if (differences.size() < kMaxDifferences) differences.push_back(std::move(difference));
-}
-
 bool ReplayReport::exact() const noexcept {
   const bool same = std::ranges::all_of(laws, [](const LawReport& law) { return law.different == 0; });
   return same && different_rows == 0 && damaged_snapshots == 0 &&

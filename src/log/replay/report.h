@@ -54,7 +54,9 @@ struct ReplayReport {
   std::uint64_t damaged_snapshots = 0;  ///< whose checksum is wrong: not used
 
   /// The first kMaxDifferences are kept.
-  void add(ReplayDifference difference);
+  void add(ReplayDifference difference) {
+    if (differences.size() < kMaxDifferences) differences.push_back(std::move(difference));
+  }
 
   /// Everything that could be compared was computed again, bit for bit, and there was at least one row.
   bool exact() const noexcept;

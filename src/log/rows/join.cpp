@@ -21,19 +21,6 @@ const Row* first_of(const std::deque<Row>& queue, bool has_row) {
 Join::Join(double period, std::function<void(const JoinedRow&)> sink, std::size_t window)
     : period_(period), sink_(std::move(sink)), window_(window) {}
 
-void Join::add(const DriverTrace& row) {
-  add_to<0>(row);
-}
-void Join::add(const EstimatorTrace& row) {
-  add_to<1>(row);
-}
-void Join::add(const ControllerTrace& row) {
-  add_to<2>(row);
-}
-void Join::add(const MonitorTrace& row) {
-  add_to<3>(row);
-}
-
 template <std::size_t Node, class Row>
 void Join::add_to(const Row& row) {
   auto& queue = std::get<Node>(queues_);
@@ -68,30 +55,26 @@ bool Join::repeats(const Row& row) {
 
 void Join::give_repeated() {
   const auto over = [this](const auto& row) { return std::ranges::count(finished_runs_, head_of(row).run) != 0; };
-  const auto give = [&](auto& queue, auto put) {
+  const auto give = [&](auto& queue) {
     while (!queue.empty() && over(queue.front())) queue.pop_front();
     while (!queue.empty() && run_ == head_of(queue.front()).run && last_cycle_ >= head_of(queue.front()).cycle) {
       const std::uint64_t cycle = head_of(queue.front()).cycle;
       JoinedRow row{.run = run_index_, .cycle = cycle, .time = row_time(cycle, period_)};
       row.repeats = true;
-      put(row.laws, queue.front());
+      row.put(queue.front());
       sink_(row);
       queue.pop_front();
     }
   };
-  give(std::get<1>(repeated_), [](JoinedRow::Laws& laws, const EstimatorTrace& row) { laws.estimator = &row; });
-  give(std::get<2>(repeated_), [](JoinedRow::Laws& laws, const ControllerTrace& row) { laws.controller = &row; });
-  give(std::get<3>(repeated_), [](JoinedRow::Laws& laws, const MonitorTrace& row) { laws.monitor = &row; });
+  give(std::get<1>(repeated_));
+  give(std::get<2>(repeated_));
+  give(std::get<3>(repeated_));
 }
 
 void Join::emit_beyond(std::size_t window) {
   const std::size_t before = std::exchange(window_, window);
   drain(false);
   window_ = before;
-}
-
-void Join::finish() {
-  drain(true);
 }
 
 std::array<const FrameHead*, 4> Join::fronts() const {

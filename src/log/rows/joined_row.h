@@ -39,6 +39,12 @@ struct JoinedRow {
     if (laws.monitor != nullptr && published(laws.monitor->permit.head)) monitor = laws.monitor;
   }
 
+  /// Puts the row of one node in, beside those that are there; its frame was not published.
+  void put(const DriverTrace& row) noexcept { driver = &row; }
+  void put(const EstimatorTrace& row) noexcept { laws.estimator = &row; }
+  void put(const ControllerTrace& row) noexcept { laws.controller = &row; }
+  void put(const MonitorTrace& row) noexcept { laws.monitor = &row; }
+
  private:
   static bool published(const FrameHead& head) noexcept { return head.kind == FrameKind::kFrame; }
 };

@@ -48,10 +48,6 @@ void DriverCycle::inject(const InjectedFaults& faults) noexcept {
   if (simulator_ != nullptr) simulator_->inject(faults);
 }
 
-void DriverCycle::set_due(std::int64_t deadline_ns) noexcept {
-  held_ns_ = static_cast<std::uint64_t>(deadline_ns - next_stamp_ns()) - slipped_ns_;
-}
-
 double DriverCycle::real_time_factor() const noexcept {
   const double simulated = static_cast<double>(cycle_) * static_cast<double>(period_ns_);
   return simulated / (simulated + static_cast<double>(slipped_ns_));

@@ -60,7 +60,9 @@ class DriverCycle {
   void inject(const InjectedFaults& faults) noexcept;
 
   /// Wall clock: the next tick is due then. The part of its lag that has not slipped was held.
-  void set_due(std::int64_t deadline_ns) noexcept;
+  void set_due(std::int64_t deadline_ns) noexcept {
+    held_ns_ = static_cast<std::uint64_t>(deadline_ns - next_stamp_ns()) - slipped_ns_;
+  }
 
   /// Wall clock: a pause has ended (SensorFrame::resumes).
   void count_resume() noexcept { ++resumes_; }

@@ -103,14 +103,6 @@ bool MonitorCycle::republished(const SensorFrame& arrived) noexcept {
   return true;
 }
 
-bool MonitorCycle::time_out() noexcept {
-  return step_without_frame(true);
-}
-
-bool MonitorCycle::idle() noexcept {
-  return step_without_frame(false);
-}
-
 SensorSilence MonitorCycle::silence(bool timed_out) const noexcept {
   if (clock_.run() == 0) return SensorSilence::kNone;
   if (driver_state_ == DriverState::kPaused) return SensorSilence::kPaused;

@@ -47,11 +47,11 @@ class MonitorCycle {
 
   /// Wall clock: nothing woke the monitor for loss_cycles periods. Unless the driver's last frame reported that it is
   /// paused or has ended, that latches kCauseDriverLost. True: as in `step`.
-  bool time_out() noexcept;
+  bool time_out() noexcept { return step_without_frame(true); }
 
   /// Nothing woke the monitor for a while. Resets are refused and emergency stops latch. Before the first frame the
   /// permit is one of kRunBeforeDriver, which no gate uses. True: as in `step`.
-  bool idle() noexcept;
+  bool idle() noexcept { return step_without_frame(false); }
 
   /// The permit of the last step; before `step` and `idle`, that of the start, with the inherited latch.
   const Permit& permit() const noexcept { return trace_.permit; }

@@ -34,8 +34,4 @@ bool ControllerProcess::ready() {
   return ConsumerProcess::ready() && state_.reader.memory() != nullptr && permit_.reader.memory() != nullptr;
 }
 
-void ControllerProcess::loop() noexcept {
-  consume(cycle_, state_.reader, kStopCheck, [] { return false; });
-}
-
 }  // namespace robot_control

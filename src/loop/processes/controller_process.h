@@ -27,7 +27,9 @@ class ControllerProcess final : public ConsumerProcess<CommandFrame, ControllerT
  private:
   void poll_channels() override;
   bool ready() override;
-  void loop() noexcept override;
+  void loop() noexcept override {
+    consume(cycle_, state_.reader, kStopCheck, [] { return false; });
+  }
 
   Input<StateFrame> state_;
   Input<Permit> permit_;

@@ -93,10 +93,6 @@ void DriverProcess::poll_channels() {
   trace_.poll();
 }
 
-bool DriverProcess::ready() {
-  return cycle_ != nullptr && missing().empty();
-}
-
 void DriverProcess::loop() noexcept {
   hold_.begin();
   if (lockstep()) {

@@ -53,7 +53,7 @@ class DriverProcess final : public Process {
 
  private:
   void poll_channels() override;
-  bool ready() override;
+  bool ready() override { return cycle_ != nullptr && missing().empty(); }
   void announce_thread(int id) override { trace_.announce_thread(id); }
   void loop() noexcept override;
   void loop_wall() noexcept;

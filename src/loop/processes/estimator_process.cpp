@@ -11,8 +11,4 @@ EstimatorProcess::EstimatorProcess(const Parameters& parameters, const Robot& ro
   cycle_.set_process(mint_number());
 }
 
-void EstimatorProcess::loop() noexcept {
-  consume(cycle_, sensors_.reader, kStopCheck, [] { return false; });
-}
-
 }  // namespace robot_control

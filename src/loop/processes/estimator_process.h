@@ -17,7 +17,9 @@ class EstimatorProcess final : public ConsumerProcess<StateFrame, EstimatorTrace
   EstimatorCycle& cycle() noexcept { return cycle_; }
 
  private:
-  void loop() noexcept override;
+  void loop() noexcept override {
+    consume(cycle_, sensors_.reader, kStopCheck, [] { return false; });
+  }
 
   EstimatorCycle cycle_;
 };

@@ -15,10 +15,6 @@ Process::Process(const Parameters& parameters, const Robot& robot, LoopPriority 
   if (thread_parameters().policy == RealtimePolicy::kRequired) RealtimeThread(thread_parameters(), [] {});
 }
 
-Process::~Process() {
-  stop();
-}
-
 RealtimeParameters Process::thread_parameters() const {
   const bool paced = loop_.clock == ClockMode::kWall;  // lockstep under SCHED_FIFO would starve the rest
   std::optional<std::int32_t> cpu_latency_us;

@@ -31,7 +31,7 @@ class Process {
  public:
   /// Throws RealtimeError when realtime: required cannot be granted: at start-up, before the other nodes run.
   Process(const Parameters& parameters, const Robot& robot, LoopPriority priority, std::string thread_name);
-  virtual ~Process();
+  virtual ~Process() { stop(); }
   Process(const Process&) = delete;
   Process& operator=(const Process&) = delete;
 

@@ -215,10 +215,6 @@ void TelemetryProcess::set_header(const LogHeader& header) {
   if (black_box_ != nullptr) black_box_->set_header(header);
 }
 
-void TelemetryProcess::request_recording(bool on) noexcept {
-  if (bag_ != nullptr) bag_->request(on);
-}
-
 std::size_t TelemetryProcess::drain() {
   std::size_t rows = 0;
   const auto keep = [this](const LawSnapshot& snapshot) {

@@ -59,7 +59,9 @@ class TelemetryProcess {
   void finish();
 
   /// Until it is taken back, run.bag holds every cycle, whatever telemetry.record says.
-  void request_recording(bool on) noexcept;
+  void request_recording(bool on) noexcept {
+    if (bag_ != nullptr) bag_->request(on);
+  }
 
   /// Changes where a node has begun or has taken live parameters over: it may have others than a header says.
   std::uint64_t parameter_changes() const noexcept { return parameter_changes_; }

@@ -1,5 +1,3 @@
-#include "machine/description/assimp_mesh.h"
-
 #include <assimp/BaseImporter.h>
 #include <assimp/config.h>
 #include <assimp/scene.h>
@@ -8,6 +6,7 @@
 #include <assimp/Importer.hpp>
 #include <memory>
 
+#include "machine/description/mesh_faces.h"
 #include "machine/description/other_process.h"
 
 namespace robot_control {

@@ -8,9 +8,8 @@
 #include <utility>
 
 #include "files/input_file.h"
-#include "machine/description/assimp_mesh.h"
+#include "machine/description/mesh_faces.h"
 #include "machine/description/robot_description.h"
-#include "machine/description/stl.h"
 
 namespace robot_control {
 namespace {

@@ -14,32 +14,19 @@
 #include <fstream>
 #include <string_view>
 
+#include "files/descriptor.h"
+
 namespace robot_control {
 namespace {
 
-class Pipe {
- public:
+/// Closed if it cannot be made.
+struct Pipe {
   Pipe() {
-    if (pipe2(ends_.data(), O_CLOEXEC) != 0) ends_ = {-1, -1};
+    std::array<int, 2> ends{-1, -1};
+    if (pipe2(ends.data(), O_CLOEXEC) == 0) reader = Descriptor(ends[0]), writer = Descriptor(ends[1]);
   }
-  ~Pipe() {
-    close_end(0);
-    close_end(1);
-  }
-  Pipe(const Pipe&) = delete;
-  Pipe& operator=(const Pipe&) = delete;
 
-  int reader() const { return ends_[0]; }
-  int writer() const { return ends_[1]; }
-  void close_writer() { close_end(1); }
-  void close_reader() { close_end(0); }
-
- private:
-  void close_end(std::size_t end) {
-    if (ends_[end] >= 0) close(ends_[end]);
-    ends_[end] = -1;
-  }
-  std::array<int, 2> ends_{-1, -1};
+  Descriptor reader, writer;
 };
 
 std::vector<std::string> overlaid(const std::vector<std::string>& over) {
@@ -67,8 +54,8 @@ pid_t spawn(std::vector<std::string> arguments, std::vector<std::string> environ
   posix_spawn_file_actions_t actions;
   posix_spawn_file_actions_init(&actions);
   posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
-  posix_spawn_file_actions_adddup2(&actions, output.writer(), STDOUT_FILENO);
-  posix_spawn_file_actions_adddup2(&actions, errors.writer(), STDERR_FILENO);
+  posix_spawn_file_actions_adddup2(&actions, output.writer.number(), STDOUT_FILENO);
+  posix_spawn_file_actions_adddup2(&actions, errors.writer.number(), STDERR_FILENO);
   pid_t child = -1;
   const int error = posix_spawnp(&child, arguments[0].c_str(), &actions, nullptr, pointers(arguments).data(),
                                  pointers(environment).data());
@@ -87,14 +74,14 @@ bool read_some(int from, std::string& to) {
 
 /// Reads until both are closed; returns false if they are silent for too long or write too much.
 bool read_all(Pipe& output, Pipe& errors, int silence, ProcessResult& result) {
-  while (output.reader() >= 0 || errors.reader() >= 0) {
+  while (output.reader.open() || errors.reader.open()) {
     // poll ignores a negative descriptor.
-    std::array<pollfd, 2> watched{{{output.reader(), POLLIN, 0}, {errors.reader(), POLLIN, 0}}};
+    std::array<pollfd, 2> watched{{{output.reader.number(), POLLIN, 0}, {errors.reader.number(), POLLIN, 0}}};
     const int ready = poll(watched.data(), watched.size(), silence * 1000);
     if (ready < 0 && errno == EINTR) continue;
     if (ready <= 0) return false;
-    if (watched[0].revents != 0 && !read_some(output.reader(), result.output)) output.close_reader();
-    if (watched[1].revents != 0 && !read_some(errors.reader(), result.errors)) errors.close_reader();
+    if (watched[0].revents != 0 && !read_some(output.reader.number(), result.output)) output.reader.close();
+    if (watched[1].revents != 0 && !read_some(errors.reader.number(), result.errors)) errors.reader.close();
     if (result.output.size() > kMaxOutput || result.errors.size() > kMaxOutput) return false;
   }
   return true;
@@ -102,8 +89,8 @@ bool read_all(Pipe& output, Pipe& errors, int silence, ProcessResult& result) {
 
 ProcessResult watched(pid_t child, Pipe& output, Pipe& errors, int silence) {
   ProcessResult result;
-  output.close_writer();
-  errors.close_writer();
+  output.writer.close();
+  errors.writer.close();
   const bool is_complete = read_all(output, errors, silence, result);
   if (!is_complete) kill(child, SIGKILL);
   int status = 0;
@@ -130,7 +117,7 @@ rlim_t address_space() {
 }
 
 [[noreturn]] void work_apart(const std::function<std::string()>& work, const Pipe& output, const Pipe& errors) {
-  dup2(errors.writer(), STDERR_FILENO);
+  dup2(errors.writer.number(), STDERR_FILENO);
   // A crash ends the process, without a handler of a sanitizer or of this program.
   for (const int signal_number : {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT}) std::signal(signal_number, SIG_DFL);
   limit(RLIMIT_CORE, 0);
@@ -138,11 +125,7 @@ rlim_t address_space() {
   limit(RLIMIT_AS, address_space() + kApartMemory);
   try {
     const std::string text = work();
-    for (std::size_t done = 0; done < text.size();) {
-      const ssize_t wrote = write(output.writer(), text.data() + done, text.size() - done);
-      if (wrote < 0 && errno != EINTR) _exit(1);
-      if (wrote > 0) done += static_cast<std::size_t>(wrote);
-    }
+    if (output.writer.write(text) != 0) _exit(1);
   } catch (...) {
     _exit(1);
   }
@@ -155,7 +138,7 @@ ProcessResult run_program(const std::vector<std::string>& arguments, const std::
                           int silence) {
   Pipe output;
   Pipe errors;
-  if (output.reader() < 0 || errors.reader() < 0) return {};
+  if (!output.reader.open() || !errors.reader.open()) return {};
   const pid_t child = spawn(arguments, overlaid(environment), output, errors);
   if (child < 0) return {};
   return watched(child, output, errors, silence);
@@ -164,7 +147,7 @@ ProcessResult run_program(const std::vector<std::string>& arguments, const std::
 ProcessResult run_apart(const std::function<std::string()>& work) {
   Pipe output;
   Pipe errors;
-  if (output.reader() < 0 || errors.reader() < 0) return {};
+  if (!output.reader.open() || !errors.reader.open()) return {};
   const pid_t child = fork();
   if (child < 0) return {};
   if (child == 0) work_apart(work, output, errors);

@@ -1,10 +1,10 @@
-#include "machine/description/stl.h"
-
 #include <algorithm>
 #include <charconv>
 #include <cstdint>
 #include <cstring>
 #include <limits>
+
+#include "machine/description/mesh_faces.h"
 
 namespace robot_control {
 namespace {

@@ -6,6 +6,7 @@
 
 #include <mutex>
 
+#include "machine/description/markup/elements.h"
 #include "machine/description/markup/urdf_markup.h"
 
 namespace robot_control {
@@ -54,10 +55,7 @@ urdf::ModelInterfaceSharedPtr parsed_by_urdfdom(const std::string& text, std::st
 
 std::vector<std::string> names_of(const TiXmlElement& robot, const char* kind) {
   std::vector<std::string> names;
-  for (const TiXmlElement* element = robot.FirstChildElement(kind); element != nullptr;
-       element = element->NextSiblingElement(kind)) {
-    names.emplace_back(element->Attribute("name"));
-  }
+  for (const TiXmlElement* element : children(robot, kind)) names.emplace_back(element->Attribute("name"));
   return names;
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <initializer_list>
 #include <numbers>
 
 namespace robot_control {
@@ -47,10 +48,6 @@ void TrackingLoop::derive() noexcept {
 void TrackingLoop::reset() noexcept {
   quantum_ = {};
   derive();
-}
-
-void TrackingLoop::assume_encoder_of(const TrackingLoop& other) noexcept {
-  if (quantum_.assume(other.quantum_)) derive();
 }
 
 void TrackingLoop::restart_from(double position, double velocity) noexcept {
@@ -108,6 +105,28 @@ void TrackingLoop::step(double position_measured, double known_acceleration, dou
   velocity_ += gain.velocity * innovation;
   const double trust = doubt_ > 0 ? std::abs(beyond) / (std::abs(beyond) + kDoubt * doubt_) : 1;
   residual_ += gain.residual * std::max(trust, silent) * beyond;
+}
+
+bool EncoderQuantum::refine(double turned) noexcept {
+  constexpr double kExact = 1e-4;    // rad
+  constexpr double kMinStep = 1e-9;  // rad, below which a difference is rounding
+  const double before = value_;
+  if (!changed_ && std::abs(turned) > kMinStep) {
+    changed_ = true;
+    value_ = kCoarsest;  // The value of another wheel's encoder counts no longer.
+  }
+  for (const double step : {turned, turned - last_}) {
+    const double size = std::abs(step);
+    if (size > kMinStep && size < value_) value_ = size < kExact ? 0 : size;
+  }
+  last_ = turned;
+  return value_ != before;
+}
+
+bool EncoderQuantum::assume(const EncoderQuantum& other) noexcept {
+  if (changed_ || other.value_ >= value_) return false;
+  value_ = other.value_;
+  return true;
 }
 
 }  // namespace robot_control

@@ -2,14 +2,18 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <limits>
 #include <numbers>
 #include <set>
 #include <sstream>
+#include <vector>
 
+#include "machine/bodies/rigid_bodies.h"
 #include "machine/bodies/rolling.h"
+#include "machine/bodies/shape_support.h"
 #include "machine/description/wording.h"
-#include "machine/legs/leg_search.h"
+#include "machine/legs/leg_kinematics.h"
 #include "machine/legs/lying_posture.h"
 #include "machine/machine_reading.h"
 #include "machine/model_hash.h"
@@ -17,6 +21,91 @@
 
 namespace robot_control {
 namespace {
+
+/// A chain of bodies on the root in which no body carries two others.
+struct BodyChain {
+  std::vector<std::size_t> bodies;
+};
+
+/// Returns the axis of the base that a leg's joint turns about, by its place from the body outwards.
+Eigen::Index leg_axis(std::size_t place) noexcept {
+  return place == 0 ? 0 : 1;
+}
+
+struct Foot {
+  Eigen::Vector3d centre = Eigen::Vector3d::Zero();  ///< m, base axes at the zero pose
+  double radius = 0;                                 ///< m; 0: no ball
+};
+
+constexpr double kSameReach = 0.005;  // m by which another shape may reach beyond a ball
+
+/// Returns the joint's axis in the base's axes at the zero pose.
+Eigen::Vector3d axis_in_base(const RigidBody& body) {
+  return body.in_root.linear() * body.joint.axis;
+}
+
+bool turns_about(const RigidBody& body, Eigen::Index axis) {
+  if (body.joint.type != JointType::kRevolute && body.joint.type != JointType::kContinuous) return false;
+  return std::abs(axis_in_base(body)[axis]) > std::numbers::sqrt2 / 2;
+}
+
+bool begins_as_leg(const RigidBodies& robot, const BodyChain& chain) {
+  bool begins = chain.bodies.size() >= kLegJoints;
+  for (std::size_t i = 0; i < kLegJoints && begins; ++i)
+    begins = turns_about(robot.bodies[chain.bodies[i]], leg_axis(i));
+  return begins;
+}
+
+/// A ball has its own radius, and so has a cylinder across the leg.
+double foot_radius(const RigidBody& body, const Shape& shape) {
+  if (shape.type == ShapeType::kSphere) return shape.radius;
+  if (shape.type != ShapeType::kCylinder) return 0;
+  const Eigen::Vector3d axle = body.in_root.linear() * shape.in_body.linear().col(2);
+  return std::abs(axle.y()) >= std::cos(kAxleTolerance) ? shape.radius : 0;
+}
+
+/// Returns the chains that begin as a leg: turning joints that are nearer to x, y and y than to other axes. A chain
+/// that branches ends there.
+std::vector<BodyChain> leg_chains(const RigidBodies& robot) {
+  std::vector<std::vector<std::size_t>> children(robot.bodies.size());
+  for (std::size_t i = 1; i < robot.bodies.size(); ++i) children[robot.bodies[i].parent].push_back(i);
+  std::vector<BodyChain> found;
+  for (const std::size_t first : children[0]) {
+    BodyChain chain{{first}};
+    while (children[chain.bodies.back()].size() == 1) chain.bodies.push_back(children[chain.bodies.back()].front());
+    if (begins_as_leg(robot, chain)) found.push_back(chain);
+  }
+  return found;
+}
+
+/// Returns the foot at the end of the leg whose last body is `body`. Throws RobotError if it has no shape.
+Foot foot_of(const RigidBodies& robot, const RigidBody& body) {
+  const Shape* ball = nullptr;
+  const Shape* farthest = nullptr;
+  double ball_reach = 0, reach = -std::numeric_limits<double>::infinity();
+  for (const Shape& shape : body.shapes) {
+    const Eigen::Vector3d centre = shape.in_body.translation();
+    const Eigen::Vector3d out = centre.norm() > 0 ? centre.normalized() : Eigen::Vector3d(0, 0, -1);
+    const double reaches = support(shape, out);
+    if (reaches > reach) {
+      reach = reaches;
+      farthest = &shape;
+    }
+    if (foot_radius(body, shape) > 0 && (ball == nullptr || reaches > ball_reach)) {
+      ball_reach = reaches;
+      ball = &shape;
+    }
+  }
+  if (farthest == nullptr) {
+    refuse(robot.source, link_element(body.name), "the leg that ends here has no shape that reaches the ground",
+           "Give the foot a <collision>, best a sphere, on this link or on one that is fixed to it");
+  }
+  if (ball != nullptr && ball_reach >= reach - kSameReach)
+    return {body.in_root * ball->in_body.translation(), foot_radius(body, *ball)};
+  const Eigen::Vector3d centre = farthest->in_body.translation();
+  const Eigen::Vector3d out = centre.norm() > 0 ? centre.normalized() : Eigen::Vector3d(0, 0, -1);
+  return {body.in_root * (reach * out), 0};
+}
 
 constexpr double kBothWays = 0.5;   // rad by which a knee must bend to either side to bend both ways
 constexpr double kStanding = 0.7;   // of the leg length, as high as most robots stand (leg_tuning.h)

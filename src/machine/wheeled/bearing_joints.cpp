@@ -47,9 +47,7 @@ double lift(const RigidBody& body, const std::vector<Eigen::Vector3d>& points) {
   const double upper = ends ? std::min(joint.upper, std::numbers::pi) : std::numbers::pi;
   const auto lowest = [&](double angle) {
     double z = std::numeric_limits<double>::infinity();
-    for (const Eigen::Vector3d& point : points) {
-      z = std::min(z, (Eigen::AngleAxisd(angle, axis) * (point - at)).z());
-    }
+    for (const Eigen::Vector3d& point : points) z = std::min(z, (Eigen::AngleAxisd(angle, axis) * (point - at)).z());
     return z;
   };
   double highest = lowest(0);

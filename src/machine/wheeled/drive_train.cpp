@@ -11,16 +11,31 @@
 #include "machine/overrides.h"
 #include "machine/wheeled/bearing_joints.h"
 #include "machine/wheeled/feet.h"
-#include "machine/wheeled/joint_roles.h"
 #include "machine/wheeled/tipping.h"
 #include "machine/wheeled/wheel_suspicions.h"
 #include "machine/wheeled/wheels/drive_wheels.h"
-#include "machine/wheeled/wheels/rockers.h"
 #include "machine/wheeled/wheels/suspension.h"
 #include "machine/wheeled/wheels/wheel_drive.h"
 
 namespace robot_control {
 namespace {
+
+/// Returns one role per body; that of the root has no meaning.
+///
+///   kPassive  wheels of casters and the swivels above them, suspensions and rockers (all joints between the root and a
+///             wheel), followers of a <mimic>, joints without an effort limit
+///   kHeld     the others that the wheels do not drive: arms, lifts, grippers
+std::vector<JointRole> joint_roles(const RigidBodies& robot, const RunningGear& gear) {
+  std::vector<JointRole> roles(robot.bodies.size(), JointRole::kHeld);
+  for (std::size_t i = 1; i < robot.bodies.size(); ++i) roles[i] = role_of(robot.bodies[i].joint);
+  for (const auto* rolling : {&gear.wheels, &gear.casters}) {
+    for (const RollingBody& wheel : *rolling) {
+      for (std::size_t i = wheel.body; i != 0; i = robot.bodies[i].parent) roles[i] = JointRole::kPassive;
+    }
+  }
+  for (const RollingBody& wheel : gear.wheels) roles[wheel.body] = JointRole::kDriven;
+  return roles;
+}
 
 constexpr double kCentral = 0.05;  // share of the wheel base
 
@@ -72,9 +87,7 @@ void read_geometry(const RigidBodies& robot, const DriveTrainParameters& paramet
 
 void group_sides(DriveTrain& model) {
   JointGroup left{"left", {}}, right{"right", {}};
-  for (const WheelModel& wheel : model.wheels) {
-    (wheel.side == Side::kLeft ? left : right).joints.push_back(wheel.joint);
-  }
+  for (const WheelModel& wheel : model.wheels) (wheel.side == Side::kLeft ? left : right).joints.push_back(wheel.joint);
   model.groups = {left, right};
 }
 

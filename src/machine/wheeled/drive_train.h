@@ -5,7 +5,6 @@
 
 #include "machine/machine_model.h"
 #include "machine/wheeled/drive_train_parameters.h"
-#include "machine/wheeled/wheel_command.h"
 #include "signals/wheeled/wheel_count.h"
 
 namespace robot_control {

@@ -5,10 +5,19 @@
 #include <vector>
 
 #include "machine/machine_parameters.h"
-#include "machine/wheeled/wheel_command.h"
 #include "parameters/block.h"
 
 namespace robot_control {
+
+/// The command that the drive wheels of a robot take.
+enum class WheelCommand {
+  kTorque,    ///< Our wheel loops compute torques (JointMode::kEffort).
+  kVelocity,  ///< The drives close the loops of their speeds (JointMode::kDriveVelocity).
+};
+
+inline std::vector<Word> words_of(WheelCommand) {
+  return {{"torque", WheelCommand::kTorque}, {"velocity", WheelCommand::kVelocity}};
+}
 
 /// Holds the `robot:` block: the user's values for the machine and for its drive wheels.
 struct DriveTrainParameters : MachineParameters {

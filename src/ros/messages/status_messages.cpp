@@ -9,7 +9,7 @@
 
 #include "files/ascii.h"
 #include "machine/fault_names.h"
-#include "machine/joint_role.h"
+#include "machine/machine_model.h"
 #include "ros/reports/name_list.h"
 #include "signals/names.h"
 #include "signals/robot_kinds.h"

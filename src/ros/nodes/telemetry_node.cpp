@@ -17,7 +17,7 @@
 #include "ros/messages/simulation_messages.h"
 #include "ros/reports/diagnostics.h"
 #include "ros/startup/setup.h"
-#include "rt/thread_priority.h"
+#include "rt/realtime_thread.h"
 #include "signals/roles.h"
 
 namespace robot_control {

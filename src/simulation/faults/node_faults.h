@@ -5,8 +5,8 @@
 ///   off, slow, intermittent   a token in cycles without output: cycle k has passed here without a frame
 ///   stuck, delayed            old content under the head of this cycle; its own cycle numbers (a permit's expiry, a
 ///                             command's state_cycle) are also old
-///   garbage                   frame_distortion.h; one frame in four with a wrong checksum
-///   wrong                     frame_distortion.h
+///   garbage                   `distort`; one frame in four with a wrong checksum
+///   wrong                     `distort`
 ///
 /// Only the output fails; the node continues to compute. A new run begins without the state of the last one: a fault
 /// that is present in its first cycle begins in that cycle.
@@ -14,13 +14,30 @@
 #include <cstdint>
 
 #include "bus/latest_frames.h"
+#include "signals/command_frame.h"
 #include "signals/frame_head.h"
+#include "signals/permit.h"
 #include "signals/sensor_frame.h"
+#include "signals/state_frame.h"
 #include "signals/trace.h"
 #include "simulation/faults/faulty_output.h"
-#include "simulation/faults/frame_distortion.h"
 
 namespace robot_control {
+
+/// Corrupts the output frames of a node for the injected faults kGarbage and kWrong (signals/injected_fault.h).
+///
+///              kGarbage                                          kWrong
+///   state      every number of pose, twist and bias              x, y and speeds with the opposite sign
+///   command    every number and the mode of every joint          every effort, speed and angle with the opposite sign
+///   permit     a random action, state and causes                 drives instead of braking, brakes instead of driving
+///
+/// A garbage number is uniform within ±kGarbage; one in eight is NaN, one in eight infinite. A wrong frame is finite
+/// and plausible, and its flags are those of a healthy one. The caller fills in the heads.
+inline constexpr double kGarbage = 1000;
+
+void distort(FaultKind kind, StateFrame& state, FaultRandom& random) noexcept;
+void distort(FaultKind kind, CommandFrame& command, FaultRandom& random) noexcept;
+void distort(FaultKind kind, Permit& permit, FaultRandom& random) noexcept;
 
 /// `Row` is the node's row of the trace, `kFrame` the row's member with the published frame.
 template <class Frame, class Row, Frame Row::*kFrame>

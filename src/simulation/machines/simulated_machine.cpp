@@ -30,4 +30,21 @@ std::unique_ptr<DeviceSimulator> make_device_simulator(const Parameters& paramet
   return std::make_unique<DeviceSimulator>(machine, parameters.plant, parameters.loop.period(), std::move(devices));
 }
 
+DeviceSimulator::DeviceSimulator(const MachineModel& robot, const MujocoPlantParameters& plant, double period,
+                                 std::unique_ptr<DeviceFront> devices)
+    : plant_(robot, plant, period), devices_(std::move(devices)), torques_(robot.joints.size()) {
+  plant_.start();
+  plant_.truth(truth_);
+  published_truth_.store(truth_);
+}
+
+void DeviceSimulator::step() noexcept {
+  devices_->run(truth_.joints);
+  for (std::size_t i = 0; i < devices_->size(); ++i)
+    torques_[i] = {.mode = JointMode::kEffort, .effort = devices_->torque(i)};
+  plant_.write(torques_);
+  plant_.truth(truth_);
+  published_truth_.store(truth_);
+}
+
 }  // namespace robot_control

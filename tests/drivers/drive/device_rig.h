@@ -11,7 +11,6 @@
 
 #include "drivers/cia402/cia402_device.h"
 #include "drivers/cia402/cia402_drive.h"
-#include "drivers/cia402/cia402_drives.h"
 #include "drivers/drive/drive_set.h"
 #include "drivers/odrive/odrive_device.h"
 #include "drivers/odrive/odrive_drive.h"

@@ -1,4 +1,4 @@
-#include "drivers/line/can_errors.h"
+#include "drivers/line/bus_watch.h"
 
 #include <gtest/gtest.h>
 #include <linux/can/error.h>

@@ -5,11 +5,13 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "log/replay/continuity.h"
 #include "log/replay/recorded.h"
-#include "log/replay/replay_error.h"
 
 namespace robot_control {
 namespace {
@@ -51,7 +53,8 @@ class ReplayedDrive : public testing::Test {
   }
 
   Parameters parameters = default_parameters();
-  ClosedLoop loop{parameters};
+  std::optional<ClosedLoop> made{std::in_place, parameters};
+  ClosedLoop& loop = *made;
   Recording recording;
 };
 
@@ -60,7 +63,7 @@ TEST_F(ReplayedDrive, WithEveryFaultOfEveryComponent) {
     for (const std::string kind : {"off", "stuck", "garbage", "wrong", "slow", "delayed", "intermittent"}) {
       SCOPED_TRACE(component + " " + kind);
       recording = {};
-      loop = ClosedLoop(parameters);
+      made.emplace(parameters);
       drive(600, [&, this](std::uint64_t k) {
         if (k == 300) loop.inject_fault(component, kind);
         if (k == 450) loop.inject_fault(component, "ok");
@@ -73,7 +76,7 @@ TEST_F(ReplayedDrive, WithEveryFaultOfEveryComponent) {
 TEST_F(ReplayedDrive, OfWheelsThatTakeSpeedsAndMeasureNoTorque) {
   parameters.robot.wheel_command = WheelCommand::kVelocity;
   parameters.plant.drive = SimulatedDrive::kVelocity;
-  loop = ClosedLoop(parameters);
+  made.emplace(parameters);
   std::vector<LoggedMessage> messages;
   drive(kSecond, [&, this](std::uint64_t k) {
     if (k == 0) return;

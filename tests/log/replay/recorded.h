@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "log/messages/trace_message.h"
-#include "log/replay/owned_row.h"
 #include "log/replay/replay.h"
 #include "simulation/closed_loop.h"
 

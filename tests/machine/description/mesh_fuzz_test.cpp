@@ -4,9 +4,8 @@
 
 #include <random>
 
-#include "machine/description/assimp_mesh.h"
 #include "machine/description/mesh.h"
-#include "machine/description/stl.h"
+#include "machine/description/mesh_faces.h"
 #include "mesh_texts.h"
 
 namespace robot_control {

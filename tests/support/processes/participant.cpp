@@ -28,7 +28,6 @@
 #include "rt/crash_report.h"
 #include "rt/futex.h"
 #include "rt/realtime_thread.h"
-#include "rt/thread_priority.h"
 #include "signals/robot_kinds.h"
 #include "support/robots/free_wheels.h"
 

@@ -24,7 +24,7 @@ class QuadrupedLoop {
   QuadrupedLoop(const LegModel& robot, const Parameters& parameters)
       : QuadrupedLoop(std::make_shared<Quadruped>(parameters, robot), parameters) {}
   QuadrupedLoop(std::shared_ptr<const Robot> robot, const Parameters& parameters)
-      : parameters_(parameters), loop(parameters_, std::move(robot)) {}
+      : parameters_(parameters), loop_(std::make_unique<ClosedLoop>(parameters_, std::move(robot))) {}
 
   static Parameters parameters(std::uint64_t seed, ErrorLevel errors) {
     Parameters result = default_parameters();
@@ -95,7 +95,8 @@ class QuadrupedLoop {
   }
 
   Parameters parameters_;
-  ClosedLoop loop;
+  std::unique_ptr<ClosedLoop> loop_;
+  ClosedLoop& loop = *loop_;  // stays where it is when this moves
   Recording recording;
   bool record = false;
   std::function<void()> after_step;  // is called after each cycle

@@ -22,10 +22,6 @@ BodyContacts::BodyContacts(const MujocoModel& model)
   }
 }
 
-void BodyContacts::reset() noexcept {
-  for (Body& body : bodies_) body = {.body = body.body};
-}
-
 void BodyContacts::weigh(const mjData& data) noexcept {
   if (bodies_.empty()) return;
   reset();

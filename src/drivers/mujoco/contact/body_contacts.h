@@ -20,7 +20,9 @@ class BodyContacts {
   /// A machine with wheels has none here.
   explicit BodyContacts(const MujocoModel& model);
 
-  void reset() noexcept;
+  void reset() noexcept {
+    for (Body& body : bodies_) body = {.body = body.body};
+  }
   void weigh(const mjData& data) noexcept;
 
   std::size_t count() const noexcept { return bodies_.size(); }

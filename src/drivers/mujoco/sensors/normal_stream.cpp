@@ -10,10 +10,6 @@ void NormalStream::seed(std::uint64_t seed, std::uint64_t stream) {
   has_spare_ = false;
 }
 
-double NormalStream::uniform() noexcept {
-  return static_cast<double>(static_cast<std::int64_t>(engine_()) >> 11) * 0x1p-52;
-}
-
 double NormalStream::next() noexcept {
   has_spare_ = !has_spare_;
   if (!has_spare_) return spare_;

@@ -26,7 +26,7 @@ class NormalStream {
   double next() noexcept;
 
   /// Returns an independent number x with −1 ≤ x < 1, all equally probable.
-  double uniform() noexcept;
+  double uniform() noexcept { return static_cast<double>(static_cast<std::int64_t>(engine_()) >> 11) * 0x1p-52; }
 
  private:
   std::mt19937_64 engine_;

@@ -2,24 +2,21 @@
 
 #include <set>
 
+#include "machine/description/markup/elements.h"
+
 namespace robot_control {
 namespace {
 
-std::string text_of(const TiXmlElement& element, const char* name) {
-  const char* value = element.Attribute(name);
-  return value == nullptr ? "" : value;
-}
-
 std::string link_at(const TiXmlElement& joint, const char* end) {
   const TiXmlElement* element = joint.FirstChildElement(end);
-  return element == nullptr ? "" : text_of(*element, "link");
+  return element == nullptr ? "" : attribute(*element, "link");
 }
 
-/// Returns the first of these elements with the name; null: there is none.
-const TiXmlElement* named(const TiXmlElement& robot, const char* kind, const std::string& name) {
-  const TiXmlElement* element = robot.FirstChildElement(kind);
-  while (element != nullptr && text_of(*element, "name") != name) element = element->NextSiblingElement(kind);
-  return element;
+/// Null: there is no such link.
+const TiXmlElement* named_link(const TiXmlElement& robot, const std::string& name) {
+  const TiXmlElement* link = robot.FirstChildElement("link");
+  while (link != nullptr && attribute(*link, "name") != name) link = link->NextSiblingElement("link");
+  return link;
 }
 
 bool is_empty(const TiXmlElement& link) {
@@ -36,21 +33,18 @@ void remove_child(TiXmlElement& robot, const TiXmlElement* element) {
 }  // namespace
 
 bool is_free(const TiXmlElement& joint) {
-  const std::string type = text_of(joint, "type");
+  const std::string type = attribute(joint, "type");
   return type == "floating" || type == "planar";
 }
 
 const TiXmlElement* free_joint(const TiXmlElement& robot) {
   std::multiset<std::string> ends;
-  for (const TiXmlElement* joint = robot.FirstChildElement("joint"); joint != nullptr;
-       joint = joint->NextSiblingElement("joint")) {
+  for (const TiXmlElement* joint : children(robot, "joint"))
     ends.insert({link_at(*joint, "parent"), link_at(*joint, "child")});
-  }
-  for (const TiXmlElement* joint = robot.FirstChildElement("joint"); joint != nullptr;
-       joint = joint->NextSiblingElement("joint")) {
+  for (const TiXmlElement* joint : children(robot, "joint")) {
     const std::string parent = link_at(*joint, "parent");
     if (!is_free(*joint) || ends.count(parent) != 1) continue;
-    const TiXmlElement* const link = named(robot, "link", parent);
+    const TiXmlElement* const link = named_link(robot, parent);
     if (link != nullptr && is_empty(*link)) return joint;
   }
   return nullptr;
@@ -59,12 +53,12 @@ const TiXmlElement* free_joint(const TiXmlElement& robot) {
 FreeRoot take_free_root(TiXmlElement& robot) {
   const TiXmlElement* const joint = free_joint(robot);
   if (joint == nullptr) return {};
-  FreeRoot root{.joint = text_of(*joint, "name"),
-                .type = text_of(*joint, "type"),
+  FreeRoot root{.joint = attribute(*joint, "name"),
+                .type = attribute(*joint, "type"),
                 .link = link_at(*joint, "parent"),
                 .base = link_at(*joint, "child")};
   remove_child(robot, joint);
-  remove_child(robot, named(robot, "link", root.link));
+  remove_child(robot, named_link(robot, root.link));
   return root;
 }
 

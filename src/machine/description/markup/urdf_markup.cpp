@@ -2,22 +2,19 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <map>
 #include <sstream>
 #include <string_view>
 
 #include "files/message_text.h"
+#include "machine/description/markup/elements.h"
 #include "machine/description/markup/free_root.h"
 #include "machine/description/urdf_document.h"
 #include "machine/description/wording.h"
 
 namespace robot_control {
 namespace {
-
-std::string attribute(const TiXmlElement& element, const char* name) {
-  const char* value = element.Attribute(name);
-  return value == nullptr ? "" : value;
-}
 
 std::string at_line(const RobotDescription& description, const TiXmlBase& place) {
   return description.source + (place.Row() > 0 ? " line " + std::to_string(place.Row()) : "");
@@ -53,8 +50,7 @@ void check_tree(const RobotDescription& description, const TiXmlElement& robot) 
     std::string joint, parent;
   };
   std::map<std::string, Above> above;
-  for (const TiXmlElement* joint = robot.FirstChildElement("joint"); joint != nullptr;
-       joint = joint->NextSiblingElement("joint")) {
+  for (const TiXmlElement* joint : children(robot, "joint")) {
     const TiXmlElement* child = joint->FirstChildElement("child");
     const TiXmlElement* parent = joint->FirstChildElement("parent");
     if (child == nullptr || parent == nullptr) continue;
@@ -111,14 +107,12 @@ void check_percent(const RobotDescription& description, const TiXmlElement& elem
     refuse(at_line(description, element), "<" + element.ValueStr() + ">", text + " has a percent sign",
            "Names and numbers have none");
   }
-  for (const TiXmlElement* child = element.FirstChildElement(); child != nullptr; child = child->NextSiblingElement()) {
-    check_percent(description, *child);
-  }
+  for (const TiXmlElement* child : children(element)) check_percent(description, *child);
 }
 
 /// Elements of xacro stand for links and joints that would be missing.
 void check_expanded(const RobotDescription& description, const TiXmlElement& robot) {
-  for (const TiXmlElement* child = robot.FirstChildElement(); child != nullptr; child = child->NextSiblingElement()) {
+  for (const TiXmlElement* child : children(robot)) {
     if (!child->ValueStr().starts_with("xacro:")) continue;
     refuse(at_line(description, *child), "<" + child->ValueStr() + ">", "it is xacro, which is not expanded here",
            "Let the file's name end in .xacro, or expand it: xacro FILE > robot.urdf");
@@ -127,10 +121,9 @@ void check_expanded(const RobotDescription& description, const TiXmlElement& rob
 
 void check_size(const RobotDescription& description, const TiXmlElement& robot) {
   std::size_t links = 0, shapes = 0;
-  for (const TiXmlElement* link = robot.FirstChildElement("link"); link != nullptr;
-       link = link->NextSiblingElement("link")) {
+  for (const TiXmlElement* link : children(robot, "link")) {
     ++links;
-    for (const TiXmlElement* part = link->FirstChildElement(); part != nullptr; part = part->NextSiblingElement())
+    for (const TiXmlElement* part : children(*link))
       shapes += part->ValueStr() == "collision" || part->ValueStr() == "visual" ? 1 : 0;
   }
   if (links > kMaxLinks)
@@ -141,18 +134,11 @@ void check_size(const RobotDescription& description, const TiXmlElement& robot) 
            "At most " + std::to_string(kMaxShapes) + " are read; describe the parts by coarser ones");
 }
 
-std::set<std::string> words(const std::string& text) {
-  std::set<std::string> result;
-  std::string word;
-  for (const char c : text + " ") {
-    if (c == ' ' || c == ',' || c == ';' || c == '\t' || c == '\n' || c == '\r') {
-      if (!word.empty()) result.insert(word);
-      word.clear();
-    } else {
-      word += c;
-    }
-  }
-  return result;
+std::set<std::string> words(std::string text) {
+  std::ranges::replace_if(
+      text, [](char c) { return c == ',' || c == ';'; }, ' ');
+  std::istringstream stream(text);
+  return {std::istream_iterator<std::string>(stream), {}};
 }
 
 bool says_drive(const std::string& text) {
@@ -160,7 +146,7 @@ bool says_drive(const std::string& text) {
 }
 
 void add_plugin_joints(const TiXmlElement& element, bool drive, std::set<std::string>& joints) {
-  for (const TiXmlElement* child = element.FirstChildElement(); child != nullptr; child = child->NextSiblingElement()) {
+  for (const TiXmlElement* child : children(element)) {
     add_plugin_joints(*child, drive, joints);
     if (child->GetText() == nullptr) continue;
     if (drive || says_left(child->Value()) || says_right(child->Value())) joints.merge(words(child->GetText()));
@@ -168,15 +154,14 @@ void add_plugin_joints(const TiXmlElement& element, bool drive, std::set<std::st
 }
 
 void add_gazebo_joints(const TiXmlElement& element, std::set<std::string>& joints) {
-  for (const TiXmlElement* plugin = element.FirstChildElement("plugin"); plugin != nullptr;
-       plugin = plugin->NextSiblingElement("plugin")) {
+  for (const TiXmlElement* plugin : children(element, "plugin")) {
     add_plugin_joints(*plugin, says_drive(attribute(*plugin, "name") + attribute(*plugin, "filename")), joints);
   }
 }
 
 void add_plugins_that_say(const TiXmlElement& element, const std::vector<std::string>& words,
                           std::set<std::string>& plugins) {
-  for (const TiXmlElement* child = element.FirstChildElement(); child != nullptr; child = child->NextSiblingElement()) {
+  for (const TiXmlElement* child : children(element)) {
     if (child->ValueStr() != "plugin") {
       add_plugins_that_say(*child, words, plugins);
       continue;
@@ -219,13 +204,8 @@ void check_text(const RobotDescription& description) {
   }
 }
 
-void remove(TiXmlElement& parent, const std::string& name) {
-  TiXmlElement* child = parent.FirstChildElement(name);
-  while (child != nullptr) {
-    TiXmlElement* next = child->NextSiblingElement(name);
-    parent.RemoveChild(child);
-    child = next;
-  }
+void remove(TiXmlElement& parent, const char* name) {
+  for (TiXmlElement* child : children(parent, name)) parent.RemoveChild(child);
 }
 
 bool three_numbers(const std::string& text) {
@@ -255,19 +235,13 @@ void repair_shape(TiXmlElement& visual_or_collision) {
 }
 
 void repair_link(TiXmlElement& link) {
-  TiXmlElement* visual = link.FirstChildElement("visual");
-  while (visual != nullptr) {
-    TiXmlElement* next = visual->NextSiblingElement("visual");
+  for (TiXmlElement* visual : children(link, "visual")) {
     const TiXmlElement* geometry = visual->FirstChildElement("geometry");
     remove(*visual, "material");
     repair_shape(*visual);
     if (geometry == nullptr || geometry->FirstChildElement() == nullptr) link.RemoveChild(visual);
-    visual = next;
   }
-  for (TiXmlElement* collision = link.FirstChildElement("collision"); collision != nullptr;
-       collision = collision->NextSiblingElement("collision")) {
-    repair_shape(*collision);
-  }
+  for (TiXmlElement* collision : children(link, "collision")) repair_shape(*collision);
 }
 
 void repair_joint(TiXmlElement& joint) {
@@ -304,17 +278,13 @@ TiXmlElement& parse_markup(const RobotDescription& description, TiXmlDocument& x
   }
   check_expanded(description, *root);
   for (const char* kind : {"link", "joint"}) {
-    for (const TiXmlElement* element = root->FirstChildElement(kind); element != nullptr;
-         element = element->NextSiblingElement(kind)) {
+    for (const TiXmlElement* element : children(*root, kind)) {
       check_percent(description, *element);
       check_name(description, *element);
     }
   }
   const TiXmlElement* const free_one = free_joint(*root);
-  for (const TiXmlElement* joint = root->FirstChildElement("joint"); joint != nullptr;
-       joint = joint->NextSiblingElement("joint")) {
-    check_joint(description, *joint, free_one);
-  }
+  for (const TiXmlElement* joint : children(*root, "joint")) check_joint(description, *joint, free_one);
   check_size(description, *root);
   check_tree(description, *root);
   return *root;
@@ -322,13 +292,11 @@ TiXmlElement& parse_markup(const RobotDescription& description, TiXmlDocument& x
 
 std::set<std::string> driven_joints(const TiXmlElement& robot) {
   std::set<std::string> joints;
-  for (const TiXmlElement* element = robot.FirstChildElement(); element != nullptr;
-       element = element->NextSiblingElement()) {
+  for (const TiXmlElement* element : children(robot)) {
     if (element->ValueStr() == "gazebo") add_gazebo_joints(*element, joints);
     const bool transmission = element->ValueStr() == "transmission";
     if (!transmission && element->ValueStr() != "ros2_control") continue;
-    for (const TiXmlElement* joint = element->FirstChildElement("joint"); joint != nullptr;
-         joint = joint->NextSiblingElement("joint")) {
+    for (const TiXmlElement* joint : children(*element, "joint")) {
       if (transmission || joint->FirstChildElement("command_interface") != nullptr) {
         joints.insert(attribute(*joint, "name"));
       }
@@ -345,8 +313,7 @@ std::set<std::string> plugins_that_say(const TiXmlElement& robot, const std::vec
 
 std::set<std::string> unsaid_axes(const TiXmlElement& robot) {
   std::set<std::string> joints;
-  for (const TiXmlElement* joint = robot.FirstChildElement("joint"); joint != nullptr;
-       joint = joint->NextSiblingElement("joint")) {
+  for (const TiXmlElement* joint : children(robot, "joint")) {
     const TiXmlElement* axis = joint->FirstChildElement("axis");
     const bool fixed = attribute(*joint, "type") == "fixed";
     if (axis == nullptr ? !fixed : axis->Attribute("xyz") == nullptr) joints.insert(attribute(*joint, "name"));
@@ -361,11 +328,10 @@ std::map<std::string, std::string> turned_origins(const TiXmlElement& robot) {
     const std::string rpy = origin == nullptr ? "" : attribute(*origin, "rpy");
     if (largest_of(rpy) > 2 * M_PI + kRoundedTurn) origins.emplace(words, rpy);
   };
-  for (const TiXmlElement* element = robot.FirstChildElement(); element != nullptr;
-       element = element->NextSiblingElement()) {
+  for (const TiXmlElement* element : children(robot)) {
     if (element->ValueStr() == "joint") collect(*element, joint_element(attribute(*element, "name")));
     if (element->ValueStr() != "link") continue;
-    for (const TiXmlElement* part = element->FirstChildElement(); part != nullptr; part = part->NextSiblingElement()) {
+    for (const TiXmlElement* part : children(*element)) {
       collect(*part, link_element(attribute(*element, "name")) + "<" + part->ValueStr() + ">");
     }
   }
@@ -373,9 +339,7 @@ std::map<std::string, std::string> turned_origins(const TiXmlElement& robot) {
 }
 
 void repair_markup(TiXmlElement& robot) {
-  TiXmlElement* element = robot.FirstChildElement();
-  while (element != nullptr) {
-    TiXmlElement* next = element->NextSiblingElement();
+  for (TiXmlElement* element : children(robot)) {
     if (element->ValueStr() == "link") {
       repair_link(*element);
     } else if (element->ValueStr() == "joint") {
@@ -383,7 +347,6 @@ void repair_markup(TiXmlElement& robot) {
     } else {
       robot.RemoveChild(element);
     }
-    element = next;
   }
 }
 

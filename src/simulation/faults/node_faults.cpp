@@ -1,4 +1,4 @@
-#include "simulation/faults/frame_distortion.h"
+#include "simulation/faults/node_faults.h"
 
 #include <cmath>
 #include <limits>
