@@ -1,5 +1,6 @@
 #include "ros/nodes/node.h"
 
+#include <diagnostic_msgs/DiagnosticArray.h>
 #include <ros/master.h>
 #include <ros/ros.h>
 
@@ -12,7 +13,6 @@
 #include <filesystem>
 
 #include "bus/bus_cleanup.h"
-#include "ros/messages/messages.h"
 #include "ros/network/accepted_sockets.h"
 #include "ros/network/loopback.h"
 #include "ros/network/wire_guard.h"
@@ -124,7 +124,9 @@ void await_interrupt() {
 class NodeLoop {
  public:
   NodeLoop(Node& node, const Setup& setup, ros::NodeHandle& handle)
-      : node_(node), setup_(setup), diagnostics_(handle.advertise<msg::DiagnosticArray>("/diagnostics", 2)) {}
+      : node_(node),
+        setup_(setup),
+        diagnostics_(handle.advertise<diagnostic_msgs::DiagnosticArray>("/diagnostics", 2)) {}
 
   void run() {
     while (ros::ok() && !interrupted.load() && !node_.finished()) {
@@ -158,7 +160,7 @@ class NodeLoop {
     report_missing(report, node_.missing());
     node_.diagnose(report);
     node_.diagnose_timing(report);
-    msg::DiagnosticArray array;
+    diagnostic_msgs::DiagnosticArray array;
     array.header.stamp = ros::Time::now();
     array.status.push_back(report.message());
     if (array.status[0].message.empty()) array.status[0].message = "running";
