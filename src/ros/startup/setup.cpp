@@ -9,6 +9,8 @@
 
 #include <algorithm>
 #include <array>
+#include <iterator>
+#include <sstream>
 
 #include "bus/bus.h"
 #include "files/given_path.h"
@@ -24,6 +26,11 @@ namespace {
 std::string installed_config() {
   return ros::package::getPath("robot_control") + "/config/robot_params.yaml";
 }
+
+/// Keys of a block that launch files set from their arguments; roslaunch prints them.
+constexpr const char* kSetByLaunch =
+    "driver drives urdf clock command_script bus wait_for_nodes wait_for_telemetry latch_file directory "
+    "record black_box scene seed cycles laser.rate map initial_pose speed unknown_is_free";
 
 constexpr const char* kYamlPath = "the path of a YAML file";
 
@@ -121,7 +128,7 @@ std::string other_controller(const std::string& node, const MachineModel& machin
   const bool legs = kind == MachineKind::kOnLegs;
   return "robot '" + machine.name + "' of " + machine.source + " is on " + (legs ? "legs" : "wheels") + ", and " +
          node + " controls robots on " + (legs ? "wheels" : "legs") + ": start " + own +
-         " instead (sim.launch, backend.launch: " + "kind:=" + (legs ? "legs" : "wheels") + ")";
+         " instead (robot.launch, sim.launch: kind:=" + (legs ? "legs" : "wheels") + ")";
 }
 
 void fill_setup(const std::string& node, Setup& setup) {
@@ -137,7 +144,8 @@ void fill_setup(const std::string& node, Setup& setup) {
     throw SetupError(error.what());
   }
   setup.overrides = override_lines(overlays, path);
-  setup.unexpected_overrides = override_lines(overlays, path, set_by_launch(environ));
+  std::istringstream set_by_launch(kSetByLaunch);
+  setup.unexpected_overrides = override_lines(overlays, path, {std::istream_iterator<std::string>(set_by_launch), {}});
   std::string problems;
   try {
     setup.parameters = read_parameters(path, overlays, installed_config());

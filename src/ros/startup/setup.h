@@ -26,7 +26,7 @@ struct Setup {
   std::shared_ptr<const MachineModel> machine;  ///< a DriveTrain or a LegModel (robots/robot_kind.h)
   std::string bus;
   std::vector<std::string> overrides;  ///< "/robot/rate = 500 overrides robot.rate of config/robot_params.yaml"
-  std::vector<std::string> unexpected_overrides;  ///< those of `overrides` that the launch file does not cause itself
+  std::vector<std::string> unexpected_overrides;  ///< those of `overrides` that no launch file sets
   std::string unread_description;                 ///< warning that another robot_description is on the server, or empty
 };
 
