@@ -7,6 +7,7 @@ from robot_control.ui.program import run
 
 
 def main() -> None:
+    """Becomes the broker."""
     os.execv("/usr/sbin/mosquitto", ["mosquitto", "-p", "1883"])
 
 

@@ -115,7 +115,7 @@ MAY_INCLUDE = {
     # The log as a ROS bag; it knows the format, not ROS.
     "log": {"signals", "files", "log/bag", "parameters"},
     # All blocks together, and the other files that a user writes.
-    "configuration": LAWS | {"rt", "files", "parameters", "log", "drivers", "drivers/mujoco"},
+    "configuration": LAWS | {"rt", "files", "parameters", "log", "drivers", "drivers/mujoco", "navigation"},
     # A robot of each kind, composed of its laws; the roles as interfaces.
     "robots": LAWS | {"bus", "parameters", "configuration", "drivers/drive", "drivers/table"},
     # The step of each node in one cycle, and the process around it.
@@ -478,7 +478,8 @@ def test_no_two_headers_share_a_name():
 
 
 TYPE_OR_BRACE = re.compile(
-    r"namespace\s*([\w:]*)\s*\{|^(?:class|struct|union|enum(?:\s+class)?)\s+(\w+)\b(?!\s*<|::)[^;{()]*\{|[{}]", re.MULTILINE
+    r"namespace\s*([\w:]*)\s*\{|^(?:class|struct|union|enum(?:\s+class)?)\s+(\w+)\b(?!\s*<|::)[^;{()]*\{|[{}]",
+    re.MULTILINE,
 )
 
 

@@ -1,8 +1,8 @@
 #pragma once
 /// An array of a received message takes no more memory than its bytes justify.
 ///
-/// The arrays of ros/serialization.h are resized to the length that the sender wrote, up to 2³² elements, before the
-/// length of the message is checked. The function here is preferred to the one there for every std::vector. It throws
+/// ros/serialization.h resizes an array to the length that the sender wrote, up to 2³² elements. It checks the length
+/// of the message afterwards. The function here is preferred to the one there for every std::vector. It throws
 /// StreamOverrunException, which roscpp catches: the message or request is refused. Every source that is compiled with
 /// ROS includes this file (cmake/ros.cmake).
 

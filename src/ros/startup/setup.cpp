@@ -47,7 +47,7 @@ std::string server_text(const std::string& name, const std::string& what) {
 /// Replaces the paths that this node reads from the server by resolved ones, so that every reader finds the same files.
 void resolve_server_paths() {
   for (const char* name : {"robot/urdf", "robot/drives", "robot/command_script", "~config", "~urdf", "~drives",
-                           "~scene", "~calibration_file", "~command_sources", "~directory", "~latch_file"}) {
+                           "~scene", "~calibration_file", "~command_sources", "~directory", "~latch_file", "~map"}) {
     XmlRpc::XmlRpcValue value = on_server(ros::names::resolve(name));
     if (value.getType() != XmlRpc::XmlRpcValue::TypeString) continue;
     const std::string& given = value;
@@ -131,7 +131,22 @@ std::string other_controller(const std::string& node, const MachineModel& machin
          " instead (robot.launch, sim.launch: kind:=" + (legs ? "legs" : "wheels") + ")";
 }
 
-void fill_setup(const std::string& node, Setup& setup) {
+void read_machine(const std::string& node, const std::vector<Overlay>& overlays, Setup& setup, std::string& problems) {
+  try {
+    const RobotDescription chosen = description(setup.parameters, overlays, setup.unread_description);
+    setup.parameters = limited_by_drives(setup.parameters, chosen);
+    setup.machine = read_robot(chosen, setup.parameters);
+    std::string& base_frame = setup.parameters.report.base_frame;
+    if (base_frame.empty()) base_frame = setup.machine->base_link;
+    add(problems, other_controller(node, *setup.machine));
+  } catch (const RobotError& error) {
+    add(problems, error.what());
+  } catch (const ParameterError& error) {
+    add(problems, error.what());
+  }
+}
+
+void fill_setup(const std::string& node, bool in_loop, Setup& setup) {
   std::string path;
   std::vector<Overlay> overlays;
   bool use_sim_time = false;
@@ -153,18 +168,7 @@ void fill_setup(const std::string& node, Setup& setup) {
     throw SetupError(error.what());  // without parameters nothing else can be checked
   }
   add(problems, clock_problem(setup.parameters.loop.clock, use_sim_time));
-  try {
-    const RobotDescription chosen = description(setup.parameters, overlays, setup.unread_description);
-    setup.parameters = limited_by_drives(setup.parameters, chosen);
-    setup.machine = read_robot(chosen, setup.parameters);
-    std::string& base_frame = setup.parameters.report.base_frame;
-    if (base_frame.empty()) base_frame = setup.machine->base_link;
-    add(problems, other_controller(node, *setup.machine));
-  } catch (const RobotError& error) {
-    add(problems, error.what());
-  } catch (const ParameterError& error) {
-    add(problems, error.what());
-  }
+  if (in_loop) read_machine(node, overlays, setup, problems);
   if (!problems.empty()) throw SetupError(problems);
   // Each namespace has a folder of its own, so that two robots never write to one file.
   std::string& directory = setup.parameters.telemetry.directory;
@@ -188,10 +192,10 @@ Parameters parameters_of(Role role) {
   return read_parameters(path, overlays, installed_config());
 }
 
-Setup read_setup(const std::string& node) {
+Setup read_setup(const std::string& node, bool in_loop) {
   Setup setup;
   try {
-    fill_setup(node, setup);
+    fill_setup(node, in_loop, setup);
   } catch (const SetupError& error) {
     std::string text = error.what();
     for (const std::string& line : setup.overrides) text += "\n  " + line;

@@ -38,10 +38,10 @@ std::string clock_problem(ClockMode clock, bool use_sim_time);
 /// Throws ParameterError.
 Parameters parameters_of(Role role);
 
-/// Refuses the controller of another kind of robot.
+/// Refuses the controller of another kind of robot. A program that is not `in_loop` needs no robot: `machine` is null.
 ///
 /// `node` names the program and its block of the YAML file (signals/roles.h). The robot is selected as in
 /// description.h. Throws SetupError with all problems at once.
-Setup read_setup(const std::string& node);
+Setup read_setup(const std::string& node, bool in_loop = true);
 
 }  // namespace robot_control
