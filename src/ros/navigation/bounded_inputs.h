@@ -17,16 +17,14 @@
 
 namespace robot_control::navigation {
 
-using InitialPose = geometry_msgs::PoseWithCovarianceStamped;
-
-using BoundedScan = Bounded<sensor_msgs::LaserScan, 52, kMaxMessage>;
+using BoundedLaserScan = Bounded<sensor_msgs::LaserScan, 52, kMaxMessage>;
 using BoundedOdometry = Bounded<nav_msgs::Odometry, 700, 700 + 2 * kMaxFrameId>;
-using BoundedTransforms = Bounded<tf2_msgs::TFMessage, 4, kMaxMessage>;
-using BoundedMap = Bounded<nav_msgs::OccupancyGrid, 96, 96 + kMaxFrameId + kMaxCells>;
-using BoundedLocalization = Bounded<LocalizationState, 32, kMaxMessage>;
-using BoundedInitialPose = Bounded<InitialPose, 360, 360 + kMaxFrameId>;
-using BoundedGoal = Bounded<geometry_msgs::PoseStamped, 72, 72 + kMaxFrameId>;
-using BoundedFeedback = Bounded<FollowPathActionFeedback, 33, kMaxMessage>;
-using BoundedResult = Bounded<FollowPathActionResult, 33, kMaxMessage>;
+using BoundedTFMessage = Bounded<tf2_msgs::TFMessage, 4, kMaxMessage>;
+using BoundedOccupancyGrid = Bounded<nav_msgs::OccupancyGrid, 96, 96 + kMaxFrameId + kMaxCells>;
+using BoundedLocalizationState = Bounded<LocalizationState, 32, kMaxMessage>;
+using BoundedPoseWithCovarianceStamped = Bounded<geometry_msgs::PoseWithCovarianceStamped, 360, 360 + kMaxFrameId>;
+using BoundedPoseStamped = Bounded<geometry_msgs::PoseStamped, 72, 72 + kMaxFrameId>;
+using BoundedFollowPathActionFeedback = Bounded<FollowPathActionFeedback, 33, kMaxMessage>;
+using BoundedFollowPathActionResult = Bounded<FollowPathActionResult, 33, kMaxMessage>;
 
 }  // namespace robot_control::navigation

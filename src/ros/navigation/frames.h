@@ -30,7 +30,8 @@ class Frames {
   tf2::BufferCore buffer_;
   void receive(const tf2_msgs::TFMessage& message, bool fixed);
 
-  InputTopic<BoundedTransforms> moving_{"tf", 100}, fixed_{"tf_static", 100};
+  InputTopic<BoundedTFMessage> moving_{"tf", 100};
+  InputTopic<BoundedTFMessage> fixed_{"tf_static", 100};
 };
 
 }  // namespace robot_control::navigation

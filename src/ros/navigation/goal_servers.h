@@ -44,7 +44,7 @@ class GoalServers {
   NavigateTo navigate_to_;
   MoveBase move_base_;
   ros::Publisher simple_;
-  InputTopic<BoundedGoal> simple_goal_{"move_base_simple/goal", 1};
+  InputTopic<BoundedPoseStamped> simple_goal_{"move_base_simple/goal", 1};
 };
 
 }  // namespace robot_control::navigation

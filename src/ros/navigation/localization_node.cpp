@@ -31,7 +31,8 @@ class LocalizationService {
     const LocalizationParameters& given = parameters.localization;
     if (!given.map.empty()) load(given.map);
     if (given.initial_pose) begin_at(*given.initial_pose);
-    initial_.connect(handle_, [this](const InitialPose& message) { receive_pose(message); });
+    initial_.connect(handle_,
+                     [this](const geometry_msgs::PoseWithCovarianceStamped& message) { receive_pose(message); });
     pose_ = handle_.advertise<geometry_msgs::PoseWithCovarianceStamped>("amcl_pose", 2, true);
     cloud_ = handle_.advertise<geometry_msgs::PoseArray>("particlecloud", 1, true);
     global_ = handle_.advertiseService("global_localization", &LocalizationService::search, this);
@@ -56,7 +57,7 @@ class LocalizationService {
     localizer_->set_pose({{pose[0], pose[1], pose[2]}, kByHand.cwiseProduct(kByHand).asDiagonal()});
   }
 
-  void receive_pose(const InitialPose& message) {
+  void receive_pose(const geometry_msgs::PoseWithCovarianceStamped& message) {
     const auto pose = given_pose(message);
     if (!pose) return;
     if (!localizer_) {
@@ -113,7 +114,7 @@ class LocalizationService {
   ScanInput input_{handle_, [this](const PlacedScan& scan) { use(scan); },
                    [this](const nav_msgs::Odometry& odometry) { receive_odometry(odometry); }};
   ros::ServiceServer load_ = map_service(handle_, "load_map", [this](const std::string& path) { return load(path); });
-  InputTopic<BoundedInitialPose> initial_{"initialpose", 1};
+  InputTopic<BoundedPoseWithCovarianceStamped> initial_{"initialpose", 1};
   ros::Publisher pose_, cloud_;
   ros::ServiceServer global_;
   ros::WallTimer timer_;

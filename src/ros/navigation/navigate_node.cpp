@@ -217,8 +217,8 @@ class NavigateService {
   Navigator navigator_;
   std::unique_ptr<Costmap> costmap_;
   GoalServers servers_;
-  InputTopic<BoundedMap> map_{"map", 1};
-  InputTopic<BoundedLocalization> localized_{"localization_state", 1};
+  InputTopic<BoundedOccupancyGrid> map_{"map", 1};
+  InputTopic<BoundedLocalizationState> localized_{"localization_state", 1};
   LocalizationState localization_;  // the newest
   ros::Publisher costmap_topic_;
   ros::ServiceServer clear_;

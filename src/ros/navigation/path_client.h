@@ -36,8 +36,8 @@ class PathClient {
   void receive_result(const FollowPathActionResult& message);
 
   ros::Publisher goal_, cancel_;
-  InputTopic<BoundedFeedback> feedback_{"follow_path/feedback", 10};
-  InputTopic<BoundedResult> result_{"follow_path/result", 10};
+  InputTopic<BoundedFollowPathActionFeedback> feedback_{"follow_path/feedback", 10};
+  InputTopic<BoundedFollowPathActionResult> result_{"follow_path/result", 10};
   std::string id_, reason_;
   PathReport report_;
   std::vector<PlanarPose> poses_;

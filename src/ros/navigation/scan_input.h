@@ -54,7 +54,7 @@ class ScanInput {
   nav_msgs::Odometry odometry_;  // the newest
   std::string place_problem_ = "no odom has come: start the robot";
   double moved_ = 0, used_at_ = -1e9;  // m + rad; s
-  InputTopic<BoundedScan> scan_{"scan", 2};
+  InputTopic<BoundedLaserScan> scan_{"scan", 2};
   InputTopic<BoundedOdometry> odom_{"odom", 50};
 };
 

@@ -19,7 +19,8 @@ class SlamService {
  public:
   explicit SlamService(const Parameters& parameters) {
     if (!parameters.slam.map.empty()) load(parameters.slam.map);
-    initial_.connect(handle_, [this](const InitialPose& message) { receive_pose(message); });
+    initial_.connect(handle_,
+                     [this](const geometry_msgs::PoseWithCovarianceStamped& message) { receive_pose(message); });
     timer_ =
         handle_.createWallTimer(ros::WallDuration(kMapPeriod), [this](const ros::WallTimerEvent&) { publish_map(); });
   }
@@ -61,7 +62,7 @@ class SlamService {
     return "goes on with " + path + ", the robot at its origin until initialpose says otherwise";
   }
 
-  void receive_pose(const InitialPose& message) {
+  void receive_pose(const geometry_msgs::PoseWithCovarianceStamped& message) {
     const auto pose = given_pose(message);
     if (!pose) return;
     if (!saved_) {
@@ -82,7 +83,7 @@ class SlamService {
                    [this](const nav_msgs::Odometry& odometry) { receive_odometry(odometry); }};
   ros::ServiceServer save_ = map_service(handle_, "save_map", [this](const std::string& path) { return save(path); });
   ros::ServiceServer load_ = map_service(handle_, "load_map", [this](const std::string& path) { return load(path); });
-  InputTopic<BoundedInitialPose> initial_{"initialpose", 1};
+  InputTopic<BoundedPoseWithCovarianceStamped> initial_{"initialpose", 1};
   ros::WallTimer timer_;
 };
 
