@@ -213,9 +213,9 @@ class NavigationInputsTest(unittest.TestCase):
 
     def test_6_all_wrong_parameters_refuse_the_start_at_once(self) -> None:
         rospy.set_param("/wrong", {"speed": "fast", "unknown_is_free": 1, "map_frame": [1], "sped": 0.4})
-        told = refusal("navigate", "__name:=wrong")
+        refused = refusal("navigate", "__name:=wrong")
         for problem in ("navigate.speed", "must be true or false", "navigate.map_frame", "navigate.sped"):
-            self.assertIn(problem, told)
+            self.assertIn(problem, refused)
 
     def test_6_bad_messages_are_refused_and_the_node_goes_on(self) -> None:
         topics = {"scan": LaserScan, "odom": Odometry, "map": OccupancyGrid, "tf": TFMessage}
