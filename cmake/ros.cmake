@@ -17,9 +17,27 @@ generate_messages(DEPENDENCIES actionlib_msgs geometry_msgs nav_msgs std_msgs)
 catkin_package(CATKIN_DEPENDS actionlib_msgs geometry_msgs message_runtime nav_msgs std_msgs)
 unset(CMAKE_RUNTIME_OUTPUT_DIRECTORY)  # catkin's: test programs are no nodes
 
+# Headers of messages that were generated before C++20, as Debian's are, name the member `rebind` of std::allocator, which
+# C++20 has not. Copies with std::allocator_traits in its place, as the present generator writes it, come before them.
+find_path(ROS_INCLUDE_DIR ros/serialization.h HINTS ${catkin_INCLUDE_DIRS} REQUIRED)
+set(headers_for_cxx20 ${CMAKE_BINARY_DIR}/ros_headers)
+file(GLOB headers RELATIVE ${ROS_INCLUDE_DIR} ${ROS_INCLUDE_DIR}/ros/serialization.h
+  ${ROS_INCLUDE_DIR}/*_msgs/*.h ${ROS_INCLUDE_DIR}/*_srvs/*.h ${ROS_INCLUDE_DIR}/dynamic_reconfigure/*.h)
+foreach(header IN LISTS headers)
+  file(READ ${ROS_INCLUDE_DIR}/${header} old)
+  string(REPLACE "ContainerAllocator::template rebind<" "std::allocator_traits<ContainerAllocator>::template rebind_alloc<" new "${old}")
+  string(REPLACE ">::other" ">" new "${new}")
+  string(REGEX REPLACE "#include \"([a-z_]+[.]h)" "#include \"ros/\\1" new "${new}")  # its neighbours stay behind
+  if(NOT new STREQUAL old)
+    file(CONFIGURE OUTPUT ${headers_for_cxx20}/${header} CONTENT "${new}" @ONLY)
+  endif()
+endforeach()
+
 # robot_control_ros(TARGET): ROS headers, generated messages included, for one target.
 function(robot_control_ros target)
-  target_include_directories(${target} SYSTEM PUBLIC ${CATKIN_DEVEL_PREFIX}/include ${catkin_INCLUDE_DIRS})
+  target_include_directories(${target} SYSTEM PUBLIC
+    ${headers_for_cxx20} ${CATKIN_DEVEL_PREFIX}/include ${catkin_INCLUDE_DIRS})
+  target_compile_options(${target} PUBLIC -include ros/messages/array_bound.h)
   target_link_libraries(${target} PUBLIC ${catkin_LIBRARIES})
   add_dependencies(${target} ${PROJECT_NAME}_generate_messages_cpp)
 endfunction()

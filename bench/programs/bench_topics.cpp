@@ -5,12 +5,12 @@
 /// tcpNoDelay. All run under ordinary scheduling, as callbacks of roscpp do.
 
 #include <ros/ros.h>
+#include <std_msgs/Float64MultiArray.h>
 
 #include <bit>
 #include <iostream>
 #include <string>
 
-#include "ros/messages/messages.h"
 #include "rt/clock.h"
 #include "signals/sensor_frame.h"
 #include "signals/state_frame.h"
@@ -18,7 +18,7 @@
 namespace robot_control::bench {
 namespace {
 
-using Message = msg::Float64MultiArray;
+using Message = std_msgs::Float64MultiArray;
 
 Message stamped(std::int64_t stamp_ns, std::size_t bytes) {
   Message message;

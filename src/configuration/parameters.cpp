@@ -62,7 +62,10 @@ Schema schema(Parameters& p) {
                  {names_of_kind(kLeggedKind).controller, joined({keys(p.leg_control), leg_control_keys(p.report)})},
                  {program_of(Role::kMonitor),
                   joined({keys(p.safety), file("latch_file", p.latch_file, kMayBeEmpty | kOptional)})},
-                 {program_of(Role::kTelemetry), keys(p.telemetry)}},
+                 {program_of(Role::kTelemetry), keys(p.telemetry)},
+                 {"slam", keys(p.slam)},
+                 {"localization", keys(p.localization)},
+                 {"navigate", keys(p.navigate)}},
       .check =
           [&p](const Schema& all, GivenValues& given) {
             check_timeouts(all, p.loop, given);

@@ -18,6 +18,7 @@
 #include "log/log_parameters.h"
 #include "machine/legs/leg_parameters.h"
 #include "machine/wheeled/drive_train_parameters.h"
+#include "navigation/navigation_parameters.h"
 #include "parameters/parameter_tree.h"
 #include "parameters/problem_list.h"
 #include "parameters/schema.h"
@@ -118,6 +119,9 @@ struct Parameters {
   std::string latch_file;  ///< path, see loop/latch_file.h; empty: none
   ReportParameters report;
   TelemetryParameters telemetry;
+  navigation::SlamParameters slam;
+  navigation::LocalizationParameters localization;
+  navigation::NavigateParameters navigate;
   std::optional<double> no_effect;    ///< value of a key of an earlier version
   std::vector<std::string> warnings;  ///< about accepted values in an old form
 };
@@ -126,8 +130,8 @@ struct Parameters {
 /// others.
 Programs programs_of(const Parameters& parameters, std::string_view kind) noexcept;
 
-/// Returns the blocks of the file with their places in `parameters`, which must outlive it: `robot`, and one per role
-/// (signals/roles.h).
+/// Returns the blocks of the file with their places in `parameters`, which must outlive it: `robot`, one per role
+/// (signals/roles.h), and one per program of navigation.
 Schema schema(Parameters& parameters);
 
 /// Throws ParameterError. Every key of the schema must be in the file or in an overlay, unless it is kOptional.

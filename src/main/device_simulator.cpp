@@ -2,16 +2,16 @@
 /// unix:FOLDER`) or over a serial line. It makes a link at the address of a serial line. It publishes ground_truth/odom
 /// and has the service ~inject_fault: component is a joint or `bus`, and `board` or `encoder` of a board.
 
+#include <robot_control/InjectFault.h>
 #include <ros/ros.h>
 
 #include <atomic>
 #include <memory>
 #include <mutex>
 
-#include "files/ascii.h"
 #include "robots/robot_kind.h"
 #include "ros/messages/motion_messages.h"
-#include "ros/messages/simulation_messages.h"
+#include "ros/messages/service_answer.h"
 #include "ros/messages/time_map.h"
 #include "ros/nodes/node.h"
 #include "ros/reports/diagnostics.h"
@@ -36,7 +36,7 @@ class DeviceSimulatorNode final : public Node {
   ~DeviceSimulatorNode() override { end(); }
 
   void connect(ros::NodeHandle& handle) override {
-    truth_ = handle.advertise<msg::Odometry>("ground_truth/odom", 10);
+    truth_ = handle.advertise<nav_msgs::Odometry>("ground_truth/odom", 10);
     inject_fault_ = ros::NodeHandle("~").advertiseService("inject_fault", &DeviceSimulatorNode::inject_fault, this);
     thread_ = std::make_unique<RealtimeThread>(
         RealtimeParameters{.name = "devices", .policy = setup_.parameters.loop.realtime, .priority = kPriority},
@@ -83,12 +83,10 @@ class DeviceSimulatorNode final : public Node {
     if (thread_) thread_->join();
   }
 
-  bool inject_fault(msg::InjectFaultRequest& request, msg::InjectFaultResponse& response) {
+  bool inject_fault(InjectFault::Request& request, InjectFault::Response& response) {
     const std::lock_guard lock(mutex_);
     const std::string problem = simulator_->inject(request.component, request.kind);
-    response.success = problem.empty() ? 1 : 0;
-    response.message = ascii(problem.empty() ? request.component + " " + request.kind : problem);
-    return true;
+    return answer(response, problem.empty(), problem.empty() ? request.component + " " + request.kind : problem);
   }
 
   Setup setup_;

@@ -39,7 +39,7 @@ def _sources(folder: str) -> str:
 def topics() -> Iterator[str]:
     """Name and type; `~`: below the node's name."""
     bridge = _sources("src/ros")
-    for owner, message, name in re.findall(r'(\w+)\.advertise<msg::(\w+)>\("([^"]+)"', bridge):
+    for owner, message, name in re.findall(r'(\w+)\.advertise<(?:\w+::)?(\w+)>\("([^"]+)"', bridge):
         yield f"{'~' if owner == 'own' else ''}{name} {message}"
     for message, name in re.findall(r'InputTopic<Bounded(\w+)> \w+\{"([^"]+)"', bridge):
         yield f"{name} {message}"

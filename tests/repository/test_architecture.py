@@ -115,7 +115,7 @@ MAY_INCLUDE = {
     # The log as a ROS bag; it knows the format, not ROS.
     "log": {"signals", "files", "log/bag", "parameters"},
     # All blocks together, and the other files that a user writes.
-    "configuration": LAWS | {"rt", "files", "parameters", "log", "drivers", "drivers/mujoco"},
+    "configuration": LAWS | {"rt", "files", "parameters", "log", "drivers", "drivers/mujoco", "navigation"},
     # A robot of each kind, composed of its laws; the roles as interfaces.
     "robots": LAWS | {"bus", "parameters", "configuration", "drivers/drive", "drivers/table"},
     # The step of each node in one cycle, and the process around it.
@@ -126,9 +126,9 @@ MAY_INCLUDE = {
     "bindings": ALL | {"log/replay", "navigation", "navigation/mrpt"},
     "ros": LOOP | {"files", "machine/description"},
     # Maps, costmap, planner: services beside the loop, without ROS.
-    "navigation": {"files", "machine"},
+    "navigation": {"files", "machine", "parameters"},
     "navigation/mrpt": {"navigation"},
-    "ros/navigation": {"navigation", "navigation/mrpt", "files"},
+    "ros/navigation": {"navigation", "navigation/mrpt", "ros", "configuration", "files"},
     "main": {
         "ros",
         "ros/navigation",
@@ -537,6 +537,39 @@ def test_folders_stay_small():
 def test_no_two_headers_share_a_name():
     names = [path.name for path in FILES if path.suffix == ".h"]
     assert sorted(name for name in set(names) if names.count(name) > 1) == []
+
+
+TYPE_OR_BRACE = re.compile(
+    r"namespace\s*([\w:]*)\s*\{|^(?:class|struct|union|enum(?:\s+class)?)\s+(\w+)\b(?!\s*<|::)[^;{()]*\{|[{}]",
+    re.MULTILINE,
+)
+
+
+def types_of(path):
+    """Full names of the types that a file defines; those of functions, of other types and of unnamed namespaces are
+    seen nowhere else.
+    """
+    scopes = []
+    for found in TYPE_OR_BRACE.finditer(NO_CODE.sub("", path.read_text())):
+        if found[0] == "}":
+            scopes.pop()
+            continue
+        if found[2] and all(scopes):
+            yield "::".join([*scopes, found[2]])
+        scopes.append(found[1])  # None of a type or a function
+
+
+def test_every_type_has_one_definition():
+    """Two of one name would break the One Definition Rule; the generated messages are in the namespace of the code."""
+    places, messages = {}, {}
+    for path in FILES:
+        for name in types_of(path):
+            places.setdefault(name, []).append(str(path.relative_to(ROOT)))
+        for message in re.findall(r"#include <robot_control/(\w+)\.h>", path.read_text()):
+            messages.setdefault(f"robot_control::{message}", []).append(str(path.relative_to(ROOT)))
+    assert len(places) > 700
+    assert {name: found for name, found in places.items() if len(found) > 1} == {}
+    assert {name: found + messages[name] for name, found in places.items() if name in messages} == {}
 
 
 def test_gtest_files_are_named_after_what_they_test():

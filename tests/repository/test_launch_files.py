@@ -12,7 +12,7 @@ NODES = ("state_estimator", "diff_drive_controller", "safety_monitor")
 VARIABLES = ("ROS_IP", "ROS_HOSTNAME", "ROS_MASTER_URI")
 
 
-@pytest.fixture(params=["sim.launch", "backend.launch", "robot.launch drives:=x"])
+@pytest.fixture(params=["sim.launch", "robot.launch"])
 def default(request, monkeypatch):
     """The address that a launch file gives its nodes under these variables; "" where it leaves the environment's."""
 
@@ -21,7 +21,7 @@ def default(request, monkeypatch):
             monkeypatch.delenv(name, raising=False)
         for name, value in variables.items():
             monkeypatch.setenv(name, value)
-        return dict(config_of(*request.param.split()).nodes[0].env_args).get("ROS_IP", "")
+        return dict(config_of(request.param).nodes[0].env_args).get("ROS_IP", "")
 
     return resolve
 
@@ -49,13 +49,13 @@ def test_no_expression_is_long():
             assert len(expression) <= 80, f"{path.name}: {expression}"
 
 
-@pytest.mark.parametrize("launch", ["sim.launch", "backend.launch", "robot.launch drives:=x", "console.launch"])
+@pytest.mark.parametrize("launch", ["sim.launch", "robot.launch", "console.launch"])
 def test_paths_are_passed_as_given_with_the_callers_folder(launch, monkeypatch):
     monkeypatch.setenv("PWD", "/called/here")
     monkeypatch.delenv("HOME", raising=False)
     monkeypatch.delenv("ROS_HOME", raising=False)
     given = [] if launch == "console.launch" else ["params:=5", "urdf:=~/mine.urdf"]
-    config = config_of(*launch.split(), *given)
+    config = config_of(launch, *given)
     for node in config.nodes:
         assert dict(node.env_args)["ROBOT_CONTROL_CALLER_FOLDER"] == "/called/here", node.name
     if given:
@@ -83,12 +83,41 @@ def config_of(launch, *arguments):
     return config
 
 
+def test_the_nodes_report_no_override_that_a_launch_file_sets():
+    setup = (LAUNCH.parent / "src/ros/startup/setup.cpp").read_text()
+    unsaid = set(re.findall(r"[\w.]+", re.search(r"kSetByLaunch =(.*?);", setup, re.DOTALL)[1]))
+    set_here: set[str] = set()
+    for arguments in (
+        ["robot.launch"],
+        ["sim.launch", "black_box:=false", "telemetry:=true"],
+        ["navigation.launch", "map:=x"],
+    ):
+        set_here |= {name[1:].partition("/")[2].replace("/", ".") for name in config_of(*arguments).params}
+    assert set_here - {"", "config"} == unsaid
+
+
+def test_an_address_is_taken_as_given():
+    for launch in ("sim.launch", "robot.launch"):
+        assert dict(config_of(launch, "ip:=192.0.2.7").nodes[0].env_args)["ROS_IP"] == "192.0.2.7"
+
+
+def test_a_real_machine_is_commanded_by_the_driver_and_keeps_its_latch():
+    real, simulated = config_of("robot.launch", "drives:=x"), config_of("sim.launch")
+    assert real.params["/robot/driver"].value == "can"
+    assert simulated.params["/robot/driver"].value == ""
+    assert real.params["/safety_monitor/latch_file"].value
+    assert not simulated.params["/safety_monitor/latch_file"].value
+    assert (real.params["/robot/wait_for_nodes"].value, simulated.params["/robot/wait_for_nodes"].value) == ("", True)
+    assert "driver" in {node.name for node in real.nodes}
+    assert len(config_of("robot.launch", "program:=none").nodes) == len(real.nodes) - 1
+
+
 def programs_of(*arguments):
     """Node name → program that sim.launch starts."""
     return {node.name: node.type for node in config_of("sim.launch", *arguments).nodes}
 
 
-@pytest.mark.parametrize("launch", ["sim.launch", "backend.launch", "view.launch", "console.launch"])
+@pytest.mark.parametrize("launch", ["sim.launch", "robot.launch", "view.launch", "console.launch"])
 def test_the_argument_ns_moves_every_node_and_parameter_and_changes_nothing_else(launch):
     here, moved_config = config_of(launch), config_of(launch, "ns:=robot2")
     assert [(node.namespace, node.name, node.type) for node in moved_config.nodes] == [
@@ -115,7 +144,7 @@ def telemetry_of(launch, *arguments):
     return {name.removeprefix(own): param.value for name, param in config.params.items() if name.startswith(own)}
 
 
-@pytest.mark.parametrize("launch", ["sim.launch", "backend.launch"])
+@pytest.mark.parametrize("launch", ["sim.launch", "robot.launch"])
 def test_on_the_wall_clock_a_black_box_is_written_and_nothing_else(launch):
     values = telemetry_of(launch)
     assert values["record"] == "request"
@@ -124,7 +153,7 @@ def test_on_the_wall_clock_a_black_box_is_written_and_nothing_else(launch):
     assert telemetry_of(launch, "clock:=lockstep") is None
 
 
-@pytest.mark.parametrize("launch", ["sim.launch", "backend.launch"])
+@pytest.mark.parametrize("launch", ["sim.launch", "robot.launch"])
 def test_with_telemetry_the_yaml_file_says_what_is_written(launch):
     assert not telemetry_of(launch, "telemetry:=true").keys() & {"record", "black_box"}
     assert telemetry_of(launch, "telemetry:=true", "black_box:=false")["black_box"] == 0
@@ -136,7 +165,7 @@ def test_the_end_of_telemetry_ends_a_simulation_that_shall_be_logged_and_nothing
 
     assert required("sim.launch", "telemetry:=true")
     assert not required("sim.launch")
-    assert not required("backend.launch", "telemetry:=true")
+    assert not required("robot.launch", "telemetry:=true")
 
 
 def test_respawn_starts_again_all_but_what_ends_the_launch():
@@ -158,7 +187,7 @@ def test_a_simulation_starts_the_programs_of_the_robot():
 
 def test_every_argument_that_a_user_may_give_is_set_in_every_launch():
     """A parameter that is set under a condition stays in the roscore when the condition is false the next time."""
-    for name in ("sim", "backend"):
+    for name in ("sim", "robot"):
         text = (LAUNCH / f"{name}.launch").read_text()
         outside = re.sub(r"<node .*?</node>", "", text, flags=re.DOTALL)
         assert not re.search(r"<param (if|unless)=", outside), name

@@ -36,6 +36,18 @@ def libraries(name):
     return subprocess.run(["readelf", "-d", program(name)], check=True, capture_output=True, text=True).stdout
 
 
+def built(name):
+    return bool(roslib.packages.find_node("robot_control", name))
+
+
+@pytest.mark.parametrize("name", filter(built, (path.stem for path in sorted((SRC / "main").glob("*.cpp")))))
+def test_every_node_checks_its_connections(name):
+    """roscpp calls these functions by name, so that those of the program replace its own (src/ros/network)."""
+    exported = subprocess.run(["nm", "-D", "--defined-only", program(name)], check=True, capture_output=True, text=True)
+    for function in ("ros10Connection4read", "ros6Header5parse", "XmlRpc12XmlRpcSocket6nbRead", " T accept", " T bind"):
+        assert function in exported.stdout, function
+
+
 @pytest.mark.parametrize("name", ROBOT)
 def test_a_program_of_the_robot_holds_nothing_simulated(name):
     assert simulated_symbols(name) == set()

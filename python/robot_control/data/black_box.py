@@ -7,7 +7,7 @@ from pathlib import Path
 RING = "ring"
 BEFORE = "ring.before"
 LOGS = Path(os.environ.get("ROS_HOME") or "~/.ros", "robot_control")
-"""The folder into which sim.launch and backend.launch let telemetry write."""
+"""The folder into which sim.launch and robot.launch let telemetry write."""
 BAG_OF_RING = re.compile(r"\d+\.bag")
 INCIDENT = re.compile(r"(stop|crash)\.\d+\.bag")
 

@@ -127,7 +127,7 @@ void BoardDriver::accept(const board_report& report, std::int64_t arrived_ns) no
   silent_for_ = 0;
   sensors_ = report.sensors;
   accept_imu(report);
-  if (status().state == DriveState::kStarting && !braked) run();
+  if (status().state == DrivePhase::kStarting && !braked) run();
 }
 
 void BoardDriver::accept_counts(const board_report& report, std::int64_t elapsed_us) noexcept {

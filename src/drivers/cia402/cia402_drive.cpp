@@ -58,7 +58,7 @@ std::vector<PlannedFrames> Cia402Drive::plan() const {
 
 void Cia402Drive::restart(bool reset, std::int64_t now_ns) noexcept {
   const bool first_runs =
-      first_axis_ != nullptr && first_axis_->set_up() && first_axis_->status().state != DriveState::kFault;
+      first_axis_ != nullptr && first_axis_->set_up() && first_axis_->status().state != DrivePhase::kFault;
   if (first_runs) first_axis_->begin(reset, now_ns);
   phase_ = Phase::kSetup;
   setup_.restart();
@@ -154,7 +154,7 @@ void Cia402Drive::advance(const DriveCommand& command, std::int64_t now_ns, Fram
   if (first_axis_ != nullptr && set_up() && !first_axis_->set_up()) restart(reset_, now_ns);
   if (phase_ == Phase::kSetup) return advance_setup(now_ns, send);
   if (phase_ == Phase::kStart) {
-    set(DriveState::kStarting, DriveCause::kFirstSample);
+    set(DrivePhase::kStarting, DriveCause::kFirstSample);
     if (second_axis_ == nullptr) send_nmt(NmtCommand::kStart, now_ns, send);
     if (!sample().valid) return;
     know_reaction(setup_.on_silence(),
@@ -166,7 +166,7 @@ void Cia402Drive::advance(const DriveCommand& command, std::int64_t now_ns, Fram
 }
 
 void Cia402Drive::advance_setup(std::int64_t now_ns, FrameBatch& send) noexcept {
-  if (first_axis_ != nullptr && !first_axis_->set_up()) return set(DriveState::kStarting, DriveCause::kIdentity);
+  if (first_axis_ != nullptr && !first_axis_->set_up()) return set(DrivePhase::kStarting, DriveCause::kIdentity);
   if (!setup_.answered() && first_axis_ == nullptr) send_nmt(NmtCommand::kEnterPreOperational, now_ns, send);
   const DriveSetup::Result result = setup_.step(now_ns, send);
   if (result == DriveSetup::Result::kNoAnswer) return restart(reset_, now_ns);
@@ -176,16 +176,16 @@ void Cia402Drive::advance_setup(std::int64_t now_ns, FrameBatch& send) noexcept 
   }
   if (result == DriveSetup::Result::kDone) phase_ = Phase::kStart;
   if (setup_.answered()) {
-    set(DriveState::kStarting, DriveCause::kSetup, "", setup_.object());
+    set(DrivePhase::kStarting, DriveCause::kSetup, "", setup_.object());
   } else {
-    set(DriveState::kStarting, DriveCause::kFirstFrame);
+    set(DrivePhase::kStarting, DriveCause::kFirstFrame);
   }
 }
 
 void Cia402Drive::advance_power(const DriveCommand& command, std::int64_t now_ns, FrameBatch& send) noexcept {
   if (!command.enabled) {
     phase_ = Phase::kReady;
-    set(DriveState::kReady, DriveCause::kEnable);
+    set(DrivePhase::kReady, DriveCause::kEnable);
     return send_command(Controlword::kDisableVoltage, send);
   }
   if (phase_ == Phase::kReady) {
@@ -195,11 +195,11 @@ void Cia402Drive::advance_power(const DriveCommand& command, std::int64_t now_ns
   }
   if (phase_ == Phase::kRunning) {
     if (needs_velocity() && !has_velocity(now_ns)) return fail(DriveCause::kSilent, "velocity");
-    set(DriveState::kRunning, DriveCause::kNone);
+    set(DrivePhase::kRunning, DriveCause::kNone);
     read_voltage(now_ns, send);
     return send_command(Controlword::kEnableOperation, send, command);
   }
-  set(DriveState::kReady, DriveCause::kPower, power_state_words(power_));
+  set(DrivePhase::kReady, DriveCause::kPower, power_state_words(power_));
   if (power_ == PowerState::kOperationEnabled) {
     phase_ = Phase::kRunning;
     reset_ = false;

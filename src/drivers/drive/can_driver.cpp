@@ -80,7 +80,7 @@ void CanDriver::begin() noexcept {
   for (JointLaw& law : laws_) law.reset();
 }
 
-bool CanDriver::all_are(DriveState state) const noexcept {
+bool CanDriver::all_are(DrivePhase state) const noexcept {
   for (std::size_t i = 0; i < drives_.size(); ++i) {
     if (drives_[i].status().state != state) return false;
   }
@@ -90,13 +90,13 @@ bool CanDriver::all_are(DriveState state) const noexcept {
 void CanDriver::judge_faults() noexcept {
   for (std::size_t i = 0; i < drives_.size(); ++i) {
     const DriveStatus& status = drives_[i].status();
-    if (status.state == DriveState::kFault && !reset_) faults_ |= fault_of(status.cause);
+    if (status.state == DrivePhase::kFault && !reset_) faults_ |= fault_of(status.cause);
   }
-  const bool fell_back = state_ == DriverState::kRunning && !all_are(DriveState::kRunning);
+  const bool fell_back = state_ == DriverState::kRunning && !all_are(DrivePhase::kRunning);
   if (fell_back && faults_ == 0) faults_ |= kFaultDrive;
   if (faults_ != 0) {
     state_ = DriverState::kFault;
-  } else if (all_are(DriveState::kRunning)) {
+  } else if (all_are(DrivePhase::kRunning)) {
     state_ = DriverState::kRunning;
   }
 }
@@ -126,7 +126,7 @@ void CanDriver::read(SensorFrame& sensors) noexcept {
     joint.valid = (sample.valid ? kValidPosition | kValidVelocity : 0U) | (sample.effort_valid ? kValidEffort : 0U);
     if (drives_[i].drive_parameters().takes_effort) joint.valid |= kTakesEffort;
     const DriveStatus& status = drives_[i].status();
-    joint.fault = status.state == DriveState::kFault ? static_cast<std::uint32_t>(status.cause) : 0;
+    joint.fault = status.state == DrivePhase::kFault ? static_cast<std::uint32_t>(status.cause) : 0;
     if (sample.voltage > 0) sensors.battery_voltage = sample.voltage;
   }
   if (sensors.battery_voltage > 0) sensors.valid |= kValidBattery;
@@ -189,7 +189,7 @@ std::string CanDriver::warning() const {
   std::string text = robot_control::words(statuses.bus);
   for (std::size_t i = 0; i < drives_.size(); ++i) {
     const DriveStatus& status = statuses.drives[i];
-    if (status.state == DriveState::kRunning) continue;
+    if (status.state == DrivePhase::kRunning) continue;
     if (!text.empty()) text += ". ";
     text += drives_[i].words(status);
   }

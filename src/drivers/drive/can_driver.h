@@ -69,7 +69,7 @@ class CanDriver final : public Driver {
 
   void begin() noexcept;
   void send_commands(std::int64_t now_ns) noexcept;
-  bool all_are(DriveState state) const noexcept;
+  bool all_are(DrivePhase state) const noexcept;
   LinkStatus link() const noexcept;
   void publish_statuses() noexcept;
   void judge_faults() noexcept;

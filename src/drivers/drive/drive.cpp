@@ -35,7 +35,7 @@ Drive::Drive(DriveParameters parameters, double period)
 void Drive::step(const DriveCommand& command, std::int64_t now_ns, FrameBatch& send) noexcept {
   if (command.reset && !reset_before_) {
     clears_ = 0;
-    if (status().state == DriveState::kFault) begin(true, now_ns);
+    if (status().state == DrivePhase::kFault) begin(true, now_ns);
   }
   reset_before_ = command.reset;
   judge_silence(now_ns);
@@ -43,7 +43,7 @@ void Drive::step(const DriveCommand& command, std::int64_t now_ns, FrameBatch& s
   limited.torque = within(command.torque, drive_.torque_limit);
   limited.speed = within(command.speed, drive_.velocity_limit);
   advance(limited, now_ns, send);
-  note_order(status().state == DriveState::kRunning ? limited.torque : 0);
+  note_order(status().state == DrivePhase::kRunning ? limited.torque : 0);
 }
 
 void Drive::begin(bool reset, std::int64_t now_ns) noexcept {
@@ -58,10 +58,10 @@ void Drive::begin(bool reset, std::int64_t now_ns) noexcept {
 
 void Drive::judge_silence(std::int64_t now_ns) noexcept {
   if (sample_.valid && now_ns - sample_.stamp_ns > max_silence_ns()) {
-    if (status().state == DriveState::kReady) {
+    if (status().state == DrivePhase::kReady) {
       forget();
       restart(false, now_ns);
-    } else if (status().state == DriveState::kRunning) {
+    } else if (status().state == DrivePhase::kRunning) {
       fail(DriveCause::kSilent, "position");
     }
     sample_.valid = false;
@@ -105,7 +105,7 @@ bool Drive::accept_motion(double position, double velocity, std::int64_t now_ns)
   const double maximum = 2 * drive_.velocity_limit * std::fmax(elapsed, 2 * drive_.sample_period) +
                          std::abs(to_joint_) * drive_.position_step;
   if (sample_.valid && std::abs(moved) > maximum) {
-    if (status().state >= DriveState::kRunning) {
+    if (status().state >= DrivePhase::kRunning) {
       fail(DriveCause::kPositionJump, "position", 0, moved, maximum);
     } else {
       zero_ -= moved;

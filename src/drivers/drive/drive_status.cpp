@@ -78,9 +78,9 @@ DriverFault fault_of(DriveCause cause) noexcept {
   }
 }
 
-void DriveStateMachine::set(DriveState state, DriveCause cause, const char* subject, std::uint64_t code, double found,
+void DriveStateMachine::set(DrivePhase state, DriveCause cause, const char* subject, std::uint64_t code, double found,
                             double expected) noexcept {
-  if (status_.state == DriveState::kFault) return;
+  if (status_.state == DrivePhase::kFault) return;
   status_ = {.state = state, .cause = cause, .subject = subject, .code = code, .found = found, .expected = expected};
 }
 
@@ -88,10 +88,10 @@ void DriveStateMachine::fail(DriveCause cause, const char* subject, std::uint64_
                              double expected) noexcept {
   const bool brakes =
       cause == DriveCause::kHot || cause == DriveCause::kUnderVoltage || cause == DriveCause::kForeignCommander;
-  if (status_.state == DriveState::kFault && (brakes || !may_brake_)) return;
-  had_torque_ = status_.state >= DriveState::kRunning;
-  may_brake_ = brakes && status_.state == DriveState::kRunning;
-  status_ = {.state = DriveState::kFault,
+  if (status_.state == DrivePhase::kFault && (brakes || !may_brake_)) return;
+  had_torque_ = status_.state >= DrivePhase::kRunning;
+  may_brake_ = brakes && status_.state == DrivePhase::kRunning;
+  status_ = {.state = DrivePhase::kFault,
              .cause = cause,
              .subject = subject,
              .code = code,

@@ -14,7 +14,7 @@
 
 namespace robot_control {
 
-enum class DriveState : std::uint8_t { kStarting, kReady, kRunning, kFault };
+enum class DrivePhase : std::uint8_t { kStarting, kReady, kRunning, kFault };
 
 /// Why a drive is not running.
 enum class DriveCause : std::uint8_t {
@@ -75,7 +75,7 @@ struct KnownReaction {
 
 /// A copy of it may be put into words by another thread.
 struct DriveStatus {
-  DriveState state = DriveState::kStarting;
+  DrivePhase state = DrivePhase::kStarting;
   DriveCause cause = DriveCause::kFirstFrame;
   const char* subject = "";  ///< a literal
   std::uint64_t code = 0;
@@ -102,17 +102,17 @@ class DriveStateMachine {
  protected:
   ~DriveStateMachine() = default;
 
-  bool running() const noexcept { return status_.state == DriveState::kRunning; }
+  bool running() const noexcept { return status_.state == DrivePhase::kRunning; }
   /// Leaves every state, a fault included.
   void forget() noexcept { status_ = {}; }
-  void set(DriveState state, DriveCause cause, const char* subject = "", std::uint64_t code = 0, double found = 0,
+  void set(DrivePhase state, DriveCause cause, const char* subject = "", std::uint64_t code = 0, double found = 0,
            double expected = 0) noexcept;
   void fail(DriveCause cause, const char* subject = "", std::uint64_t code = 0, double found = 0,
             double expected = 0) noexcept;
 
   /// Returns whether the motor is to have no torque because of a fault. A running drive that is hot, has a low voltage
   /// or a second commander obeys further, because it can brake the joint.
-  bool disabled() const noexcept { return status_.state == DriveState::kFault && !may_brake_; }
+  bool disabled() const noexcept { return status_.state == DrivePhase::kFault && !may_brake_; }
   /// Returns whether a drive that is disabled had torque when its fault came.
   bool brakes_by_itself() const noexcept { return disabled() && had_torque_; }
 

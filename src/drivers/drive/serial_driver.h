@@ -50,7 +50,7 @@ class SerialDriver : public Driver, protected DriveStateMachine {
     restart();
   }
   void reset() noexcept override {
-    if (status().state == DriveState::kFault) restart();
+    if (status().state == DrivePhase::kFault) restart();
   }
   void read(SensorFrame& sensors) noexcept override;
 
@@ -91,12 +91,12 @@ class SerialDriver : public Driver, protected DriveStateMachine {
   bool obeys(std::span<const JointCommand> commands) const noexcept {
     return running() && !stopped_ && commands.size() == joint_count_;
   }
-  void run() noexcept { set(DriveState::kRunning, DriveCause::kNone); }
+  void run() noexcept { set(DrivePhase::kRunning, DriveCause::kNone); }
   /// A fault, or before the board runs what it waits for.
   void evaluate(DriveCause cause, const char* subject = "", std::uint64_t code = 0, double found = 0,
                 double expected = 0) noexcept {
     if (running() || is_fault_at_start(cause)) return fail(cause, subject, code, found, expected);
-    set(DriveState::kStarting, cause, subject, code, found, expected);
+    set(DrivePhase::kStarting, cause, subject, code, found, expected);
   }
   /// Hands the bytes of one message to the line.
   void send(std::span<const std::uint8_t> bytes) noexcept {
@@ -141,7 +141,7 @@ void SerialDriver<Wheel>::read(SensorFrame& sensors) noexcept {
   now_ns_ = clock_();
   const bool silent = receive();
   if (silent) evaluate(DriveCause::kSilent, line_->connected() ? "message" : "device on the line");
-  const bool faulty = status().state == DriveState::kFault;
+  const bool faulty = status().state == DrivePhase::kFault;
   sensors.driver_state = faulty ? DriverState::kFault : running() ? DriverState::kRunning : DriverState::kStarting;
   sensors.faults = faulty ? std::uint64_t{fault_of(status().cause)} : 0;
   sensors.valid = 0;

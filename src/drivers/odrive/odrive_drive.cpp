@@ -191,7 +191,7 @@ void OdriveDrive::receive_error_details(const can_frame& frame) noexcept {
 }
 
 void OdriveDrive::advance(const DriveCommand& command, std::int64_t now_ns, FrameBatch& send) noexcept {
-  if (status().state == DriveState::kRunning) note_speed();
+  if (status().state == DrivePhase::kRunning) note_speed();
   if (disabled()) {
     send.add(brakes_by_itself() ? encode(node(), SetInputVelocity{}) : input({}));
     brakes_by_itself() ? send_brake(command, now_ns, send) : send_idle(now_ns, send);
@@ -206,7 +206,7 @@ void OdriveDrive::advance(const DriveCommand& command, std::int64_t now_ns, Fram
   }
   // An axis in closed loop has the torque of an earlier program, whose watchdog these frames feed.
   if (phase_ < Phase::kPosition) send.add(input({}));
-  if (phase_ == Phase::kHeartbeat) return set(DriveState::kStarting, DriveCause::kFirstFrame);
+  if (phase_ == Phase::kHeartbeat) return set(DrivePhase::kStarting, DriveCause::kFirstFrame);
   const auto max_silence = static_cast<std::int64_t>(1.0e9 * kMaxHeartbeats * parameters_.heartbeat_period);
   if (now_ns - heartbeat_ns_ > max_silence) {
     if (phase_ == Phase::kRunning) return fail(DriveCause::kSilent, "heartbeat");
@@ -225,7 +225,7 @@ void OdriveDrive::advance(const DriveCommand& command, std::int64_t now_ns, Fram
 }
 
 void OdriveDrive::advance_identity(std::int64_t now_ns, FrameBatch& send) noexcept {
-  set(DriveState::kStarting, DriveCause::kIdentity);
+  set(DrivePhase::kStarting, DriveCause::kIdentity);
   if (phase_ == Phase::kWatchdog) return ask_watchdog(now_ns, send);
   const Phase next = parameters_.watchdog_timeout_endpoint != 0 ? Phase::kWatchdog : Phase::kPosition;
   if (phase_ == Phase::kAddress && serial_number_ != 0 && now_ns >= next_request_ns_ - kRetryNs + kAddressNs) {
@@ -269,7 +269,7 @@ void OdriveDrive::advance_power(const DriveCommand& command, std::int64_t now_ns
   const bool running = phase_ == Phase::kRunning && command.enabled;
   send.add(input(running ? command : DriveCommand{}));
   if (phase_ == Phase::kPosition) {
-    set(DriveState::kStarting, DriveCause::kFirstSample);
+    set(DrivePhase::kStarting, DriveCause::kFirstSample);
     if (!sample().valid) return;
     settle_reaction();
     return enter(Phase::kReady);
@@ -277,14 +277,14 @@ void OdriveDrive::advance_power(const DriveCommand& command, std::int64_t now_ns
   if (!command.enabled) {
     if (axis_state_ == AxisState::kClosedLoopControl || phase_ != Phase::kReady) send_idle(now_ns, send);
     if (phase_ != Phase::kReady) enter(Phase::kReady);
-    return set(DriveState::kReady, DriveCause::kEnable);
+    return set(DrivePhase::kReady, DriveCause::kEnable);
   }
   if (phase_ == Phase::kReady) {
     enter(Phase::kEnter);
     deadline_ns_ = now_ns + kEnterNs;
   }
-  if (phase_ == Phase::kRunning) return set(DriveState::kRunning, DriveCause::kNone);
-  set(DriveState::kReady, DriveCause::kPower, "in closed loop; axis state", static_cast<std::uint32_t>(axis_state_));
+  if (phase_ == Phase::kRunning) return set(DrivePhase::kRunning, DriveCause::kNone);
+  set(DrivePhase::kReady, DriveCause::kPower, "in closed loop; axis state", static_cast<std::uint32_t>(axis_state_));
   if (tries_ < kZeroCycles) {
     ++tries_;
     const DriveParameters& drive = drive_parameters();

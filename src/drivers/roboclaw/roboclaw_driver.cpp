@@ -125,7 +125,7 @@ void RoboclawDriver::accept() noexcept {
   const bool is_order = command_ == Command::kSpeeds || command_ == Command::kDuties;
   ordered_ = is_order;
   if (is_order) return;
-  if (status().state != DriveState::kStarting) {
+  if (status().state != DrivePhase::kStarting) {
     ++turn_;
     return;
   }
@@ -180,13 +180,13 @@ void RoboclawDriver::add_measurements(SensorFrame& sensors) noexcept {
 bool RoboclawDriver::counts_are_trusted() const noexcept {
   if (running()) return true;
   const DriveStatus& drive = status();
-  return drive.state == DriveState::kFault &&
+  return drive.state == DrivePhase::kFault &&
          (drive.cause == DriveCause::kSilent || drive.cause == DriveCause::kDriveError);
 }
 
 RoboclawDriver::Command RoboclawDriver::next() const noexcept {
   if (!ordered_) return counts_are_trusted() ? Command::kSpeeds : Command::kDuties;
-  if (status().state == DriveState::kStarting) return setup_ < kSetup.size() ? kSetup[setup_] : Command::kEncoders;
+  if (status().state == DrivePhase::kStarting) return setup_ < kSetup.size() ? kSetup[setup_] : Command::kEncoders;
   return turn_ % kSlowEvery == kSlowEvery - 1 ? kSlow[turn_ / kSlowEvery % kSlow.size()] : Command::kEncoders;
 }
 

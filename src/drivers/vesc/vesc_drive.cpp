@@ -112,17 +112,17 @@ void VescDrive::advance(const DriveCommand& command, std::int64_t now_ns, FrameB
   if (disabled()) return;
   if (const char* missing = missing_message(now_ns)) {
     if (running_) return fail(DriveCause::kSilent, missing);
-    if (seen_) return set(DriveState::kStarting, DriveCause::kMessage, missing);
-    return set(DriveState::kStarting, DriveCause::kFirstFrame);
+    if (seen_) return set(DrivePhase::kStarting, DriveCause::kMessage, missing);
+    return set(DrivePhase::kStarting, DriveCause::kFirstFrame);
   }
-  if (status().state == DriveState::kStarting) settle_reaction();
-  if (status().state == DriveState::kFault) return judge_release(command, now_ns);
+  if (status().state == DrivePhase::kStarting) settle_reaction();
+  if (status().state == DrivePhase::kFault) return judge_release(command, now_ns);
   if (!command.enabled || !running_) {
     running_ = command.enabled;
     current_ns_ = now_ns;
-    return set(DriveState::kReady, DriveCause::kEnable);
+    return set(DrivePhase::kReady, DriveCause::kEnable);
   }
-  set(DriveState::kRunning, DriveCause::kNone);
+  set(DrivePhase::kRunning, DriveCause::kNone);
   judge_release(command, now_ns);
 }
 
@@ -137,7 +137,7 @@ void VescDrive::judge_release(const DriveCommand& command, std::int64_t now_ns) 
   if (current_ > kNoCurrent || !needs_current(command)) current_ns_ = now_ns;
   if (now_ns - current_ns_ <= kReleasedNs) return;
   running_ = false;
-  if (status().state != DriveState::kFault) fail(DriveCause::kReleased, "no current");
+  if (status().state != DrivePhase::kFault) fail(DriveCause::kReleased, "no current");
 }
 
 can_frame VescDrive::order(const DriveCommand& command) const noexcept {

@@ -15,7 +15,7 @@ std::string flat_name(std::string key) {
 }
 
 template <class Value>
-void put(msg::Config& config, const LiveParameter& parameter, const Value& value) {
+void put(dynamic_reconfigure::Config& config, const LiveParameter& parameter, const Value& value) {
   if (std::holds_alternative<bool>(parameter.value)) {
     config.bools.emplace_back();
     config.bools.back().name = flat_name(parameter.key);
@@ -28,8 +28,8 @@ void put(msg::Config& config, const LiveParameter& parameter, const Value& value
 }
 
 /// Returns a Config without values, but with the group that a client expects in every Config.
-msg::Config empty_config() {
-  msg::Config config;
+dynamic_reconfigure::Config empty_config() {
+  dynamic_reconfigure::Config config;
   config.groups.emplace_back();
   config.groups.back().name = "Default";
   config.groups.back().state = 1;
@@ -91,25 +91,25 @@ class RequestText {
 
 }  // namespace
 
-msg::Config config_of(const std::vector<LiveParameter>& parameters) {
-  msg::Config config = empty_config();
+dynamic_reconfigure::Config config_of(const std::vector<LiveParameter>& parameters) {
+  dynamic_reconfigure::Config config = empty_config();
   for (const LiveParameter& parameter : parameters) {
     std::visit([&](auto value) { put(config, parameter, value); }, parameter.value);
   }
   return config;
 }
 
-msg::ConfigDescription description_of(const std::vector<LiveParameter>& parameters) {
-  msg::ConfigDescription description;
+dynamic_reconfigure::ConfigDescription description_of(const std::vector<LiveParameter>& parameters) {
+  dynamic_reconfigure::ConfigDescription description;
   description.groups.emplace_back();
-  msg::ConfigGroup& group = description.groups.back();
+  dynamic_reconfigure::Group& group = description.groups.back();
   group.name = "Default";
   description.min = empty_config();
   description.max = empty_config();
   for (const LiveParameter& parameter : parameters) {
     const bool is_bool = std::holds_alternative<bool>(parameter.value);
     group.parameters.emplace_back();
-    msg::ConfigParameter& entry = group.parameters.back();
+    dynamic_reconfigure::ParamDescription& entry = group.parameters.back();
     entry.name = flat_name(parameter.key);
     entry.type = is_bool ? "bool" : "double";
     entry.description = parameter.rule;
@@ -120,7 +120,7 @@ msg::ConfigDescription description_of(const std::vector<LiveParameter>& paramete
   return description;
 }
 
-std::string request_text(const msg::Config& request, const std::vector<LiveParameter>& parameters) {
+std::string request_text(const dynamic_reconfigure::Config& request, const std::vector<LiveParameter>& parameters) {
   RequestText text(parameters);
   for (const auto& entry : request.bools) text.add(entry.name, entry.value != 0 ? "true" : "false");
   for (const auto& entry : request.ints) text.add(entry.name, std::to_string(entry.value));

@@ -5,22 +5,23 @@
 /// `feed_forward.mass` is named `feed_forward_mass`, as in a log. A value that is left out is derived, and shown as
 /// the derived number (that of the first wheel if wheels differ). Setting it replaces the derived number.
 
+#include <dynamic_reconfigure/ConfigDescription.h>
+
 #include <string>
 #include <vector>
 
 #include "configuration/live_parameters.h"
-#include "ros/messages/reconfigure_messages.h"
 
 namespace robot_control {
 
 /// `parameters` are the ones in force, with derived values filled in (robots/wheeled/retuning.h).
-msg::Config config_of(const std::vector<LiveParameter>& parameters);
+dynamic_reconfigure::Config config_of(const std::vector<LiveParameter>& parameters);
 
 /// Returns a description with one group, "Default"; `parameters` are those of the start.
-msg::ConfigDescription description_of(const std::vector<LiveParameter>& parameters);
+dynamic_reconfigure::ConfigDescription description_of(const std::vector<LiveParameter>& parameters);
 
 /// Returns the request as the text of a YAML map for ~set_parameter_map; "" if it names no value. An unknown name is
 /// copied unchanged, so that it is refused together with all other problems.
-std::string request_text(const msg::Config& request, const std::vector<LiveParameter>& parameters);
+std::string request_text(const dynamic_reconfigure::Config& request, const std::vector<LiveParameter>& parameters);
 
 }  // namespace robot_control

@@ -56,7 +56,8 @@ std::string joint_names(const LegModel& robot) {
 }
 
 /// Sets the index of each named joint. Returns "", or the problem.
-std::string find_joints(const msg::JointTrajectory& message, const LegModel& robot, std::vector<std::size_t>& joints) {
+std::string find_joints(const trajectory_msgs::JointTrajectory& message, const LegModel& robot,
+                        std::vector<std::size_t>& joints) {
   if (message.joint_names.empty()) return "it names no joint; name some of " + joint_names(robot);
   for (const std::string& name : message.joint_names) {
     const auto found = std::ranges::find(robot.joints, name, &JointModel::name);
@@ -69,8 +70,8 @@ std::string find_joints(const msg::JointTrajectory& message, const LegModel& rob
   return "";
 }
 
-std::string check_numbers(const msg::JointTrajectoryPoint& point, std::size_t joints) {
-  const std::initializer_list<std::pair<const char*, const std::vector<double, MessageAllocator<double>>*>> lists{
+std::string check_numbers(const trajectory_msgs::JointTrajectoryPoint& point, std::size_t joints) {
+  const std::initializer_list<std::pair<const char*, const std::vector<double>*>> lists{
       {"positions", &point.positions}, {"velocities", &point.velocities}, {"accelerations", &point.accelerations}};
   for (const auto& [name, values] : lists) {
     if (values->size() != joints && (values == &point.positions || !values->empty()))
@@ -85,13 +86,14 @@ std::string check_numbers(const msg::JointTrajectoryPoint& point, std::size_t jo
 
 }  // namespace
 
-std::string JointTrajectory::read(const msg::JointTrajectory& message, const LegModel& robot, const Positions& start) {
+std::string JointTrajectory::read(const trajectory_msgs::JointTrajectory& message, const LegModel& robot,
+                                  const Positions& start) {
   std::vector<std::size_t> joints;
   if (std::string problem = find_joints(message, robot, joints); !problem.empty()) return problem;
   const std::array<JointBounds, kLegsJoints> bounds = joint_bounds(robot);
   std::vector<Point> points{{.time = 0, .positions = start}};
   for (std::size_t number = 1; number <= message.points.size(); ++number) {
-    const msg::JointTrajectoryPoint& given = message.points[number - 1];
+    const trajectory_msgs::JointTrajectoryPoint& given = message.points[number - 1];
     const std::string which = "point " + std::to_string(number) + ": ";
     if (std::string problem = check_numbers(given, joints.size()); !problem.empty()) return which + problem;
     Point& last = points.back();

@@ -25,25 +25,18 @@
 #include "control/legged/leg_controller.h"
 #include "machine/legs/leg_model.h"
 #include "ros/messages/bounded_message.h"
-#include "ros/messages/messages.h"
 #include "ros/network/wire_guard.h"
 
 namespace robot_control {
-namespace msg {
 
-using JointTrajectory = trajectory_msgs::JointTrajectory_<Allocator>;
-using JointTrajectoryPoint = trajectory_msgs::JointTrajectoryPoint_<Allocator>;
-
-}  // namespace msg
-
-using BoundedJointTrajectory = Bounded<msg::JointTrajectory, 24, kMaxMessage>;
+using BoundedJointTrajectory = Bounded<trajectory_msgs::JointTrajectory, 24, kMaxMessage>;
 
 class JointTrajectory {
  public:
   using Positions = std::array<double, kLegsJoints>;  ///< rad, in the order of MachineModel::joints
 
   /// Reads a message with at least one point. Returns "", or why it is refused; then the path is as before.
-  std::string read(const msg::JointTrajectory& message, const LegModel& robot, const Positions& start);
+  std::string read(const trajectory_msgs::JointTrajectory& message, const LegModel& robot, const Positions& start);
 
   /// Returns where the joints are at this time in s.
   Positions at(double time) const;

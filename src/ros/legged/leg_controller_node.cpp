@@ -15,6 +15,7 @@
 #include "ros/legged/joint_trajectory.h"
 #include "ros/legged/leg_messages.h"
 #include "ros/messages/motion_messages.h"
+#include "ros/messages/service_answer.h"
 #include "ros/nodes/commanded_node.h"
 #include "ros/reports/diagnostics.h"
 #include "ros/reports/pacer.h"
@@ -48,27 +49,28 @@ class LegControllerNode final : public CommandedNode {
         pace_(report().leg_state_rate) {}
 
   void connect(ros::NodeHandle& handle) override {
-    leg_state_ = handle.advertise<msg::LegState>("leg_state", 10);
-    velocity_out_ = handle.advertise<msg::TwistStamped>("cmd_vel_out", 10);
+    leg_state_ = handle.advertise<LegState>("leg_state", 10);
+    velocity_out_ = handle.advertise<geometry_msgs::TwistStamped>("cmd_vel_out", 10);
     set_posture_ = handle.advertiseService("set_posture", &LegControllerNode::set_posture, this);
     set_gait_ = handle.advertiseService("set_gait", &LegControllerNode::set_gait, this);
     intake().start(
         earlier_controller(handle, {"body_pose", "foot_target", "joint_trajectory", "cmd_vel", "cmd_vel_stamped"}));
-    body_pose_.connect_with_sender(handle, [this](const msg::BodyPose& message, const Publisher& sender) {
+    body_pose_.connect_with_sender(handle, [this](const BodyPose& message, const Publisher& sender) {
       receive({.sender = sender, .twist = {}, .posture = posture_of(message), .part = StatedPart::kPose});
     });
-    foot_target_.connect_with_sender(handle, [this](const msg::FootTarget& message, const Publisher& sender) {
+    foot_target_.connect_with_sender(handle, [this](const FootTarget& message, const Publisher& sender) {
       const auto request = request_of(message);
       if (request) return receive({.sender = sender, .twist = {}, .posture = request->posture, .mode = request->mode});
       ROS_WARN_THROTTLE(10, "foot_target of %s is refused: there is no foot '%s'; name one of %s", sender.name.c_str(),
                         ascii(message.foot).c_str(), foot_names().c_str());
     });
-    joint_trajectory_.connect_with_sender(
-        handle, [this](const msg::JointTrajectory& message, const Publisher& sender) { begin(message, sender); });
-    cmd_vel_.connect_with_sender(handle, [this](const msg::Twist& message, const Publisher& sender) {
+    joint_trajectory_.connect_with_sender(handle, [this](const trajectory_msgs::JointTrajectory& message,
+                                                         const Publisher& sender) { begin(message, sender); });
+    cmd_vel_.connect_with_sender(handle, [this](const geometry_msgs::Twist& message, const Publisher& sender) {
       receive({.sender = sender, .twist = twist_of(message), .part = StatedPart::kTwist});
     });
-    cmd_vel_stamped_.connect_with_sender(handle, [this](const msg::TwistStamped& message, const Publisher& sender) {
+    cmd_vel_stamped_.connect_with_sender(handle, [this](const geometry_msgs::TwistStamped& message,
+                                                        const Publisher& sender) {
       const auto stamp_ns = static_cast<std::int64_t>(message.header.stamp.toNSec());
       receive({.sender = sender, .twist = twist_of(message.twist), .stamp_ns = stamp_ns, .part = StatedPart::kTwist});
     });
@@ -93,13 +95,12 @@ class LegControllerNode final : public CommandedNode {
     process().states().at(command_.head.run, command_.head.cycle, state);
     CommandFrame plan;
     if (command_.head.cycle >= 2) process().output().at(command_.head.run, command_.head.cycle - 2, plan);
-    msg::LegState message = leg_state({command_, plan, sensors, state, gaits_, std::exchange(since_message_, 0)},
-                                      leg_model_of(robot()), time().at(command_.head.stamp_ns));
+    LegState message = leg_state({command_, plan, sensors, state, gaits_, std::exchange(since_message_, 0)},
+                                 leg_model_of(robot()), time().at(command_.head.stamp_ns));
     {
       const std::lock_guard lock(input_mutex_);
-      const std::vector<std::string> senders = intake().senders(loop_ns()), revoked = intake().revoked();
-      message.senders.assign(senders.begin(), senders.end());
-      message.revoked.assign(revoked.begin(), revoked.end());
+      message.senders = intake().senders(loop_ns());
+      message.revoked = intake().revoked();
       message.chosen_gait = gait_of_mode(input_.chosen_mode(), gaits_);
     }
     leg_state_.publish(message);
@@ -132,7 +133,7 @@ class LegControllerNode final : public CommandedNode {
     bool moves = false;                      ///< The joints have begun to move.
   };
 
-  void begin(const msg::JointTrajectory& message, const Publisher& sender) {
+  void begin(const trajectory_msgs::JointTrajectory& message, const Publisher& sender) {
     const std::lock_guard lock(input_mutex_);
     if (message.points.empty()) {
       end_trajectory(sender.name + " sent an empty one");
@@ -158,7 +159,7 @@ class LegControllerNode final : public CommandedNode {
   }
 
   /// Returns why this trajectory cannot begin, but for the permission to move, or "".
-  std::string read(const msg::JointTrajectory& message, Execution& to) {
+  std::string read(const trajectory_msgs::JointTrajectory& message, Execution& to) {
     for (const std::string& name : missing()) return "the loop does not run: waiting for " + name;
     CommandFrame command;
     SensorFrame sensors;
@@ -239,7 +240,7 @@ class LegControllerNode final : public CommandedNode {
     return no_permission(found, permit, robot(), programs());
   }
 
-  bool set_gait(msg::SetGaitRequest& request, msg::SetGaitResponse& response) {
+  bool set_gait(SetGait::Request& request, SetGait::Response& response) {
     const std::lock_guard lock(input_mutex_);
     const std::optional<std::uint64_t> mode = mode_of_gait(request.gait, gaits_);
     const LegPhase phase = command_.legged.phase;
@@ -251,17 +252,14 @@ class LegControllerNode final : public CommandedNode {
                 ": call set_posture with 'standing'";
     }
     if (problem.empty()) input_.choose_mode(*mode);
-    response.success = problem.empty() ? 1 : 0;
-    response.message = ascii(problem.empty() ? request.gait : "refused: " + problem);
-    return true;
+    return answer(response, problem.empty(), problem.empty() ? request.gait : "refused: " + problem);
   }
 
-  bool set_posture(msg::SetPostureRequest& request, msg::SetPostureResponse& response) {
+  bool set_posture(SetPosture::Request& request, SetPosture::Response& response) {
     const std::unique_lock one_at_a_time(posture_mutex_, std::try_to_lock);
     const std::string problem =
         one_at_a_time ? reach(request.posture) : "another set_posture is being answered: call again";
-    response.success = problem.empty() ? 1 : 0;
-    response.message = ascii(problem.empty() ? request.posture : "refused: " + problem);
+    answer(response, problem.empty(), problem.empty() ? request.posture : "refused: " + problem);
     if (problem.empty()) {
       ROS_INFO("set_posture: %s", response.message.c_str());
     } else {

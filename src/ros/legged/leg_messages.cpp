@@ -15,7 +15,7 @@
 
 namespace robot_control {
 
-Posture posture_of(const msg::BodyPose& message) {
+Posture posture_of(const BodyPose& message) {
   return {.height = message.height,
           .roll = message.roll,
           .pitch = message.pitch,
@@ -24,7 +24,7 @@ Posture posture_of(const msg::BodyPose& message) {
           .yaw = message.yaw};
 }
 
-std::optional<Request> request_of(const msg::FootTarget& message) {
+std::optional<Request> request_of(const FootTarget& message) {
   if (message.foot.empty()) return Request{};
   for (std::size_t leg = 0; leg < kLegs; ++leg) {
     if (message.foot != name_of(static_cast<LegPlace>(leg))) continue;
@@ -61,9 +61,9 @@ std::string gait_of_mode(std::uint64_t mode, const Gaits& gaits) {
   return mode > kStanceGait && mode < kStanceGait + gaits.size() ? gaits[mode - kStanceGait].name.data() : "auto";
 }
 
-msg::LegState leg_state(const LegReport& report, const LegModel& robot, ros::Time stamp) {
+LegState leg_state(const LegReport& report, const LegModel& robot, ros::Time stamp) {
   const CommandFrame& command = report.command;
-  msg::LegState message;
+  LegState message;
   message.header.stamp = stamp;
   message.posture = name_of(command.legged.phase);
   if (command.legged.lifted != 0) message.lifted = name_of(static_cast<LegPlace>(command.legged.lifted - 1));
@@ -71,8 +71,7 @@ msg::LegState leg_state(const LegReport& report, const LegModel& robot, ros::Tim
     message.gait = report.gaits[command.legged.gait].name.data();
     message.gait_phase = command.legged.gait_phase;
   }
-  const std::vector<std::string> words = gait_words(report.gaits);
-  message.gaits.assign(words.begin(), words.end());
+  message.gaits = gait_words(report.gaits);
   const auto& [x, y, height, roll, pitch, yaw] = command.legged.body;
   message.body.x = x;
   message.body.y = y;

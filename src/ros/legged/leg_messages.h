@@ -4,8 +4,10 @@
 #include <robot_control/BodyPose.h>
 #include <robot_control/FootTarget.h>
 #include <robot_control/LegState.h>
+#include <robot_control/SetGait.h>
 #include <robot_control/SetGaitRequest.h>
 #include <robot_control/SetGaitResponse.h>
+#include <robot_control/SetPosture.h>
 #include <robot_control/SetPostureRequest.h>
 #include <robot_control/SetPostureResponse.h>
 #include <ros/time.h>
@@ -16,7 +18,6 @@
 #include "control/legged/gait.h"
 #include "machine/legs/leg_model.h"
 #include "ros/messages/bounded_message.h"
-#include "ros/messages/messages.h"
 #include "signals/command_frame.h"
 #include "signals/permit.h"
 #include "signals/robot_kinds.h"
@@ -24,38 +25,15 @@
 #include "signals/state_frame.h"
 
 namespace robot_control {
-namespace msg {
-
-using BodyPose = robot_control::BodyPose_<Allocator>;
-using FootTarget = robot_control::FootTarget_<Allocator>;
-using LegState = robot_control::LegState_<Allocator>;
-using SetGaitRequest = robot_control::SetGaitRequest_<Allocator>;
-using SetGaitResponse = robot_control::SetGaitResponse_<Allocator>;
-using SetPostureRequest = robot_control::SetPostureRequest_<Allocator>;
-using SetPostureResponse = robot_control::SetPostureResponse_<Allocator>;
-
-}  // namespace msg
-
-inline constexpr Service kSetPostureService{"robot_control/SetPosture", "aa0018bcd263d983e3738fe36e845d94"};
-template <>
-inline constexpr Service kServiceOf<msg::SetPostureRequest> = kSetPostureService;
-template <>
-inline constexpr Service kServiceOf<msg::SetPostureResponse> = kSetPostureService;
-
-inline constexpr Service kSetGaitService{"robot_control/SetGait", "7e62cc59373477b4b7a24c7ae4d7d354"};
-template <>
-inline constexpr Service kServiceOf<msg::SetGaitRequest> = kSetGaitService;
-template <>
-inline constexpr Service kServiceOf<msg::SetGaitResponse> = kSetGaitService;
 
 inline constexpr std::uint32_t kMaxFootName = 64;  ///< bytes
-using BoundedBodyPose = Bounded<msg::BodyPose, 48>;
-using BoundedFootTarget = Bounded<msg::FootTarget, 28, 28 + kMaxFootName>;
+using BoundedBodyPose = Bounded<BodyPose, 48>;
+using BoundedFootTarget = Bounded<FootTarget, 28, 28 + kMaxFootName>;
 
-Posture posture_of(const msg::BodyPose& message);
+Posture posture_of(const BodyPose& message);
 
 /// Returns the request that lifts this foot, and the zero request for no name. Returns none for an unknown foot.
-std::optional<Request> request_of(const msg::FootTarget& message);
+std::optional<Request> request_of(const FootTarget& message);
 
 /// Returns "front_left, front_right, rear_left, rear_right".
 std::string foot_names();
@@ -83,7 +61,7 @@ struct LegReport {
 };
 
 /// Fills everything but the senders and the chosen gait.
-msg::LegState leg_state(const LegReport& report, const LegModel& robot, ros::Time stamp);
+LegState leg_state(const LegReport& report, const LegModel& robot, ros::Time stamp);
 
 /// Returns the measured slope of the ground in words where it is a reason; else "".
 std::string slope_words(std::uint64_t reasons, const StateFrame& state, const LegModel& robot);

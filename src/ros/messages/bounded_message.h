@@ -6,13 +6,15 @@
 /// nor parsed, and `accepted` stays false. Before that, roscpp has received the message, up to the size that
 /// wire_guard.h allows.
 
+#include <geometry_msgs/TwistStamped.h>
 #include <ros/message_traits.h>
 #include <ros/serialization.h>
+#include <std_msgs/Bool.h>
+#include <std_msgs/Empty.h>
+#include <std_msgs/Float64.h>
 
 #include <boost/shared_ptr.hpp>
 #include <cstdint>
-
-#include "ros/messages/messages.h"
 
 namespace robot_control {
 
@@ -28,11 +30,11 @@ struct Bounded {
 /// A frame_id has at most this many bytes.
 inline constexpr std::uint32_t kMaxFrameId = 256;
 
-using BoundedBool = Bounded<msg::Bool, 1>;
-using BoundedEmpty = Bounded<msg::Empty, 0>;
-using BoundedFloat64 = Bounded<msg::Float64, 8>;
-using BoundedTwist = Bounded<msg::Twist, 48>;
-using BoundedTwistStamped = Bounded<msg::TwistStamped, 64, 64 + kMaxFrameId>;
+using BoundedBool = Bounded<std_msgs::Bool, 1>;
+using BoundedEmpty = Bounded<std_msgs::Empty, 0>;
+using BoundedFloat64 = Bounded<std_msgs::Float64, 8>;
+using BoundedTwist = Bounded<geometry_msgs::Twist, 48>;
+using BoundedTwistStamped = Bounded<geometry_msgs::TwistStamped, 64, 64 + kMaxFrameId>;
 
 }  // namespace robot_control
 

@@ -8,16 +8,16 @@
 namespace robot_control {
 namespace {
 
-msg::Vector3 vector_message(const Vector3& vector) {
-  msg::Vector3 message;
+geometry_msgs::Vector3 vector_message(const Vector3& vector) {
+  geometry_msgs::Vector3 message;
   message.x = vector[0];
   message.y = vector[1];
   message.z = vector[2];
   return message;
 }
 
-msg::Quaternion quaternion_message(const Quaternion& quaternion) {
-  msg::Quaternion message;
+geometry_msgs::Quaternion quaternion_message(const Quaternion& quaternion) {
+  geometry_msgs::Quaternion message;
   message.x = quaternion[0];
   message.y = quaternion[1];
   message.z = quaternion[2];
@@ -25,16 +25,16 @@ msg::Quaternion quaternion_message(const Quaternion& quaternion) {
   return message;
 }
 
-msg::Twist twist_message(const Twist& twist) {
-  msg::Twist message;
+geometry_msgs::Twist twist_message(const Twist& twist) {
+  geometry_msgs::Twist message;
   message.linear = vector_message(twist.linear);
   message.angular = vector_message(twist.angular);
   return message;
 }
 
-msg::Odometry odometry_of(const Pose& pose, const Twist& twist, const std::string& odom_frame,
-                          const std::string& base_frame, ros::Time stamp) {
-  msg::Odometry message;
+nav_msgs::Odometry odometry_of(const Pose& pose, const Twist& twist, const std::string& odom_frame,
+                               const std::string& base_frame, ros::Time stamp) {
+  nav_msgs::Odometry message;
   message.header.stamp = stamp;
   message.header.frame_id = odom_frame;
   message.child_frame_id = base_frame;
@@ -48,14 +48,14 @@ msg::Odometry odometry_of(const Pose& pose, const Twist& twist, const std::strin
 
 }  // namespace
 
-Twist twist_of(const msg::Twist& message) {
+Twist twist_of(const geometry_msgs::Twist& message) {
   return {.linear = {message.linear.x, message.linear.y, message.linear.z},
           .angular = {message.angular.x, message.angular.y, message.angular.z}};
 }
 
-msg::JointState joint_states(const SensorFrame& sensors, const StateFrame* state, const MachineModel& robot,
-                             ros::Time stamp) {
-  msg::JointState message;
+sensor_msgs::JointState joint_states(const SensorFrame& sensors, const StateFrame* state, const MachineModel& robot,
+                                     ros::Time stamp) {
+  sensor_msgs::JointState message;
   message.header.stamp = stamp;
   for (std::size_t i = 0; i < robot.joints.size(); ++i) {
     message.name.push_back(robot.joints[i].name);
@@ -66,15 +66,15 @@ msg::JointState joint_states(const SensorFrame& sensors, const StateFrame* state
   return message;
 }
 
-msg::Odometry odometry(const StateFrame& state, const std::string& odom_frame, const std::string& base_frame,
-                       ros::Time stamp) {
-  msg::Odometry message = odometry_of(state.base.pose_odom, state.base.twist_base, odom_frame, base_frame, stamp);
+nav_msgs::Odometry odometry(const StateFrame& state, const std::string& odom_frame, const std::string& base_frame,
+                            ros::Time stamp) {
+  nav_msgs::Odometry message = odometry_of(state.base.pose_odom, state.base.twist_base, odom_frame, base_frame, stamp);
   std::ranges::copy(state.base.pose_covariance, message.pose.covariance.begin());
   std::ranges::copy(state.base.twist_covariance, message.twist.covariance.begin());
   return message;
 }
 
-void state_covariances(const ReportParameters& given, msg::Odometry& message) {
+void state_covariances(const ReportParameters& given, nav_msgs::Odometry& message) {
   const auto replace = [](const std::optional<CovarianceDiagonal>& diagonal, auto& covariance) {
     if (!diagonal) return;
     covariance.fill(0);
@@ -93,8 +93,8 @@ std::string covariance_note(const ReportParameters& given) {
   return "odom: " + keys + " given: constant, whatever the estimate's uncertainty is. Leave out to publish that";
 }
 
-msg::TransformStamped transform(const msg::Odometry& odometry) {
-  msg::TransformStamped message;
+geometry_msgs::TransformStamped transform(const nav_msgs::Odometry& odometry) {
+  geometry_msgs::TransformStamped message;
   message.header = odometry.header;
   message.child_frame_id = odometry.child_frame_id;
   message.transform.translation.x = odometry.pose.pose.position.x;
@@ -104,8 +104,8 @@ msg::TransformStamped transform(const msg::Odometry& odometry) {
   return message;
 }
 
-msg::Odometry wheel_odometry(const StateFrame& state, const std::string& odom_frame, const std::string& base_frame,
-                             ros::Time stamp) {
+nav_msgs::Odometry wheel_odometry(const StateFrame& state, const std::string& odom_frame, const std::string& base_frame,
+                                  ros::Time stamp) {
   const WheelOdometry& wheels = state.wheeled.odometry;
   const Pose pose{.position = {wheels.x, wheels.y, 0},
                   .orientation = {0, 0, std::sin(wheels.yaw / 2), std::cos(wheels.yaw / 2)}};
@@ -113,8 +113,8 @@ msg::Odometry wheel_odometry(const StateFrame& state, const std::string& odom_fr
                      stamp);
 }
 
-msg::Odometry ground_truth(const TruthFrame& truth, const std::string& odom_frame, const std::string& base_frame,
-                           ros::Time stamp) {
+nav_msgs::Odometry ground_truth(const TruthFrame& truth, const std::string& odom_frame, const std::string& base_frame,
+                                ros::Time stamp) {
   return odometry_of(truth.pose_world, truth.twist_base, odom_frame, base_frame, stamp);
 }
 
@@ -122,7 +122,7 @@ const std::string& imu_frame(const MachineModel& robot) {
   return robot.imu_link.empty() ? robot.base_link : robot.imu_link;
 }
 
-ExternalImuSample imu_sample(const msg::Imu& message, std::int64_t now_ns, std::int64_t age_ns) {
+ExternalImuSample imu_sample(const sensor_msgs::Imu& message, std::int64_t now_ns, std::int64_t age_ns) {
   const auto vector = [](const auto& from) { return Vector3{from.x, from.y, from.z}; };
   ExternalImuSample sample{.imu = {.angular_velocity = vector(message.angular_velocity),
                                    .linear_acceleration = vector(message.linear_acceleration)},
@@ -133,8 +133,8 @@ ExternalImuSample imu_sample(const msg::Imu& message, std::int64_t now_ns, std::
   return sample;
 }
 
-msg::LaserScan laser_scan(const LaserScan& scan, ros::Time stamp) {
-  msg::LaserScan message;
+sensor_msgs::LaserScan laser_scan(const LaserScan& scan, ros::Time stamp) {
+  sensor_msgs::LaserScan message;
   message.header.stamp = stamp;
   message.header.frame_id = scan.link;
   message.angle_min = static_cast<float>(scan.angle_min);
@@ -147,8 +147,8 @@ msg::LaserScan laser_scan(const LaserScan& scan, ros::Time stamp) {
   return message;
 }
 
-msg::Imu imu(const SensorFrame& sensors, const MachineModel& robot, ros::Time stamp) {
-  msg::Imu message;
+sensor_msgs::Imu imu(const SensorFrame& sensors, const MachineModel& robot, ros::Time stamp) {
+  sensor_msgs::Imu message;
   message.header.stamp = stamp;
   message.header.frame_id = imu_frame(robot);
   message.angular_velocity = vector_message(sensors.imu.angular_velocity);
@@ -161,9 +161,9 @@ msg::Imu imu(const SensorFrame& sensors, const MachineModel& robot, ros::Time st
   return message;
 }
 
-msg::Imu imu_data(const SensorFrame& sensors, const StateFrame& state, const MachineModel& robot,
-                  const EstimatorParameters& parameters, double period, ros::Time stamp) {
-  msg::Imu message = imu(sensors, robot, stamp);
+sensor_msgs::Imu imu_data(const SensorFrame& sensors, const StateFrame& state, const MachineModel& robot,
+                          const EstimatorParameters& parameters, double period, ros::Time stamp) {
+  sensor_msgs::Imu message = imu(sensors, robot, stamp);
   const auto rotation = [](const Quaternion& q) { return Eigen::Quaterniond(q[3], q[0], q[1], q[2]); };
   const Eigen::Quaterniond q = rotation(state.base.attitude) * rotation(robot.imu_in_base.orientation);
   message.orientation = quaternion_message({q.x(), q.y(), q.z(), q.w()});
@@ -184,21 +184,21 @@ bool has_imu_data(const SensorFrame& sensors, const StateFrame& state) {
          (state.base.flags & kStateValid) != 0;
 }
 
-msg::BatteryState battery_state(const SensorFrame& sensors, ros::Time stamp) {
+sensor_msgs::BatteryState battery_state(const SensorFrame& sensors, ros::Time stamp) {
   constexpr float kUnmeasured = std::numeric_limits<float>::quiet_NaN();
-  msg::BatteryState message;
+  sensor_msgs::BatteryState message;
   message.header.stamp = stamp;
   message.voltage = static_cast<float>(sensors.battery_voltage);
   message.current = static_cast<float>(-sensors.battery_current);
   message.temperature = message.charge = message.capacity = message.design_capacity = message.percentage = kUnmeasured;
-  message.power_supply_status = sensors.battery_current > 0 ? msg::BatteryState::POWER_SUPPLY_STATUS_DISCHARGING
-                                                            : msg::BatteryState::POWER_SUPPLY_STATUS_UNKNOWN;
+  message.power_supply_status = sensors.battery_current > 0 ? sensor_msgs::BatteryState::POWER_SUPPLY_STATUS_DISCHARGING
+                                                            : sensor_msgs::BatteryState::POWER_SUPPLY_STATUS_UNKNOWN;
   message.present = 1;
   return message;
 }
 
-msg::TwistStamped velocity_out(const CommandFrame& command, const std::string& base_frame, ros::Time stamp) {
-  msg::TwistStamped message;
+geometry_msgs::TwistStamped velocity_out(const CommandFrame& command, const std::string& base_frame, ros::Time stamp) {
+  geometry_msgs::TwistStamped message;
   message.header.stamp = stamp;
   message.header.frame_id = base_frame;
   message.twist = twist_message(command.twist_limited);

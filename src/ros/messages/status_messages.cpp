@@ -26,12 +26,6 @@ std::vector<std::string> sentences(std::span<const BitName> table, std::uint64_t
   return texts;
 }
 
-/// Copies texts into a message, whose vector has its own allocator.
-template <class Strings>
-void assign(Strings& to, const std::vector<std::string>& from) {
-  to.assign(from.begin(), from.end());
-}
-
 /// Returns "17.3 rad/s".
 std::string quantity(double value, std::string_view unit) {
   std::array<char, 32> text{};
@@ -68,8 +62,8 @@ std::string detail(const Permit& permit, std::uint64_t cause, const MachineModel
   return ascii(text);
 }
 
-msg::RobotKind robot_kind(const MachineModel& robot, const Programs& programs, bool injects) {
-  msg::RobotKind message;
+RobotKind robot_kind(const MachineModel& robot, const Programs& programs, bool injects) {
+  RobotKind message;
   message.robot = ascii(robot.name);
   message.kind = programs.kind;
   for (const Role role : {Role::kDriver, Role::kEstimator, Role::kController, Role::kMonitor}) {
@@ -86,9 +80,9 @@ msg::RobotKind robot_kind(const MachineModel& robot, const Programs& programs, b
   return message;
 }
 
-msg::SafetyStatus safety_status(const Permit& permit, const MachineModel& robot, const std::vector<std::string>& absent,
-                                const TimeMap& time, std::int64_t period_ns, const Programs& programs) {
-  msg::SafetyStatus message;
+SafetyStatus safety_status(const Permit& permit, const MachineModel& robot, const std::vector<std::string>& absent,
+                           const TimeMap& time, std::int64_t period_ns, const Programs& programs) {
+  SafetyStatus message;
   message.header.stamp = time.at(permit.head.stamp_ns);
   message.state = static_cast<std::uint8_t>(permit.state);
   message.state_name = name_of(permit.state);
@@ -113,21 +107,21 @@ msg::SafetyStatus safety_status(const Permit& permit, const MachineModel& robot,
   message.speed_limit =
       permit.speed_limit < kNoSpeedLimit ? permit.speed_limit : std::numeric_limits<double>::infinity();
   message.first_cause = names_of(kStopCauseNames, permit.first_cause);
-  assign(message.missing, absent);
+  message.missing = absent;
   if (absent.empty() && permit.state == SupervisorState::kInit) {
-    assign(message.missing, sentences(kMissingNodeNames, permit.missing, programs));
+    message.missing = sentences(kMissingNodeNames, permit.missing, programs);
   }
   message.awaiting_zero_request =
       permit.state == SupervisorState::kInit && permit.missing == 0 && permit.unreleased != 0 && absent.empty();
   message.resets = permit.resets_handled;
   message.withdrawals = permit.withdrawals;
-  assign(message.reset_refusal, sentences(kResetRefusalNames, permit.reset_refusal, programs));
+  message.reset_refusal = sentences(kResetRefusalNames, permit.reset_refusal, programs);
   message.run = permit.head.run;
   message.cycle = permit.head.cycle;
   return message;
 }
 
-void warn_of_blind_conditions(const SensorFrame& sensors, msg::SafetyStatus& status) {
+void warn_of_blind_conditions(const SensorFrame& sensors, SafetyStatus& status) {
   const bool blind = std::any_of(
       sensors.joints.begin(), sensors.joints.begin() + std::min<std::size_t>(sensors.joint_count, kMaxJoints),
       [](const JointSample& joint) { return (joint.valid & kValidMotion) == kValidKinematics; });
@@ -138,14 +132,14 @@ void warn_of_blind_conditions(const SensorFrame& sensors, msg::SafetyStatus& sta
       "(the limits of the drives protect motor and gear)");
 }
 
-msg::SafetyStatus waiting_status(const std::vector<std::string>& missing) {
-  msg::SafetyStatus message;
-  message.state = msg::SafetyStatus::INIT;
+SafetyStatus waiting_status(const std::vector<std::string>& missing) {
+  SafetyStatus message;
+  message.state = SafetyStatus::INIT;
   message.state_name = name_of(SupervisorState::kInit);
-  message.permit = msg::SafetyStatus::PERMIT_BRAKE;
+  message.permit = SafetyStatus::PERMIT_BRAKE;
   message.permit_name = name_of(PermitAction::kBrake);
   message.speed_limit = std::numeric_limits<double>::infinity();
-  assign(message.missing, missing);
+  message.missing = missing;
   return message;
 }
 

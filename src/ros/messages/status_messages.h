@@ -1,12 +1,14 @@
 #pragma once
 /// These functions convert permits to words. They are pure.
 
+#include <robot_control/RobotKind.h>
+#include <robot_control/SafetyStatus.h>
+
 #include <cstdint>
 #include <string>
 #include <vector>
 
 #include "machine/machine_model.h"
-#include "ros/messages/messages.h"
 #include "ros/messages/time_map.h"
 #include "signals/permit.h"
 #include "signals/robot_kinds.h"
@@ -16,21 +18,21 @@ namespace robot_control {
 
 /// `absent` are the nodes that do not run now. `period_ns` is the loop's period for the field `since`. `robot` names
 /// the joints, and `programs` those of remedies.
-msg::SafetyStatus safety_status(const Permit& permit, const MachineModel& robot, const std::vector<std::string>& absent,
-                                const TimeMap& time, std::int64_t period_ns, const Programs& programs);
+SafetyStatus safety_status(const Permit& permit, const MachineModel& robot, const std::vector<std::string>& absent,
+                           const TimeMap& time, std::int64_t period_ns, const Programs& programs);
 
 /// Adds the warning `torque_not_measured`, which names the conditions that are blind without a torque, where a drive
 /// measures its motion and no torque.
-void warn_of_blind_conditions(const SensorFrame& sensors, msg::SafetyStatus& status);
+void warn_of_blind_conditions(const SensorFrame& sensors, SafetyStatus& status);
 
 /// Returns what tools need to know of a robot. `injects` says that its machine is simulated and takes faults.
-msg::RobotKind robot_kind(const MachineModel& robot, const Programs& programs, bool injects);
+RobotKind robot_kind(const MachineModel& robot, const Programs& programs, bool injects);
 
 /// Returns the evidence of a cause, "17.3 rad/s, limit 15 rad/s, left_wheel_joint"; "" if nothing was measured.
 std::string detail(const Permit& permit, std::uint64_t cause, const MachineModel& robot);
 
 /// Returns the status before the first permit: the state is INIT, and the monitor waits for these nodes.
-msg::SafetyStatus waiting_status(const std::vector<std::string>& missing);
+SafetyStatus waiting_status(const std::vector<std::string>& missing);
 
 /// Returns whether `now` differs from `last` in more than cycle, stamp and measured values.
 bool differs(const Permit& last, const Permit& now);

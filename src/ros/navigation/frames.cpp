@@ -2,20 +2,30 @@
 
 #include <tf2/exceptions.h>
 
+#include <cmath>
+#include <tuple>
+
+#include "files/ascii.h"
 #include "ros/navigation/navigation_messages.h"
 
 namespace robot_control::navigation {
 
 Frames::Frames(ros::NodeHandle& handle) {
-  const auto subscribe = [&](const char* topic, bool fixed) {
-    const boost::function<void(const tf2_msgs::TFMessage&)> take = [this, fixed](const tf2_msgs::TFMessage& message) {
-      for (const geometry_msgs::TransformStamped& found : message.transforms) buffer_.setTransform(found, "tf", fixed);
-    };
-    return handle.subscribe<tf2_msgs::TFMessage, const tf2_msgs::TFMessage&>(topic, 100, take, nullptr,
-                                                                             ros::TransportHints().tcpNoDelay());
-  };
-  moving_ = subscribe("tf", false);
-  fixed_ = subscribe("tf_static", true);
+  moving_.connect(handle, [this](const tf2_msgs::TFMessage& message) { receive(message, false); });
+  fixed_.connect(handle, [this](const tf2_msgs::TFMessage& message) { receive(message, true); });
+}
+
+void Frames::receive(const tf2_msgs::TFMessage& message, bool fixed) {
+  for (const geometry_msgs::TransformStamped& found : message.transforms) {
+    const auto& [x, y, z] =
+        std::tie(found.transform.translation.x, found.transform.translation.y, found.transform.translation.z);
+    if (std::isfinite(x + y + z + yaw_of(found.transform.rotation))) {
+      buffer_.setTransform(found, "tf", fixed);
+    } else {
+      ROS_WARN_THROTTLE(10, "a transform to %s is refused: it is not finite, or its rotation has not the length 1",
+                        ascii(found.child_frame_id).c_str());
+    }
+  }
 }
 
 std::optional<FoundPose> Frames::lookup(const std::string& target, const std::string& source, ros::Time time,

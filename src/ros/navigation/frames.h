@@ -1,14 +1,13 @@
 #pragma once
 /// Poses in a plane from the topics tf and tf_static of the robot's namespace.
 
-#include <ros/ros.h>
 #include <tf2/buffer_core.h>
-#include <tf2_msgs/TFMessage.h>
 
 #include <optional>
 #include <string>
 
 #include "navigation/grid.h"
+#include "ros/navigation/bounded_inputs.h"
 
 namespace robot_control::navigation {
 
@@ -29,7 +28,10 @@ class Frames {
 
  private:
   tf2::BufferCore buffer_;
-  ros::Subscriber moving_, fixed_;
+  void receive(const tf2_msgs::TFMessage& message, bool fixed);
+
+  InputTopic<BoundedTFMessage> moving_{"tf", 100};
+  InputTopic<BoundedTFMessage> fixed_{"tf_static", 100};
 };
 
 }  // namespace robot_control::navigation

@@ -26,15 +26,12 @@ GoalServers::GoalServers(ros::NodeHandle& handle, std::function<void(const Goal&
   navigate_to_.start();
   move_base_.start();
   simple_ = handle.advertise<move_base_msgs::MoveBaseActionGoal>("move_base/goal", 1);
-  const boost::function<void(const geometry_msgs::PoseStamped&)> forward =
-      [this](const geometry_msgs::PoseStamped& pose) {
-        move_base_msgs::MoveBaseActionGoal goal;
-        goal.header.stamp = ros::Time::now();
-        goal.goal.target_pose = pose;
-        simple_.publish(goal);
-      };
-  simple_goal_ = handle.subscribe<geometry_msgs::PoseStamped, const geometry_msgs::PoseStamped&>(
-      "move_base_simple/goal", 1, forward);
+  simple_goal_.connect(handle, [this](const geometry_msgs::PoseStamped& pose) {
+    move_base_msgs::MoveBaseActionGoal goal;
+    goal.header.stamp = ros::Time::now();
+    goal.goal.target_pose = pose;
+    simple_.publish(goal);
+  });
 }
 
 void GoalServers::accept_navigate_to() {

@@ -10,6 +10,7 @@
 #include <string>
 
 #include "navigation/navigator.h"
+#include "ros/navigation/bounded_inputs.h"
 
 namespace robot_control::navigation {
 
@@ -43,7 +44,7 @@ class GoalServers {
   NavigateTo navigate_to_;
   MoveBase move_base_;
   ros::Publisher simple_;
-  ros::Subscriber simple_goal_;
+  InputTopic<BoundedPoseStamped> simple_goal_{"move_base_simple/goal", 1};
 };
 
 }  // namespace robot_control::navigation

@@ -1,7 +1,6 @@
 #include "ros/navigation/localization_node.h"
 
 #include <geometry_msgs/PoseArray.h>
-#include <geometry_msgs/PoseWithCovarianceStamped.h>
 #include <std_srvs/Empty.h>
 
 #include <algorithm>
@@ -13,8 +12,8 @@
 #include "ros/navigation/map_service.h"
 #include "ros/navigation/map_topics.h"
 #include "ros/navigation/navigation_messages.h"
-#include "ros/navigation/own_parameter.h"
 #include "ros/navigation/scan_input.h"
+#include "ros/nodes/service_node.h"
 
 namespace robot_control::navigation {
 namespace {
@@ -23,25 +22,26 @@ constexpr std::uint32_t kSeed = 1;    // the same scans give the same particles
 constexpr double kCloudPeriod = 1;    // s
 constexpr std::size_t kShown = 2000;  // particles of particlecloud
 
-constexpr const char* kThreeNumbers = "three finite numbers: x, y in m and yaw in rad";
-
-/// Deviations at ~initial_pose: a robot that is set down by hand on a mark.
+/// Deviations at localization.initial_pose: a robot that is set down by hand on a mark.
 const Eigen::Vector3d kByHand(0.2, 0.2, 0.1);  // m, m, rad
 
-class LocalizationNode {
+class LocalizationService {
  public:
-  LocalizationNode() {
-    const auto path = own_parameter<std::string>("map", "", "the path of a YAML file");
-    if (!path.empty()) load(path);
-    const auto pose = own_parameter<std::vector<double>>("initial_pose", {}, kThreeNumbers);
-    if (!pose.empty()) begin_at(pose);
-    initial_ = handle_.subscribe("initialpose", 1, &LocalizationNode::receive_pose, this);
+  explicit LocalizationService(const Parameters& parameters) {
+    const LocalizationParameters& given = parameters.localization;
+    if (!given.map.empty()) load(given.map);
+    if (given.initial_pose) begin_at(*given.initial_pose);
+    initial_.connect(handle_,
+                     [this](const geometry_msgs::PoseWithCovarianceStamped& message) { receive_pose(message); });
     pose_ = handle_.advertise<geometry_msgs::PoseWithCovarianceStamped>("amcl_pose", 2, true);
     cloud_ = handle_.advertise<geometry_msgs::PoseArray>("particlecloud", 1, true);
-    global_ = handle_.advertiseService("global_localization", &LocalizationNode::search, this);
+    global_ = handle_.advertiseService("global_localization", &LocalizationService::search, this);
     timer_ = handle_.createWallTimer(ros::WallDuration(kCloudPeriod),
                                      [this](const ros::WallTimerEvent&) { publish_cloud(); });
   }
+
+  static std::vector<std::string> missing() { return {}; }
+  void diagnose(DiagnosticReport& report) const { topics_.diagnose(report); }
 
  private:
   std::string load(const std::string& path) {
@@ -52,10 +52,8 @@ class LocalizationNode {
            " cells; give a pose (initialpose) or search (global_localization)";
   }
 
-  void begin_at(const std::vector<double>& pose) {
-    if (pose.size() != 3 || !std::isfinite(pose[0] + pose[1] + pose[2]))
-      throw std::invalid_argument(std::string("~initial_pose must be ") + kThreeNumbers);
-    if (!localizer_) throw std::invalid_argument("~initial_pose needs a map: set ~map, too");
+  void begin_at(const NumberList<3>& pose) {
+    if (!localizer_) throw std::invalid_argument("localization.initial_pose needs a map: set localization.map, too");
     localizer_->set_pose({{pose[0], pose[1], pose[2]}, kByHand.cwiseProduct(kByHand).asDiagonal()});
   }
 
@@ -82,7 +80,8 @@ class LocalizationNode {
 
   void receive_odometry(const nav_msgs::Odometry& odometry) {
     const std::string scan = input_.problem();
-    if (!localizer_) return topics_.publish("no pose", "there is no map: set ~map or call load_map", 0, stamp_);
+    if (!localizer_)
+      return topics_.publish("no pose", "there is no map: set localization.map or call load_map", 0, stamp_);
     const bool localized = localizer_->state() == Localization::kLocalized;
     const std::string why = localized ? scan : localizer_->reason();
     topics_.publish(name_of(localizer_->state()), why, localizer_->explained(), stamp_);
@@ -115,7 +114,7 @@ class LocalizationNode {
   ScanInput input_{handle_, [this](const PlacedScan& scan) { use(scan); },
                    [this](const nav_msgs::Odometry& odometry) { receive_odometry(odometry); }};
   ros::ServiceServer load_ = map_service(handle_, "load_map", [this](const std::string& path) { return load(path); });
-  ros::Subscriber initial_;
+  InputTopic<BoundedPoseWithCovarianceStamped> initial_{"initialpose", 1};
   ros::Publisher pose_, cloud_;
   ros::ServiceServer global_;
   ros::WallTimer timer_;
@@ -123,9 +122,8 @@ class LocalizationNode {
 
 }  // namespace
 
-void spin_localization() {
-  LocalizationNode node;
-  ros::spin();
+std::unique_ptr<Node> make_localization(const Setup& setup) {
+  return std::make_unique<ServiceNode<LocalizationService>>(setup);
 }
 
 }  // namespace robot_control::navigation

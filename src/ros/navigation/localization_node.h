@@ -1,13 +1,12 @@
 #pragma once
-/// The node localization finds the robot in a saved map. Topics and services: docs/interfaces.md.
-///
-///   ~map            YAML file of the map; "": it waits for load_map
-///   ~initial_pose   [x, y, yaw] in m and rad, where the robot is at the start; left out: it waits for initialpose or
-///                   global_localization
+/// The node localization finds the robot in a saved map. Topics, actions and services: docs/interfaces.md.
+
+#include <memory>
+
+#include "ros/nodes/node.h"
 
 namespace robot_control::navigation {
 
-/// Makes the node and spins until ROS ends; throws what refuses the start.
-void spin_localization();
+std::unique_ptr<Node> make_localization(const Setup& setup);
 
 }  // namespace robot_control::navigation

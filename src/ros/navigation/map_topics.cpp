@@ -47,6 +47,17 @@ void MapTopics::publish(const std::string& state, const std::string& reason, dou
   state_.publish(last_);
 }
 
+void MapTopics::diagnose(DiagnosticReport& report) const {
+  if (last_.state.empty()) return report.warn("no odom has come: start the robot");
+  if (last_.reason.empty()) {
+    report.ok(last_.state);
+  } else {
+    report.warn(last_.state + ": " + last_.reason);
+  }
+  report.value("state", last_.state);
+  report.value("explained", last_.explained);
+}
+
 bool MapTopics::answer(nav_msgs::GetMap::Request& /*request*/, nav_msgs::GetMap::Response& response) {
   response.map = newest_;
   return !newest_.data.empty();

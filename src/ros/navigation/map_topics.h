@@ -9,6 +9,7 @@
 #include <string>
 
 #include "navigation/grid.h"
+#include "ros/reports/diagnostics.h"
 
 namespace robot_control::navigation {
 
@@ -24,6 +25,9 @@ class MapTopics {
 
   /// Publishes `localization_state`, latched, if it differs from the last one; logs what is new.
   void publish(const std::string& state, const std::string& reason, double explained, ros::Time stamp);
+
+  /// Reports the last state.
+  void diagnose(DiagnosticReport& report) const;
 
  private:
   bool answer(nav_msgs::GetMap::Request& request, nav_msgs::GetMap::Response& response);

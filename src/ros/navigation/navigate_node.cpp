@@ -1,6 +1,5 @@
 #include "ros/navigation/navigate_node.h"
 
-#include <diagnostic_msgs/DiagnosticArray.h>
 #include <nav_msgs/OccupancyGrid.h>
 #include <robot_control/LocalizationState.h>
 #include <ros/ros.h>
@@ -16,9 +15,10 @@
 #include "navigation/text.h"
 #include "ros/navigation/goal_servers.h"
 #include "ros/navigation/navigation_messages.h"
-#include "ros/navigation/own_parameter.h"
 #include "ros/navigation/path_client.h"
 #include "ros/navigation/scan_guard.h"
+#include "ros/nodes/service_node.h"
+#include "ros/reports/diagnostics.h"
 
 namespace robot_control::navigation {
 namespace {
@@ -27,37 +27,51 @@ constexpr double kPeriod = 0.1;      // s
 constexpr double kTfPatience = 0.3;  // s for which a scan waits for tf
 constexpr double kOldPlace = 1.0;    // s; a localisation is as slow as its scans
 
-Footprint read_footprint(ros::NodeHandle& handle) {
+constexpr const char* kDescription = "robot_description";
+constexpr std::uint32_t kMapOverhead = 1024;  // bytes of a message beside its cells
+
+Footprint read_footprint(const ros::NodeHandle& handle) {
   std::string urdf;
-  const std::string name = handle.resolveName("robot_description");
-  for (bool said = false; !handle.getParam("robot_description", urdf); said = true) {
-    if (!said) ROS_INFO("waiting for %s: start the robot", name.c_str());
-    ros::WallDuration(0.2).sleep();
-    if (!ros::ok()) throw std::runtime_error("interrupted while it waited for " + name);
-  }
-  return footprint_of_urdf(urdf, name);
+  handle.getParam(kDescription, urdf);
+  return footprint_of_urdf(urdf, handle.resolveName(kDescription));
 }
 
-class NavigateNode {
+class NavigateService {
  public:
-  NavigateNode()
-      : footprint_(read_footprint(handle_)),
+  explicit NavigateService(const Parameters& parameters)
+      : parameters_(parameters.navigate),
+        footprint_(read_footprint(handle_)),
         guard_(handle_, footprint_),
         path_client_(handle_),
         servers_(
             handle_, [this](const GoalServers::Goal& goal) { begin(goal); }, [this] { cancel("cancelled"); }) {
-    speed_ = own_parameter("speed", 0.5, "a number of m/s");
-    unknown_is_free_ = own_parameter("unknown_is_free", false, "true or false");
-    map_frame_ = own_parameter<std::string>("map_frame", "map", "the name of a frame");
-    if (!(speed_ > 0 && speed_ <= 10)) throw std::runtime_error("~speed must be above 0 and at most 10 m/s");
-    map_ = handle_.subscribe("map", 1, &NavigateNode::receive_map, this);
-    localized_ = handle_.subscribe<LocalizationState>(
-        "localization_state", 1, [this](const LocalizationState::ConstPtr& message) { localization_ = message; });
+    allow_messages_of(kMaxCells + kMapOverhead);
+    map_.connect(handle_, [this](const nav_msgs::OccupancyGrid& message) { receive_map(message); });
+    localized_.connect(handle_, [this](const LocalizationState& message) { localization_ = message; });
     costmap_topic_ = handle_.advertise<nav_msgs::OccupancyGrid>("costmap", 1, true);
-    diagnostics_ = handle_.advertise<diagnostic_msgs::DiagnosticArray>("/diagnostics", 1);
-    clear_ = handle_.advertiseService("clear_costmaps", &NavigateNode::clear, this);
+    clear_ = handle_.advertiseService("clear_costmaps", &NavigateService::clear, this);
     timer_ = handle_.createWallTimer(ros::WallDuration(kPeriod), [this](const ros::WallTimerEvent&) { step(); });
-    seconds_ = handle_.createWallTimer(ros::WallDuration(1), [this](const ros::WallTimerEvent&) { report(); });
+  }
+
+  /// The outline of the robot is that of its description.
+  static std::vector<std::string> missing() {
+    const ros::NodeHandle handle;
+    if (handle.hasParam(kDescription)) return {};
+    return {handle.resolveName(kDescription) + ": start the robot"};
+  }
+
+  void diagnose(DiagnosticReport& report) {
+    const NavigatorState state = navigator_.active() ? output_.state
+                                 : last_.empty()     ? NavigatorState::kIdle
+                                                     : NavigatorState::kFailed;
+    const std::string& reason = navigator_.active() ? output_.reason : last_;
+    if (reason.empty()) {
+      report.ok(name_of(state));
+    } else {
+      report.warn(reason);
+    }
+    report.value("goal", std::string(name_of(state)));
+    publish_costmap();
   }
 
  private:
@@ -70,8 +84,9 @@ class NavigateNode {
     if (problem.empty() && data.size() != std::size_t{info.width} * info.height) {
       problem = "the map has " + std::to_string(data.size()) + " cells, and width x height are others";
     }
-    if (problem.empty() && message.header.frame_id != map_frame_) {
-      problem = "the map is in the frame '" + message.header.frame_id + "', and ~map_frame is '" + map_frame_ + "'";
+    if (problem.empty() && message.header.frame_id != parameters_.map_frame) {
+      problem = "the map is in the frame '" + message.header.frame_id + "', and navigate.map_frame is '" +
+                parameters_.map_frame + "'";
     }
     if (!problem.empty()) {
       ROS_WARN("map is refused: %s", problem.c_str());
@@ -81,7 +96,7 @@ class NavigateNode {
     const int columns = static_cast<int>(info.width), rows = static_cast<int>(info.height);
     costmap_.reset();  // before the new one: two of the largest maps would take 0.8 GB
     costmap_ = std::make_unique<Costmap>(Grid{columns, rows, info.resolution, origin.x, origin.y, data}, footprint_,
-                                         unknown_is_free_);
+                                         parameters_.unknown_is_free);
     consistency_ = MapConsistency();
   }
 
@@ -92,7 +107,7 @@ class NavigateNode {
     }
     if (!waiting_ || !costmap_) return;
     const PlacedScan& seen = waiting_->seen;
-    const auto base = frames_.lookup(map_frame_, guard_.input().base_frame(), seen.stamp, scan_problem_);
+    const auto base = frames_.lookup(parameters_.map_frame, guard_.input().base_frame(), seen.stamp, scan_problem_);
     if (!base) return;
     costmap_->foresee(placed(waiting_->ahead, base->pose));
     consistency_.update(costmap_->insert(seen.scan, composed(base->pose, seen.laser), now()));
@@ -104,16 +119,16 @@ class NavigateNode {
   std::string problem(const ros::Time& time) {
     if (!costmap_) return map_problem_;
     if (const std::string why = guard_.input().problem(); !why.empty()) return why;
-    if (localization_ && localization_->state != "localized") {
-      return "the robot is not localised: " + localization_->state + ": " + localization_->reason;
+    if (!localization_.state.empty() && localization_.state != "localized") {
+      return "the robot is not localised: " + localization_.state + ": " + localization_.reason;
     }
     std::string why;
-    const auto place = frames_.lookup(map_frame_, guard_.input().base_frame(), ros::Time(), why);
+    const auto place = frames_.lookup(parameters_.map_frame, guard_.input().base_frame(), ros::Time(), why);
     if (!place) return "the robot is not localised: " + why;
     pose_ = place->pose;
     const double age = time.toSec() - place->stamp;
     if (place->stamp > 0 && age > kOldPlace)
-      return text("the robot is not localised: tf from %s is %.1f s old", map_frame_.c_str(), age);
+      return text("the robot is not localised: tf from %s is %.1f s old", parameters_.map_frame.c_str(), age);
     if ((time - seen_at_).toSec() > kOldPlace)
       return "tf does not give the place of the scans in the map: " + scan_problem_;
     if (!consistency_.problem().empty()) return consistency_.problem();
@@ -127,10 +142,12 @@ class NavigateNode {
     std::string why, frame = goal.target.header.frame_id;
     if (!frame.empty() && frame[0] == '/') frame.erase(0, 1);
     if (!std::isfinite(target.yaw)) return refuse("the goal's orientation is no quaternion of length 1");
+    if (!(std::hypot(target.x, target.y) <= kFarthest)) return refuse("the goal is not finite, or beyond 1000 km");
     if (!(goal.speed >= 0 && goal.speed <= 10)) return refuse("the goal's speed must be from 0 to 10 m/s");
-    if (frame.empty()) return refuse("the goal has no frame: set header.frame_id, for instance to " + map_frame_);
-    if (frame != map_frame_) {
-      const auto found = frames_.lookup(map_frame_, frame, ros::Time(), why);
+    if (frame.empty())
+      return refuse("the goal has no frame: set header.frame_id, for instance to " + parameters_.map_frame);
+    if (frame != parameters_.map_frame) {
+      const auto found = frames_.lookup(parameters_.map_frame, frame, ros::Time(), why);
       if (!found) return refuse("tf does not connect the goal's frame with the map's: " + why);
       target = composed(found->pose, target);
     }
@@ -161,30 +178,16 @@ class NavigateNode {
                                 costmap_.get());
       if (output_.cancel) path_client_.cancel();
       if (output_.path)
-        path_client_.send(*output_.path, map_frame_, goal_speed_ > 0 ? goal_speed_ : speed_, requested_);
+        path_client_.send(*output_.path, parameters_.map_frame, goal_speed_ > 0 ? goal_speed_ : parameters_.speed,
+                          requested_);
       if (output_.state == NavigatorState::kReached) conclude(true, false, "reached");
       if (output_.state == NavigatorState::kFailed) conclude(false, false, output_.reason);
-      servers_.feedback(output_, pose_, map_frame_);
+      servers_.feedback(output_, pose_, parameters_.map_frame);
     }
     guard_.guard(navigator_.active(), path_client_.intended(pose_));
   }
 
-  /// Publishes costmap and diagnostics, at 1 Hz.
-  void report() {
-    diagnostic_msgs::DiagnosticArray array;
-    array.header.stamp = ros::Time::now();
-    array.status.resize(1);
-    auto& status = array.status[0];
-    status.name = ros::this_node::getName().substr(1);
-    const std::string& reason = navigator_.active() ? output_.reason : last_;
-    status.level = reason.empty() ? diagnostic_msgs::DiagnosticStatus::OK : diagnostic_msgs::DiagnosticStatus::WARN;
-    status.message = reason.empty() ? name_of(navigator_.active() ? output_.state : NavigatorState::kIdle) : reason;
-    status.values.resize(1);
-    status.values[0].key = "goal";
-    status.values[0].value = name_of(navigator_.active() ? output_.state
-                                     : last_.empty()     ? NavigatorState::kIdle
-                                                         : NavigatorState::kFailed);
-    diagnostics_.publish(array);
+  void publish_costmap() {
     if (!costmap_ || costmap_topic_.getNumSubscribers() == 0) return;
     costmap_->update(now());
     Grid grid = costmap_->grid();
@@ -197,7 +200,7 @@ class NavigateNode {
                                                 : 99;
       }
     }
-    costmap_topic_.publish(grid_message(grid, map_frame_));
+    costmap_topic_.publish(grid_message(grid, parameters_.map_frame));
   }
 
   bool clear(std_srvs::Empty::Request& /*request*/, std_srvs::Empty::Response& /*response*/) {
@@ -206,6 +209,7 @@ class NavigateNode {
   }
 
   ros::NodeHandle handle_;
+  const NavigateParameters parameters_;
   const Footprint footprint_;
   ScanGuard guard_;
   const Frames& frames_ = guard_.input().frames();
@@ -213,15 +217,15 @@ class NavigateNode {
   Navigator navigator_;
   std::unique_ptr<Costmap> costmap_;
   GoalServers servers_;
-  ros::Subscriber map_, localized_;
-  LocalizationState::ConstPtr localization_;
-  ros::Publisher costmap_topic_, diagnostics_;
+  InputTopic<BoundedOccupancyGrid> map_{"map", 1};
+  InputTopic<BoundedLocalizationState> localized_{"localization_state", 1};
+  LocalizationState localization_;  // the newest
+  ros::Publisher costmap_topic_;
   ros::ServiceServer clear_;
-  ros::WallTimer timer_, seconds_;
+  ros::WallTimer timer_;
 
-  double speed_ = 0.5, goal_speed_ = 0;  // m/s
-  bool unknown_is_free_ = false;
-  std::string map_frame_, map_problem_ = "no map has come: start slam, or localization with a saved map";
+  double goal_speed_ = 0;  // m/s
+  std::string map_problem_ = "no map has come: start slam, or localization with a saved map";
   std::optional<GuardedScan> waiting_;  // for tf
   ros::Time seen_at_, requested_;
   std::string scan_problem_, last_;
@@ -232,9 +236,8 @@ class NavigateNode {
 
 }  // namespace
 
-void spin_navigate() {
-  NavigateNode node;
-  ros::spin();
+std::unique_ptr<Node> make_navigate(const Setup& setup) {
+  return std::make_unique<ServiceNode<NavigateService>>(setup);
 }
 
 }  // namespace robot_control::navigation

@@ -1,9 +1,12 @@
 #pragma once
-/// The node navigate: actions navigate_to and move_base, topic move_base_simple/goal.
+/// The node navigate plans a way to a goal and watches it. Topics, actions and services: docs/interfaces.md.
+
+#include <memory>
+
+#include "ros/nodes/node.h"
 
 namespace robot_control::navigation {
 
-/// Makes the node and spins until ROS ends; throws what refuses the start.
-void spin_navigate();
+std::unique_ptr<Node> make_navigate(const Setup& setup);
 
 }  // namespace robot_control::navigation

@@ -13,9 +13,9 @@ namespace robot_control::navigation {
 
 PathClient::PathClient(ros::NodeHandle& handle)
     : goal_(handle.advertise<FollowPathActionGoal>("follow_path/goal", 10)),
-      cancel_(handle.advertise<actionlib_msgs::GoalID>("follow_path/cancel", 10, true)),
-      feedback_(handle.subscribe("follow_path/feedback", 10, &PathClient::receive_feedback, this)),
-      result_(handle.subscribe("follow_path/result", 10, &PathClient::receive_result, this)) {
+      cancel_(handle.advertise<actionlib_msgs::GoalID>("follow_path/cancel", 10, true)) {
+  feedback_.connect(handle, [this](const FollowPathActionFeedback& message) { receive_feedback(message); });
+  result_.connect(handle, [this](const FollowPathActionResult& message) { receive_result(message); });
   actionlib_msgs::GoalID before_now;
   before_now.stamp = ros::Time::now();
   cancel_.publish(before_now);

@@ -4,14 +4,11 @@
 /// Each goal bears the time at which the place was requested, not that of its planning. follow_path therefore refuses
 /// what a stop has revoked since.
 
-#include <robot_control/FollowPathActionFeedback.h>
-#include <robot_control/FollowPathActionResult.h>
-#include <ros/ros.h>
-
 #include <string>
 
 #include "navigation/guard.h"
 #include "navigation/navigator.h"
+#include "ros/navigation/bounded_inputs.h"
 
 namespace robot_control::navigation {
 
@@ -39,7 +36,8 @@ class PathClient {
   void receive_result(const FollowPathActionResult& message);
 
   ros::Publisher goal_, cancel_;
-  ros::Subscriber feedback_, result_;
+  InputTopic<BoundedFollowPathActionFeedback> feedback_{"follow_path/feedback", 10};
+  InputTopic<BoundedFollowPathActionResult> result_{"follow_path/result", 10};
   std::string id_, reason_;
   PathReport report_;
   std::vector<PlanarPose> poses_;

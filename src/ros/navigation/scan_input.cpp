@@ -11,8 +11,10 @@ namespace robot_control::navigation {
 ScanInput::ScanInput(ros::NodeHandle& handle, std::function<void(const PlacedScan&)> use,
                      std::function<void(const nav_msgs::Odometry&)> odometry)
     : frames_(handle), use_(std::move(use)), heard_(std::move(odometry)) {
-  scan_ = handle.subscribe("scan", 2, &ScanInput::receive, this, ros::TransportHints().tcpNoDelay());
-  odom_ = handle.subscribe("odom", 50, &ScanInput::receive_odometry, this, ros::TransportHints().tcpNoDelay());
+  scan_.connect_with_sender(handle, [this](const sensor_msgs::LaserScan& message, const Publisher& publisher) {
+    receive(message, publisher.name);
+  });
+  odom_.connect(handle, [this](const nav_msgs::Odometry& message) { receive_odometry(message); });
 }
 
 std::string ScanInput::problem() const {
@@ -27,11 +29,10 @@ std::string ScanInput::base_frame() const {
   return odometry_.child_frame_id;
 }
 
-void ScanInput::receive(const ros::MessageEvent<const sensor_msgs::LaserScan>& event) {
+void ScanInput::receive(const sensor_msgs::LaserScan& message, const std::string& publisher) {
   const std::lock_guard lock(mutex_);
-  const sensor_msgs::LaserScan::ConstPtr message = event.getConstMessage();
-  const std::string refused = watch_.receive(scan_of(*message), event.getPublisherName(), message->header.stamp.toSec(),
-                                             ros::Time::now().toSec(), moved_);
+  const std::string refused =
+      watch_.receive(scan_of(message), publisher, message.header.stamp.toSec(), ros::Time::now().toSec(), moved_);
   if (!refused.empty()) {
     ROS_WARN_THROTTLE(10, "%s", refused.c_str());
     return;
@@ -70,7 +71,7 @@ void ScanInput::use_pending() {
   if (!laser) place_problem_ = "tf does not give the place of the laser on the robot: " + why;
   if (laser && !base) place_problem_ = "tf does not give the place of the robot at the stamp of the scan: " + why;
   if (!laser || !base) return;  // tf may come later than odom
-  Scan scan = scan_of(*std::exchange(pending_, nullptr));
+  Scan scan = scan_of(*std::exchange(pending_, std::nullopt));
   if (laser->upside_down) scan.angle_min *= -1, scan.angle_increment *= -1, scan.angle_max *= -1;
   const double now = ros::Time::now().toSec();
   if (!watch_.problem(now).empty()) return;

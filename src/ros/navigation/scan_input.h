@@ -5,12 +5,9 @@
 /// A scan waits for a message of `odom` that is not older. One is not used that ScanWatch refuses or does not count,
 /// or whose place is not in tf; `problem` says why after kSilence without a scan that is used.
 
-#include <nav_msgs/Odometry.h>
-#include <ros/ros.h>
-#include <sensor_msgs/LaserScan.h>
-
 #include <functional>
 #include <mutex>
+#include <optional>
 #include <string>
 
 #include "navigation/mrpt/localizer.h"
@@ -43,7 +40,7 @@ class ScanInput {
   const Frames& frames() const noexcept { return frames_; }
 
  private:
-  void receive(const ros::MessageEvent<const sensor_msgs::LaserScan>& event);
+  void receive(const sensor_msgs::LaserScan& message, const std::string& publisher);
   void receive_odometry(const nav_msgs::Odometry& message);
   void use_pending();
 
@@ -53,11 +50,12 @@ class ScanInput {
 
   mutable std::mutex mutex_;  // of all below
   ScanWatch watch_;
-  sensor_msgs::LaserScan::ConstPtr pending_;
+  std::optional<sensor_msgs::LaserScan> pending_;
   nav_msgs::Odometry odometry_;  // the newest
   std::string place_problem_ = "no odom has come: start the robot";
   double moved_ = 0, used_at_ = -1e9;  // m + rad; s
-  ros::Subscriber scan_, odom_;
+  InputTopic<BoundedLaserScan> scan_{"scan", 2};
+  InputTopic<BoundedOdometry> odom_{"odom", 50};
 };
 
 }  // namespace robot_control::navigation

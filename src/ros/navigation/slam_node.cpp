@@ -1,7 +1,5 @@
 #include "ros/navigation/slam_node.h"
 
-#include <geometry_msgs/PoseWithCovarianceStamped.h>
-
 #include <optional>
 
 #include "navigation/map_file.h"
@@ -9,23 +7,26 @@
 #include "ros/navigation/map_service.h"
 #include "ros/navigation/map_topics.h"
 #include "ros/navigation/navigation_messages.h"
-#include "ros/navigation/own_parameter.h"
 #include "ros/navigation/scan_input.h"
+#include "ros/nodes/service_node.h"
 
 namespace robot_control::navigation {
 namespace {
 
 constexpr double kMapPeriod = 2;  // s between two messages of a map that grows
 
-class SlamNode {
+class SlamService {
  public:
-  SlamNode() {
-    const auto path = own_parameter<std::string>("map", "", "the path of a YAML file");
-    if (!path.empty()) load(path);
-    initial_ = handle_.subscribe("initialpose", 1, &SlamNode::receive_pose, this);
+  explicit SlamService(const Parameters& parameters) {
+    if (!parameters.slam.map.empty()) load(parameters.slam.map);
+    initial_.connect(handle_,
+                     [this](const geometry_msgs::PoseWithCovarianceStamped& message) { receive_pose(message); });
     timer_ =
         handle_.createWallTimer(ros::WallDuration(kMapPeriod), [this](const ros::WallTimerEvent&) { publish_map(); });
   }
+
+  static std::vector<std::string> missing() { return {}; }
+  void diagnose(DiagnosticReport& report) const { topics_.diagnose(report); }
 
  private:
   void use(const PlacedScan& scan) {
@@ -82,15 +83,14 @@ class SlamNode {
                    [this](const nav_msgs::Odometry& odometry) { receive_odometry(odometry); }};
   ros::ServiceServer save_ = map_service(handle_, "save_map", [this](const std::string& path) { return save(path); });
   ros::ServiceServer load_ = map_service(handle_, "load_map", [this](const std::string& path) { return load(path); });
-  ros::Subscriber initial_;
+  InputTopic<BoundedPoseWithCovarianceStamped> initial_{"initialpose", 1};
   ros::WallTimer timer_;
 };
 
 }  // namespace
 
-void spin_slam() {
-  SlamNode node;
-  ros::spin();
+std::unique_ptr<Node> make_slam(const Setup& setup) {
+  return std::make_unique<ServiceNode<SlamService>>(setup);
 }
 
 }  // namespace robot_control::navigation

@@ -53,6 +53,7 @@ constexpr const char* kExecuteMethod =
     "11XmlRpcValueESA_";
 
 std::atomic<std::uint64_t> overlong{0};
+std::atomic<std::uint32_t> longest{kMaxMessage};
 
 /// Returns whether the XML-RPC server of this process accepted the socket, so that a request comes over it.
 bool is_request(int socket) {
@@ -134,6 +135,14 @@ std::string unguarded() {
          "stranger's process reach its ports (docs/safety.md)";
 }
 
+std::uint32_t max_message() noexcept {
+  return longest.load();
+}
+
+void allow_messages_of(std::uint32_t bytes) noexcept {
+  longest.store(bytes);
+}
+
 std::uint64_t overlong_announcements() noexcept {
   return overlong.load();
 }
@@ -154,7 +163,7 @@ void Connection::read(std::uint32_t size, const ReadFinishedFunc& callback) {
   using namespace robot_control;
   static const auto original_read = original<decltype(&Connection::read)>(kRead);
   const bool before_header = header_.getValues()->empty();
-  if (size > (before_header ? kMaxHeader : kMaxMessage)) {
+  if (size > (before_header ? kMaxHeader : max_message())) {
     overlong.fetch_add(1);
     return drop(TransportDisconnect);
   }

@@ -7,7 +7,7 @@
 ///   ros::Header::parse           the original reads beyond the header if a field names a length that exceeds it:
 ///                                28 bytes to any port end the process. Here such a header is refused
 ///   ros::Connection::read        allocates as much as a peer announces, up to 1 GB. Here a header of more than
-///                                kMaxHeader or a message of more than kMaxMessage closes the connection
+///                                kMaxHeader or a message of more than max_message() closes the connection
 ///   ros::TransportUDP::createOutgoing   divides by the datagram size that a subscriber names, less 8. Here sizes that
 ///                                IPv4 does not have become the default
 ///   ros::console::get_loggers    the service ~get_loggers. Debian's version, with log4cxx 1.0, frees the loggers, so
@@ -35,6 +35,10 @@ inline constexpr int kMaxValueDepth = 64;            ///< levels of nested array
 
 /// Returns a warning that names the guards that the loaded roscpp does not use, with the remedy; "" if it uses all.
 std::string unguarded();
+
+/// Returns the longest message that this process takes: kMaxMessage, until a longer one is allowed.
+std::uint32_t max_message() noexcept;
+void allow_messages_of(std::uint32_t bytes) noexcept;
 
 /// Returns how many connections were closed so far because they announced too much. Any thread may call it.
 std::uint64_t overlong_announcements() noexcept;

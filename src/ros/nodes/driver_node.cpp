@@ -1,12 +1,17 @@
 #include "ros/nodes/driver_node.h"
 
+#include <robot_control/InjectFault.h>
+#include <robot_control/Step.h>
 #include <ros/ros.h>
+#include <rosgraph_msgs/Clock.h>
+#include <std_srvs/SetBool.h>
+#include <std_srvs/Trigger.h>
 
 #include "drivers/external_imu.h"
 #include "files/ascii.h"
 #include "loop/processes/driver_process.h"
 #include "ros/messages/motion_messages.h"
-#include "ros/messages/simulation_messages.h"
+#include "ros/messages/service_answer.h"
 #include "ros/messages/status_messages.h"
 #include "ros/nodes/process_node.h"
 #include "ros/reports/diagnostics.h"
@@ -36,16 +41,17 @@ class DriverNode final : public ProcessNode<DriverProcess> {
 
   void connect(ros::NodeHandle& handle) override {
     log_robot();
-    kind_ = handle.advertise<msg::RobotKind>("robot_kind", 1, true);
+    kind_ = handle.advertise<RobotKind>("robot_kind", 1, true);
     kind_.publish(robot_kind(robot(), programs(), process().services() != nullptr));
-    imu_ = handle.advertise<msg::Imu>("imu/data_raw", 10);
-    truth_ = handle.advertise<msg::Odometry>("ground_truth/odom", 10);
-    if (parameters().loop.clock == ClockMode::kLockstep) clock_ = handle.advertise<msg::Clock>("/clock", 1);
+    imu_ = handle.advertise<sensor_msgs::Imu>("imu/data_raw", 10);
+    truth_ = handle.advertise<nav_msgs::Odometry>("ground_truth/odom", 10);
+    if (parameters().loop.clock == ClockMode::kLockstep) clock_ = handle.advertise<rosgraph_msgs::Clock>("/clock", 1);
     if (imu_inbox_) {
       imu_input_ =
           handle.subscribe("imu/input", 10, &DriverNode::receive_imu, this, ros::TransportHints().tcpNoDelay());
     }
-    if (simulator_ != nullptr && simulator_->scan_cycles() != 0) scan_ = handle.advertise<msg::LaserScan>("scan", 5);
+    if (simulator_ != nullptr && simulator_->scan_cycles() != 0)
+      scan_ = handle.advertise<sensor_msgs::LaserScan>("scan", 5);
     if (process().services() == nullptr) return;  // a real machine is neither paused nor reset
     ros::NodeHandle own("~");
     set_pause_ = own.advertiseService("set_pause", &DriverNode::set_pause, this);
@@ -105,7 +111,7 @@ class DriverNode final : public ProcessNode<DriverProcess> {
     return std::make_unique<ExternalImu>(std::move(driver), std::move(inbox), &monotonic_ns, imu_inbox_ != nullptr);
   }
 
-  void receive_imu(const msg::Imu& message) {
+  void receive_imu(const sensor_msgs::Imu& message) {
     if (message.header.frame_id != imu_frame(robot())) {
       ROS_WARN_THROTTLE(10,
                         "imu/input is refused: it measures in the frame '%s', and the IMU of this robot in '%s' "
@@ -152,31 +158,29 @@ class DriverNode final : public ProcessNode<DriverProcess> {
   }
 
   template <class Response>
-  static bool answer(const ServiceAnswer& given, Response& response) {
-    response.success = given.success ? 1 : 0;
-    response.message = ascii(given.message);
+  static bool log_and_answer(const ServiceAnswer& given, Response& response) {
     if (given.success) {
       ROS_INFO("%s", given.message.c_str());
     } else {
       ROS_WARN("%s", given.message.c_str());
     }
-    return true;
+    return answer(response, given.success, given.message);
   }
 
-  bool set_pause(msg::SetBoolRequest& request, msg::SetBoolResponse& response) {
-    return answer(process().services()->set_pause(request.data != 0), response);
+  bool set_pause(std_srvs::SetBool::Request& request, std_srvs::SetBool::Response& response) {
+    return log_and_answer(process().services()->set_pause(request.data != 0), response);
   }
 
-  bool step(msg::StepRequest& request, msg::StepResponse& response) {
-    return answer(process().services()->step(request.cycles), response);
+  bool step(Step::Request& request, Step::Response& response) {
+    return log_and_answer(process().services()->step(request.cycles), response);
   }
 
-  bool reset(msg::TriggerRequest& /*request*/, msg::TriggerResponse& response) {
-    return answer(process().services()->reset(), response);
+  bool reset(std_srvs::Trigger::Request& /*request*/, std_srvs::Trigger::Response& response) {
+    return log_and_answer(process().services()->reset(), response);
   }
 
-  bool inject_fault(msg::InjectFaultRequest& request, msg::InjectFaultResponse& response) {
-    return answer(process().services()->inject_fault(request.component, request.kind), response);
+  bool inject_fault(InjectFault::Request& request, InjectFault::Response& response) {
+    return log_and_answer(process().services()->inject_fault(request.component, request.kind), response);
   }
 
   /// Casts the rays here, from copies of the true state.
@@ -189,7 +193,7 @@ class DriverNode final : public ProcessNode<DriverProcess> {
   }
 
   void publish_clock() {
-    msg::Clock message;
+    rosgraph_msgs::Clock message;
     message.clock = time().at(sensors_.head.stamp_ns);
     clock_.publish(message);
   }

@@ -1,15 +1,17 @@
 #include "ros/nodes/estimator_node.h"
 
+#include <robot_control/SetOdometry.h>
 #include <ros/ros.h>
+#include <std_srvs/Trigger.h>
+#include <tf2_msgs/TFMessage.h>
 
 #include <mutex>
 #include <utility>
 
-#include "files/ascii.h"
 #include "loop/processes/estimator_process.h"
 #include "ros/inputs/odometry_request.h"
 #include "ros/messages/motion_messages.h"
-#include "ros/messages/odometry_messages.h"
+#include "ros/messages/service_answer.h"
 #include "ros/nodes/process_node.h"
 #include "ros/reports/diagnostics.h"
 #include "ros/reports/pacer.h"
@@ -28,12 +30,12 @@ class EstimatorNode final : public ProcessNode<EstimatorProcess> {
         imu_pace_(report().imu_data_rate) {}
 
   void connect(ros::NodeHandle& handle) override {
-    joint_states_ = handle.advertise<msg::JointState>("joint_states", 10);
-    odom_ = handle.advertise<msg::Odometry>("odom", 10);
-    imu_ = handle.advertise<msg::Imu>("imu/data", 10);
-    battery_ = handle.advertise<msg::BatteryState>("battery_state", 1);
+    joint_states_ = handle.advertise<sensor_msgs::JointState>("joint_states", 10);
+    odom_ = handle.advertise<nav_msgs::Odometry>("odom", 10);
+    imu_ = handle.advertise<sensor_msgs::Imu>("imu/data", 10);
+    battery_ = handle.advertise<sensor_msgs::BatteryState>("battery_state", 1);
     // The name is relative, so that the frames of two robots in two namespaces do not mix.
-    if (report().publish_tf) tf_ = handle.advertise<msg::TFMessage>("tf", 100);
+    if (report().publish_tf) tf_ = handle.advertise<tf2_msgs::TFMessage>("tf", 100);
     reset_ = handle.advertiseService("reset_odometry", &EstimatorNode::reset_odometry, this);
     set_ = handle.advertiseService("set_odometry", &EstimatorNode::set_odometry, this);
     if (outputs_) outputs_->connect(handle);
@@ -76,12 +78,12 @@ class EstimatorNode final : public ProcessNode<EstimatorProcess> {
  private:
   void publish_odometry() {
     const ros::Time stamp = time().at(state_.head.stamp_ns);
-    msg::Odometry message = odometry(state_, report().odom_frame, report().base_frame, stamp);
+    nav_msgs::Odometry message = odometry(state_, report().odom_frame, report().base_frame, stamp);
     state_covariances(report(), message);
     odom_.publish(message);
     if (outputs_) outputs_->publish(state_, stamp);
     if (!tf_) return;
-    msg::TFMessage transforms;
+    tf2_msgs::TFMessage transforms;
     transforms.transforms.push_back(transform(message));
     tf_.publish(transforms);
   }
@@ -104,20 +106,16 @@ class EstimatorNode final : public ProcessNode<EstimatorProcess> {
     return "";
   }
 
-  bool reset_odometry(msg::TriggerRequest& /*request*/, msg::TriggerResponse& response) {
+  bool reset_odometry(std_srvs::Trigger::Request& /*request*/, std_srvs::Trigger::Response& response) {
     const std::string refusal = request_pose({0, 0, 0});
-    response.success = refusal.empty();
-    response.message = ascii(refusal.empty() ? "the pose is zero from the next cycle on" : refusal);
-    return true;
+    return answer(response, refusal.empty(), refusal.empty() ? "the pose is zero from the next cycle on" : refusal);
   }
 
-  bool set_odometry(msg::SetOdometryRequest& request, msg::SetOdometryResponse& response) {
+  bool set_odometry(SetOdometry::Request& request, SetOdometry::Response& response) {
     const Vector3 requested{request.x, request.y, request.yaw};
     const std::string problem = odometry_problem(requested);
     const std::string refusal = problem.empty() ? request_pose(normalised(requested)) : "not done: " + problem;
-    response.success = refusal.empty();
-    response.message = ascii(refusal.empty() ? taken_sentence(normalised(requested)) : refusal);
-    return true;
+    return answer(response, refusal.empty(), refusal.empty() ? taken_sentence(normalised(requested)) : refusal);
   }
 
   std::unique_ptr<EstimatorOutputs> outputs_;

@@ -1,6 +1,7 @@
 #include "ros/nodes/monitor_node.h"
 
 #include <ros/ros.h>
+#include <std_srvs/Trigger.h>
 
 #include <mutex>
 
@@ -10,7 +11,7 @@
 #include "ros/inputs/clearance_stream.h"
 #include "ros/inputs/e_stop_levels.h"
 #include "ros/inputs/input_topic.h"
-#include "ros/messages/messages.h"
+#include "ros/messages/service_answer.h"
 #include "ros/messages/status_messages.h"
 #include "ros/network/graph.h"
 #include "ros/nodes/process_node.h"
@@ -36,16 +37,18 @@ class MonitorNode final : public ProcessNode<MonitorProcess> {
 
   void connect(ros::NodeHandle& handle) override {
     for (const std::string& topic : command_topics()) command_topics_.push_back(handle.resolveName(topic));
-    status_ = handle.advertise<msg::SafetyStatus>("safety_status", 10, true);
+    status_ = handle.advertise<SafetyStatus>("safety_status", 10, true);
     e_stop_topic_ = handle.resolveName("e_stop");
     if (process().e_stop_restored()) hold_e_stop();
     // A malformed message stops the robot, too: its sender may have meant a stop.
     e_stop_.connect_with_sender(
         handle,
-        [this](const msg::Bool& message, const Publisher& sender) { receive_e_stop(sender.name, message.data != 0); },
+        [this](const std_msgs::Bool& message, const Publisher& sender) {
+          receive_e_stop(sender.name, message.data != 0);
+        },
         [this](const std::string& sender) { receive_e_stop(sender, true); });
-    heartbeat_.connect(handle, [this](const msg::Empty&) { add(&OperatorInput::heartbeats); });
-    clearance_.connect(handle, [this](const msg::Float64& message) { receive_clearance(message.data); });
+    heartbeat_.connect(handle, [this](const std_msgs::Empty&) { add(&OperatorInput::heartbeats); });
+    clearance_.connect(handle, [this](const std_msgs::Float64& message) { receive_clearance(message.data); });
     trigger_ = handle.advertiseService("e_stop_trigger", &MonitorNode::trigger, this);
     reset_ = handle.advertiseService("e_stop_reset", &MonitorNode::reset, this);
     if (!process().restored().empty()) ROS_WARN("%s", process().restored().c_str());
@@ -67,7 +70,7 @@ class MonitorNode final : public ProcessNode<MonitorProcess> {
     SensorFrame sensors;
     const bool measured = live(sensors);
     if (measured) time().follow(sensors);
-    msg::SafetyStatus status =
+    SafetyStatus status =
         found ? safety_status(permit, robot(), absent, time(), parameters().loop.period_ns(), programs())
               : waiting_status(absent);
     if (const auto last_ns = withdrawal_.last_ns()) {
@@ -111,7 +114,7 @@ class MonitorNode final : public ProcessNode<MonitorProcess> {
     return topics;
   }
 
-  void note_latch_file(msg::SafetyStatus& status) {
+  void note_latch_file(SafetyStatus& status) {
     const std::string& problem = process().latch_file_problem();
     if (problem.empty()) return;
     status.warnings.emplace_back("latch_file");
@@ -180,28 +183,22 @@ class MonitorNode final : public ProcessNode<MonitorProcess> {
     ROS_WARN("clearance has fallen silent, the robot stands: start its sender again, or publish inf on clearance");
   }
 
-  bool trigger(msg::TriggerRequest& /*request*/, msg::TriggerResponse& response) {
+  bool trigger(std_srvs::Trigger::Request& /*request*/, std_srvs::Trigger::Response& response) {
     add(&OperatorInput::e_stop_services);
     Permit permit;
     for (const std::int64_t end = monotonic_ns() + kTriggerWait; monotonic_ns() < end; sleep_ns(kResetLook)) {
       if (!seen(permit) || (permit.causes & kCauseEmergencyStopService) == 0) continue;
-      response.success = 1;
-      response.message = "stopped; e_stop_reset releases";
-      return true;
+      return answer(response, true, "stopped; e_stop_reset releases");
     }
-    response.success = 0;
-    response.message = "the stop is not confirmed: the monitor's loop has not latched it yet; use the hardware e-stop";
-    for (const std::string& name : missing()) response.message += "; waiting for " + ascii(name);
-    return true;
+    return answer(
+        response, false,
+        "the stop is not confirmed: the monitor's loop has not latched it yet; use the hardware e-stop" + waiting());
   }
 
-  bool reset(msg::TriggerRequest& /*request*/, msg::TriggerResponse& response) {
+  bool reset(std_srvs::Trigger::Request& /*request*/, std_srvs::Trigger::Response& response) {
     const std::unique_lock one_at_a_time(reset_mutex_, std::try_to_lock);
-    if (!one_at_a_time) {  // waiting here would leave no thread to receive e_stop
-      response.success = 0;
-      response.message = "another reset is being answered: ask again";
-      return true;
-    }
+    // Waiting here would leave no thread to receive e_stop.
+    if (!one_at_a_time) return answer(response, false, "another reset is being answered: ask again");
     settle_e_stop();
     Permit permit;
     Permit before;
@@ -213,15 +210,17 @@ class MonitorNode final : public ProcessNode<MonitorProcess> {
         before = permit;
         continue;
       }
-      response.success = permit.reset_refusal == 0;
-      response.message = ascii(reset_text(
-          before, permit, {.commands = publishers_of(command_topics_), .e_stop = e_stop_publishers()}, programs()));
-      return true;
+      const Publishers publishers{.commands = publishers_of(command_topics_), .e_stop = e_stop_publishers()};
+      return answer(response, permit.reset_refusal == 0, reset_text(before, permit, publishers, programs()));
     }
-    response.success = 0;
-    response.message = "not handled within 1 s: the monitor sees no sensor frames";
-    for (const std::string& name : missing()) response.message += ascii("; waiting for " + name);
-    return true;
+    return answer(response, false, "not handled within 1 s: the monitor sees no sensor frames" + waiting());
+  }
+
+  /// Returns "; waiting for …" for each missing node.
+  std::string waiting() const {
+    std::string text;
+    for (const std::string& name : missing()) text += "; waiting for " + name;
+    return text;
   }
 
   std::vector<std::string> command_topics_;

@@ -1,5 +1,6 @@
 #include "ros/nodes/node.h"
 
+#include <diagnostic_msgs/DiagnosticArray.h>
 #include <ros/master.h>
 #include <ros/ros.h>
 
@@ -12,7 +13,6 @@
 #include <filesystem>
 
 #include "bus/bus_cleanup.h"
-#include "ros/messages/messages.h"
 #include "ros/network/accepted_sockets.h"
 #include "ros/network/loopback.h"
 #include "ros/network/wire_guard.h"
@@ -100,7 +100,7 @@ class ConnectionNote {
       ROS_WARN(
           "%llu connections were closed that announced a header of more than %u or a message of more than %u "
           "bytes: this node takes none as long; look which program sends them: ss -tnp",
-          static_cast<unsigned long long>(refused - overlong_), kMaxHeader, kMaxMessage);
+          static_cast<unsigned long long>(refused - overlong_), kMaxHeader, max_message());
     }
     evicted_ = evicted;
     overlong_ = refused;
@@ -124,7 +124,9 @@ void await_interrupt() {
 class NodeLoop {
  public:
   NodeLoop(Node& node, const Setup& setup, ros::NodeHandle& handle)
-      : node_(node), setup_(setup), diagnostics_(handle.advertise<msg::DiagnosticArray>("/diagnostics", 2)) {}
+      : node_(node),
+        setup_(setup),
+        diagnostics_(handle.advertise<diagnostic_msgs::DiagnosticArray>("/diagnostics", 2)) {}
 
   void run() {
     while (ros::ok() && !interrupted.load() && !node_.finished()) {
@@ -154,11 +156,11 @@ class NodeLoop {
 
   void diagnose(std::int64_t now_ns) {
     next_diagnostic_ns_ = now_ns + kDiagnosticPeriod;
-    DiagnosticReport report(ros::this_node::getName().substr(1), setup_.machine->name);
+    DiagnosticReport report(ros::this_node::getName().substr(1), setup_.machine ? setup_.machine->name : "");
     report_missing(report, node_.missing());
     node_.diagnose(report);
     node_.diagnose_timing(report);
-    msg::DiagnosticArray array;
+    diagnostic_msgs::DiagnosticArray array;
     array.header.stamp = ros::Time::now();
     array.status.push_back(report.message());
     if (array.status[0].message.empty()) array.status[0].message = "running";
@@ -186,7 +188,9 @@ int run_node(int argc, char** argv, const NodeProgram& program) {
   }
   std::setvbuf(stdout, nullptr, _IOLBF, 0);  // else a log file stays empty until the end
   std::setlocale(LC_CTYPE, "C.UTF-8");       // else rosconsole prints "N·m" as "N??m"; numbers keep the decimal point
-  install_crash_report(name, name == "telemetry" ? "the log with it" : "the motors brake without it");
+  install_crash_report(name, !program.in_loop      ? "the loop goes on"
+                             : name == "telemetry" ? "the log with it"
+                                                   : "the motors brake without it");
   ignore_file_size_signal();
   if (const std::string problem = descriptor_problem(); !problem.empty()) {
     std::fprintf(stderr, "%s: refused:\n%s\n", name.c_str(), problem.c_str());
@@ -197,9 +201,10 @@ int run_node(int argc, char** argv, const NodeProgram& program) {
     ros::init(argc, argv, name, ros::init_options::NoSigintHandler);
     catch_signals();
     if (!await_master(name)) return 0;
-    const Setup setup = read_setup(name);
+    const Setup setup = read_setup(name, program.in_loop);
     const LoopParameters& loop = setup.parameters.loop;
-    prepare_process(loop.clock == ClockMode::kWall ? loop.realtime : RealtimePolicy::kOff);
+    const bool realtime = program.in_loop && loop.clock == ClockMode::kWall;
+    prepare_process(realtime ? loop.realtime : RealtimePolicy::kOff);
     const std::unique_ptr<Node> node = program.make(setup);
 
     ros::NodeHandle handle;
@@ -214,7 +219,7 @@ int run_node(int argc, char** argv, const NodeProgram& program) {
     for (const std::string& text : node->rate_notes()) ROS_WARN("%s", text.c_str());
     node->connect(handle);
     ros::AsyncSpinner callbacks(kCallbackThreads);
-    callbacks.start();
+    if (!node->calls_callbacks()) callbacks.start();
     NodeLoop(*node, setup, handle).run();
     node->stop();  // before the callbacks stop, so that a service that waits for cycles ends
     callbacks.stop();

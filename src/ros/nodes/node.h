@@ -54,6 +54,9 @@ class Node {
 
   /// Adds how punctual the real-time thread of the loop is, if the node has one.
   virtual void diagnose_timing(DiagnosticReport& /*report*/) {}
+
+  /// Returns whether `publish` calls the callbacks of ROS. Otherwise two further threads do.
+  virtual bool calls_callbacks() const { return false; }
 };
 
 /// Takes the locks. Throws BusError, or another exception that refuses the start.
@@ -63,6 +66,7 @@ struct NodeProgram {
   std::string name;     ///< name of the node and of its block of parameters
   std::string purpose;  ///< task of the node, in sentences
   MakeNode make;
+  bool in_loop = true;  ///< false: a program beside the loop, without a description of the robot and without a bus
 };
 
 /// The body of main. Returns 0 after --help and after an end by SIGINT, SIGTERM, ROS or the node itself; returns 1

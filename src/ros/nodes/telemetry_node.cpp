@@ -2,6 +2,7 @@
 
 #include <ros/master.h>
 #include <ros/ros.h>
+#include <std_srvs/SetBool.h>
 
 #include <atomic>
 #include <filesystem>
@@ -10,11 +11,10 @@
 #include <optional>
 #include <utility>
 
-#include "files/ascii.h"
 #include "loop/log_header.h"
 #include "loop/processes/telemetry_process.h"
 #include "robots/robot_kind.h"
-#include "ros/messages/simulation_messages.h"
+#include "ros/messages/service_answer.h"
 #include "ros/reports/diagnostics.h"
 #include "ros/startup/setup.h"
 #include "rt/realtime_thread.h"
@@ -146,16 +146,14 @@ class TelemetryNode final : public Node {
     header_ = std::move(header);
   }
 
-  bool record(msg::SetBoolRequest& request, msg::SetBoolResponse& response) {
+  bool record(std_srvs::SetBool::Request& request, std_srvs::SetBool::Response& response) {
     const bool on = request.data != 0;
     const bool recordable = !process_.bag_path().empty();
-    response.success = static_cast<std::uint8_t>(recordable);
-    const std::string answer = !recordable ? "telemetry.record is off: there is no run.bag"
-                               : on        ? "run.bag holds every cycle from now on"
-                                           : "run.bag holds what telemetry.record says";
-    response.message = ascii(answer);
     requested_.store(on);
-    return true;
+    return answer(response, recordable,
+                  !recordable ? "telemetry.record is off: there is no run.bag"
+                  : on        ? "run.bag holds every cycle from now on"
+                              : "run.bag holds what telemetry.record says");
   }
 
   const Setup& setup_;

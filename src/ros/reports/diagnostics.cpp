@@ -20,13 +20,13 @@ constexpr double kDegrees = 180 / std::numbers::pi;  // ° per rad
 }  // namespace
 
 DiagnosticReport::DiagnosticReport(const std::string& node, const std::string& hardware) {
-  message_.level = msg::DiagnosticStatus::OK;
+  message_.level = diagnostic_msgs::DiagnosticStatus::OK;
   message_.name = node;
   message_.hardware_id = hardware;
 }
 
 void DiagnosticReport::value(const std::string& key, const std::string& text) {
-  msg::KeyValue pair;
+  diagnostic_msgs::KeyValue pair;
   pair.key = key;
   pair.value = ascii(text);
   message_.values.push_back(pair);
@@ -47,7 +47,7 @@ void DiagnosticReport::reasons(const std::string& subject, std::span<const BitNa
   }
 }
 
-void DiagnosticReport::raise(msg::DiagnosticStatus::_level_type level, const std::string& sentence) {
+void DiagnosticReport::raise(diagnostic_msgs::DiagnosticStatus::_level_type level, const std::string& sentence) {
   if (level < message_.level) return;
   if (level > message_.level) message_.message.clear();
   message_.level = level;

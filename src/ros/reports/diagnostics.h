@@ -1,13 +1,14 @@
 #pragma once
 /// A DiagnosticReport is one node's entry on /diagnostics (REP 107): worst level, one sentence, named values.
 
+#include <diagnostic_msgs/DiagnosticStatus.h>
+
 #include <cstdint>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "machine/machine_model.h"
-#include "ros/messages/messages.h"
 #include "signals/bit_name.h"
 #include "signals/command_frame.h"
 #include "signals/permit.h"
@@ -21,9 +22,9 @@ class DiagnosticReport {
  public:
   DiagnosticReport(const std::string& node, const std::string& hardware);
 
-  void ok(const std::string& sentence) { raise(msg::DiagnosticStatus::OK, sentence); }
-  void warn(const std::string& sentence) { raise(msg::DiagnosticStatus::WARN, sentence); }
-  void error(const std::string& sentence) { raise(msg::DiagnosticStatus::ERROR, sentence); }
+  void ok(const std::string& sentence) { raise(diagnostic_msgs::DiagnosticStatus::OK, sentence); }
+  void warn(const std::string& sentence) { raise(diagnostic_msgs::DiagnosticStatus::WARN, sentence); }
+  void error(const std::string& sentence) { raise(diagnostic_msgs::DiagnosticStatus::ERROR, sentence); }
   void value(const std::string& key, const std::string& text);
   void value(const std::string& key, double number);
   void value(const std::string& key, std::uint64_t number) { value(key, std::to_string(number)); }
@@ -32,12 +33,12 @@ class DiagnosticReport {
   void reasons(const std::string& subject, std::span<const BitName> table, std::uint64_t bits,
                const Programs& programs);
 
-  const msg::DiagnosticStatus& message() const noexcept { return message_; }
+  const diagnostic_msgs::DiagnosticStatus& message() const noexcept { return message_; }
 
  private:
-  void raise(msg::DiagnosticStatus::_level_type level, const std::string& sentence);
+  void raise(diagnostic_msgs::DiagnosticStatus::_level_type level, const std::string& sentence);
 
-  msg::DiagnosticStatus message_;
+  diagnostic_msgs::DiagnosticStatus message_;
 };
 
 /// Adds a warning with the names of missing nodes.

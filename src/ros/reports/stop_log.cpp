@@ -10,12 +10,12 @@
 namespace robot_control {
 namespace {
 
-bool may_drive(const msg::SafetyStatus& status) {
-  return status.state == msg::SafetyStatus::READY || status.state == msg::SafetyStatus::DRIVE;
+bool may_drive(const SafetyStatus& status) {
+  return status.state == SafetyStatus::READY || status.state == SafetyStatus::DRIVE;
 }
 
 /// Returns "stall: a wheel stands although its target is not zero (0.6 rad, limit 0.5 rad, left_wheel_joint)".
-std::string cause_text(const msg::SafetyStatus& status, std::size_t i) {
+std::string cause_text(const SafetyStatus& status, std::size_t i) {
   std::string text = status.causes[i] + ": " + status.sentences[i];
   if (!status.details[i].empty()) text += " (" + status.details[i] + ")";
   return text;
@@ -34,7 +34,7 @@ std::string speed_text(double speed) {
 
 }  // namespace
 
-std::vector<ReportLine> StopLog::update(const msg::SafetyStatus& status) {
+std::vector<ReportLine> StopLog::update(const SafetyStatus& status) {
   if (status.run != run_) {
     run_ = status.run;
     awaiting_ = false;
@@ -47,7 +47,7 @@ std::vector<ReportLine> StopLog::update(const msg::SafetyStatus& status) {
   return lines;
 }
 
-void StopLog::look_at_causes(const msg::SafetyStatus& status, std::vector<ReportLine>& lines) {
+void StopLog::look_at_causes(const SafetyStatus& status, std::vector<ReportLine>& lines) {
   std::string causes;
   std::string remedies;
   for (std::size_t i = 0; i < status.causes.size(); ++i) {
@@ -58,11 +58,11 @@ void StopLog::look_at_causes(const msg::SafetyStatus& status, std::vector<Report
     const std::string& remedy = status.remedies_before_reset[i];
     if (remedies.find(remedy) == std::string::npos) remedies += (remedies.empty() ? "" : "; ") + remedy;
   }
-  const bool stopping = status.state == msg::SafetyStatus::STOPPING;
+  const bool stopping = status.state == SafetyStatus::STOPPING;
   if (!causes.empty()) {
     lines.push_back({true, status.state_name + ": " + causes + ". To drive again: " + remedies +
                                (remedies.empty() ? "" : ", then ") + "call e_stop_reset"});
-  } else if (stopping_ && status.state == msg::SafetyStatus::STOPPED) {
+  } else if (stopping_ && status.state == SafetyStatus::STOPPED) {
     lines.push_back({false, "STOPPED: the ramp has ended, the robot brakes"});
   }
   stopping_ = stopping;
@@ -74,13 +74,13 @@ void StopLog::look_at_causes(const msg::SafetyStatus& status, std::vector<Report
   }
 }
 
-void StopLog::look_at_start(const msg::SafetyStatus& status, std::vector<ReportLine>& lines) {
+void StopLog::look_at_start(const SafetyStatus& status, std::vector<ReportLine>& lines) {
   const double now = static_cast<double>(status.cycle) * period_;
   if (may_drive(status)) {
     if (starting_) lines.push_back({false, "ready: " + begin_});
     starting_ = false;
   }
-  if (status.state == msg::SafetyStatus::INIT) starting_ = true;
+  if (status.state == SafetyStatus::INIT) starting_ = true;
   const bool awaiting = status.awaiting_zero_request != 0;
   if (awaiting && !awaiting_) awaiting_since_ = now;
   awaiting_ = awaiting;
@@ -104,7 +104,7 @@ bool StopLog::due(const std::string& name, bool present, double now) {
   return true;
 }
 
-void StopLog::look_at_warnings(const msg::SafetyStatus& status, std::vector<ReportLine>& lines) {
+void StopLog::look_at_warnings(const SafetyStatus& status, std::vector<ReportLine>& lines) {
   const double now = static_cast<double>(status.cycle) * period_;
   for (auto i = present_.begin(); i != present_.end();) {
     const bool stays = *i == "clearance" || std::ranges::find(status.warnings, *i) != status.warnings.end();

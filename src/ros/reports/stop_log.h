@@ -10,6 +10,8 @@
 ///
 /// Time is counted in cycles of the permits. The class is pure.
 
+#include <robot_control/SafetyStatus.h>
+
 #include <cstdint>
 #include <map>
 #include <set>
@@ -17,7 +19,6 @@
 #include <string_view>
 #include <vector>
 
-#include "ros/messages/messages.h"
 #include "ros/reports/report_line.h"
 #include "signals/robot_kinds.h"
 #include "signals/velocity_command.h"
@@ -36,12 +37,12 @@ class StopLog {
       : period_(period), zero_silence_(silence_needed(cmd_vel_timeout)), begin_(names_of_kind(kind).begin) {}
 
   /// Returns the lines that are due at this status. Every published status is passed in the order of publication.
-  std::vector<ReportLine> update(const msg::SafetyStatus& status);
+  std::vector<ReportLine> update(const SafetyStatus& status);
 
  private:
-  void look_at_causes(const msg::SafetyStatus& status, std::vector<ReportLine>& lines);
-  void look_at_start(const msg::SafetyStatus& status, std::vector<ReportLine>& lines);
-  void look_at_warnings(const msg::SafetyStatus& status, std::vector<ReportLine>& lines);
+  void look_at_causes(const SafetyStatus& status, std::vector<ReportLine>& lines);
+  void look_at_start(const SafetyStatus& status, std::vector<ReportLine>& lines);
+  void look_at_warnings(const SafetyStatus& status, std::vector<ReportLine>& lines);
   bool due(const std::string& name, bool present, double now);
 
   double period_;        ///< s

@@ -3,7 +3,6 @@
 #include <xmlrpcpp/XmlRpcValue.h>
 
 #include <algorithm>
-#include <sstream>
 
 #include "files/message_text.h"
 #include "parameters/parameters_text.h"
@@ -72,23 +71,11 @@ bool truth_parameter(const XmlRpc::XmlRpcValue& value, const std::string& name) 
   return static_cast<bool>(XmlRpc::XmlRpcValue(value));
 }
 
-std::set<std::string> set_by_launch(const char* const* environment) {
-  std::set<std::string> paths;
-  for (; *environment != nullptr; ++environment) {
-    const std::string_view variable(*environment);
-    const std::size_t equals = variable.find('=');
-    if (!variable.starts_with(kSetByLaunch) || equals == std::string_view::npos) continue;
-    std::istringstream words{std::string(variable.substr(equals + 1))};
-    for (std::string path; words >> path;) paths.insert(path);
-  }
-  return paths;
-}
-
 std::vector<std::string> override_lines(const std::vector<Overlay>& overlays, const std::string& file,
                                         const std::set<std::string>& unsaid) {
   std::vector<std::string> lines;
   for (const Overlay& overlay : overlays) {
-    if (unsaid.contains(overlay.path)) continue;
+    if (unsaid.contains(overlay.path.substr(overlay.path.find('.') + 1))) continue;
     lines.push_back(overlay.origin + " = " + overlay.text + " overrides " + overlay.path + " of " + file);
   }
   return lines;

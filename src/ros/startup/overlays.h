@@ -8,7 +8,6 @@
 
 #include <set>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "parameters/parameter_tree.h"
@@ -30,16 +29,8 @@ std::vector<Overlay> overlays_of(const XmlRpc::XmlRpcValue& tree, const std::str
 std::string text_parameter(const XmlRpc::XmlRpcValue& value, const std::string& name, const std::string& what);
 bool truth_parameter(const XmlRpc::XmlRpcValue& value, const std::string& name);
 
-/// Prefix of the environment variables in which a launch file lists, separated by spaces, the paths that it overrides
-/// itself: "robot.clock robot.wait_for_nodes". Unlike parameters, which stay on the server, variables reach only the
-/// nodes of that launch.
-inline constexpr std::string_view kSetByLaunch = "ROBOT_CONTROL_SET_BY_";
-
-/// Returns the paths in all of these variables of `environment` ("NAME=value", as in environ(7)).
-std::set<std::string> set_by_launch(const char* const* environment);
-
-/// Returns one line per overlay, "/robot/rate = 500 overrides robot.rate of config/robot_params.yaml". Paths in
-/// `unsaid` are left out.
+/// Returns one line per overlay, "/robot/rate = 500 overrides robot.rate of config/robot_params.yaml". Keys in
+/// `unsaid`, without their block, are left out.
 std::vector<std::string> override_lines(const std::vector<Overlay>& overlays, const std::string& file,
                                         const std::set<std::string>& unsaid = {});
 

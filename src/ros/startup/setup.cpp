@@ -9,6 +9,8 @@
 
 #include <algorithm>
 #include <array>
+#include <iterator>
+#include <sstream>
 
 #include "bus/bus.h"
 #include "files/given_path.h"
@@ -25,6 +27,11 @@ std::string installed_config() {
   return ros::package::getPath("robot_control") + "/config/robot_params.yaml";
 }
 
+/// Keys of a block that launch files set from their arguments; roslaunch prints them.
+constexpr const char* kSetByLaunch =
+    "driver drives urdf clock command_script bus wait_for_nodes wait_for_telemetry latch_file directory "
+    "record black_box scene seed cycles laser.rate map initial_pose speed unknown_is_free";
+
 constexpr const char* kYamlPath = "the path of a YAML file";
 
 XmlRpc::XmlRpcValue on_server(const std::string& name) {
@@ -40,7 +47,7 @@ std::string server_text(const std::string& name, const std::string& what) {
 /// Replaces the paths that this node reads from the server by resolved ones, so that every reader finds the same files.
 void resolve_server_paths() {
   for (const char* name : {"robot/urdf", "robot/drives", "robot/command_script", "~config", "~urdf", "~drives",
-                           "~scene", "~calibration_file", "~command_sources", "~directory", "~latch_file"}) {
+                           "~scene", "~calibration_file", "~command_sources", "~directory", "~latch_file", "~map"}) {
     XmlRpc::XmlRpcValue value = on_server(ros::names::resolve(name));
     if (value.getType() != XmlRpc::XmlRpcValue::TypeString) continue;
     const std::string& given = value;
@@ -121,30 +128,10 @@ std::string other_controller(const std::string& node, const MachineModel& machin
   const bool legs = kind == MachineKind::kOnLegs;
   return "robot '" + machine.name + "' of " + machine.source + " is on " + (legs ? "legs" : "wheels") + ", and " +
          node + " controls robots on " + (legs ? "wheels" : "legs") + ": start " + own +
-         " instead (sim.launch, backend.launch: " + "kind:=" + (legs ? "legs" : "wheels") + ")";
+         " instead (robot.launch, sim.launch: kind:=" + (legs ? "legs" : "wheels") + ")";
 }
 
-void fill_setup(const std::string& node, Setup& setup) {
-  std::string path;
-  std::vector<Overlay> overlays;
-  bool use_sim_time = false;
-  try {
-    resolve_server_paths();
-    path = config_path();
-    overlays = server_overlays(node);
-    use_sim_time = truth_parameter(on_server("/use_sim_time"), "/use_sim_time");
-  } catch (const ParameterError& error) {
-    throw SetupError(error.what());
-  }
-  setup.overrides = override_lines(overlays, path);
-  setup.unexpected_overrides = override_lines(overlays, path, set_by_launch(environ));
-  std::string problems;
-  try {
-    setup.parameters = read_parameters(path, overlays, installed_config());
-  } catch (const ParameterError& error) {
-    throw SetupError(error.what());  // without parameters nothing else can be checked
-  }
-  add(problems, clock_problem(setup.parameters.loop.clock, use_sim_time));
+void read_machine(const std::string& node, const std::vector<Overlay>& overlays, Setup& setup, std::string& problems) {
   try {
     const RobotDescription chosen = description(setup.parameters, overlays, setup.unread_description);
     setup.parameters = limited_by_drives(setup.parameters, chosen);
@@ -157,6 +144,31 @@ void fill_setup(const std::string& node, Setup& setup) {
   } catch (const ParameterError& error) {
     add(problems, error.what());
   }
+}
+
+void fill_setup(const std::string& node, bool in_loop, Setup& setup) {
+  std::string path;
+  std::vector<Overlay> overlays;
+  bool use_sim_time = false;
+  try {
+    resolve_server_paths();
+    path = config_path();
+    overlays = server_overlays(node);
+    use_sim_time = truth_parameter(on_server("/use_sim_time"), "/use_sim_time");
+  } catch (const ParameterError& error) {
+    throw SetupError(error.what());
+  }
+  setup.overrides = override_lines(overlays, path);
+  std::istringstream set_by_launch(kSetByLaunch);
+  setup.unexpected_overrides = override_lines(overlays, path, {std::istream_iterator<std::string>(set_by_launch), {}});
+  std::string problems;
+  try {
+    setup.parameters = read_parameters(path, overlays, installed_config());
+  } catch (const ParameterError& error) {
+    throw SetupError(error.what());  // without parameters nothing else can be checked
+  }
+  add(problems, clock_problem(setup.parameters.loop.clock, use_sim_time));
+  if (in_loop) read_machine(node, overlays, setup, problems);
   if (!problems.empty()) throw SetupError(problems);
   // Each namespace has a folder of its own, so that two robots never write to one file.
   std::string& directory = setup.parameters.telemetry.directory;
@@ -180,10 +192,10 @@ Parameters parameters_of(Role role) {
   return read_parameters(path, overlays, installed_config());
 }
 
-Setup read_setup(const std::string& node) {
+Setup read_setup(const std::string& node, bool in_loop) {
   Setup setup;
   try {
-    fill_setup(node, setup);
+    fill_setup(node, in_loop, setup);
   } catch (const SetupError& error) {
     std::string text = error.what();
     for (const std::string& line : setup.overrides) text += "\n  " + line;

@@ -26,7 +26,7 @@ struct Setup {
   std::shared_ptr<const MachineModel> machine;  ///< a DriveTrain or a LegModel (robots/robot_kind.h)
   std::string bus;
   std::vector<std::string> overrides;  ///< "/robot/rate = 500 overrides robot.rate of config/robot_params.yaml"
-  std::vector<std::string> unexpected_overrides;  ///< those of `overrides` that the launch file does not cause itself
+  std::vector<std::string> unexpected_overrides;  ///< those of `overrides` that no launch file sets
   std::string unread_description;                 ///< warning that another robot_description is on the server, or empty
 };
 
@@ -38,10 +38,10 @@ std::string clock_problem(ClockMode clock, bool use_sim_time);
 /// Throws ParameterError.
 Parameters parameters_of(Role role);
 
-/// Refuses the controller of another kind of robot.
+/// Refuses the controller of another kind of robot. A program that is not `in_loop` needs no robot: `machine` is null.
 ///
 /// `node` names the program and its block of the YAML file (signals/roles.h). The robot is selected as in
 /// description.h. Throws SetupError with all problems at once.
-Setup read_setup(const std::string& node);
+Setup read_setup(const std::string& node, bool in_loop = true);
 
 }  // namespace robot_control

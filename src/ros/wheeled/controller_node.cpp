@@ -1,5 +1,7 @@
 #include "ros/wheeled/controller_node.h"
 
+#include <dynamic_reconfigure/Reconfigure.h>
+#include <robot_control/SetParameters.h>
 #include <ros/ros.h>
 
 #include <atomic>
@@ -8,7 +10,6 @@
 #include <optional>
 #include <utility>
 
-#include "files/ascii.h"
 #include "robots/wheeled/start_check.h"
 #include "ros/inputs/command_input.h"
 #include "ros/inputs/command_mux.h"
@@ -16,7 +17,7 @@
 #include "ros/inputs/live_overrides.h"
 #include "ros/inputs/reconfigure.h"
 #include "ros/messages/motion_messages.h"
-#include "ros/messages/tuning_messages.h"
+#include "ros/messages/service_answer.h"
 #include "ros/nodes/commanded_node.h"
 #include "ros/reports/diagnostics.h"
 #include "ros/reports/pacer.h"
@@ -48,26 +49,27 @@ class ControllerNode final : public CommandedNode {
     ros::NodeHandle own("~");
     set_parameters_ = own.advertiseService("set_parameters", &ControllerNode::set_parameters, this);
     set_parameter_map_ = own.advertiseService("set_parameter_map", &ControllerNode::set_parameter_map, this);
-    descriptions_ = own.advertise<msg::ConfigDescription>("parameter_descriptions", 1, true);
-    updates_ = own.advertise<msg::Config>("parameter_updates", 1, true);
+    descriptions_ = own.advertise<dynamic_reconfigure::ConfigDescription>("parameter_descriptions", 1, true);
+    updates_ = own.advertise<dynamic_reconfigure::Config>("parameter_updates", 1, true);
     descriptions_.publish(description_of(process().retuner()->live()));
     updates_.publish(config_of(process().retuner()->live()));
-    joint_commands_ = handle.advertise<msg::Float64MultiArray>("joint_commands", 10);
-    joint_targets_ = handle.advertise<msg::JointState>("joint_targets", 10);
-    velocity_out_ = handle.advertise<msg::TwistStamped>("cmd_vel_out", 10);
-    drive_state_ = handle.advertise<msg::DriveState>("drive_state", 10);
+    joint_commands_ = handle.advertise<std_msgs::Float64MultiArray>("joint_commands", 10);
+    joint_targets_ = handle.advertise<sensor_msgs::JointState>("joint_targets", 10);
+    velocity_out_ = handle.advertise<geometry_msgs::TwistStamped>("cmd_vel_out", 10);
+    drive_state_ = handle.advertise<DriveState>("drive_state", 10);
     intake().start(earlier_controller(handle, command_topics()));
     if (mux_) {
       connect_sources(handle);
       return;
     }
-    cmd_vel_.connect_with_sender(handle, [this](const msg::Twist& message, const Publisher& sender) {
+    cmd_vel_.connect_with_sender(handle, [this](const geometry_msgs::Twist& message, const Publisher& sender) {
       receive({.sender = sender, .twist = twist_of(message)});
     });
-    cmd_vel_stamped_.connect_with_sender(handle, [this](const msg::TwistStamped& message, const Publisher& sender) {
-      const auto stamp_ns = static_cast<std::int64_t>(message.header.stamp.toNSec());
-      receive({.sender = sender, .twist = twist_of(message.twist), .stamp_ns = stamp_ns});
-    });
+    cmd_vel_stamped_.connect_with_sender(
+        handle, [this](const geometry_msgs::TwistStamped& message, const Publisher& sender) {
+          const auto stamp_ns = static_cast<std::int64_t>(message.header.stamp.toNSec());
+          receive({.sender = sender, .twist = twist_of(message.twist), .stamp_ns = stamp_ns});
+        });
   }
 
   /// It ends before the channel has overwritten a frame with its reasons.
@@ -83,7 +85,7 @@ class ControllerNode final : public CommandedNode {
     joint_commands_.publish(joint_commands(command_, wheels()));
     joint_targets_.publish(joint_targets(command_, wheels(), stamp));
     velocity_out_.publish(velocity_out(command_, report().base_frame, stamp));
-    msg::DriveState state = drive_state(command_, plan(), std::exchange(since_message_, 0), wheels(), stamp);
+    DriveState state = drive_state(command_, plan(), std::exchange(since_message_, 0), wheels(), stamp);
     add_senders(state);
     drive_state_.publish(state);
     if (report_outdated_.exchange(false)) command_report_.limit(process().retuner()->in_force().controller);
@@ -125,13 +127,13 @@ class ControllerNode final : public CommandedNode {
       const std::string& topic = list_.sources[i].topic;
       if (list_.sources[i].stamped) {
         stamped_sources_.emplace_back(topic, 1).connect_with_sender(
-            handle, [this, i](const msg::TwistStamped& message, const Publisher& sender) {
+            handle, [this, i](const geometry_msgs::TwistStamped& message, const Publisher& sender) {
               const auto stamp_ns = static_cast<std::int64_t>(message.header.stamp.toNSec());
               receive_from(i, {.sender = sender, .twist = twist_of(message.twist), .stamp_ns = stamp_ns});
             });
       } else {
         sources_.emplace_back(topic, 1).connect_with_sender(
-            handle, [this, i](const msg::Twist& message, const Publisher& sender) {
+            handle, [this, i](const geometry_msgs::Twist& message, const Publisher& sender) {
               receive_from(i, {.sender = sender, .twist = twist_of(message)});
             });
       }
@@ -140,7 +142,7 @@ class ControllerNode final : public CommandedNode {
       // A malformed message locks, too: its sender may have meant a lock.
       locks_.emplace_back(list_.locks[i].topic, 10)
           .connect(
-              handle, [this, i](const msg::Bool& message) { receive_lock(i, message.data != 0); },
+              handle, [this, i](const std_msgs::Bool& message) { receive_lock(i, message.data != 0); },
               [this, i] { receive_lock(i, true); });
     }
   }
@@ -151,13 +153,11 @@ class ControllerNode final : public CommandedNode {
     store();
   }
 
-  void add_senders(msg::DriveState& message) {
+  void add_senders(DriveState& message) {
     const std::lock_guard lock(input_mutex_);
     message.commander = intake().winner();
-    const std::vector<std::string> states = intake().states();
-    message.sources.assign(states.begin(), states.end());
-    const std::vector<std::string> revoked = intake().revoked();
-    message.revoked.assign(revoked.begin(), revoked.end());
+    message.sources = intake().states();
+    message.revoked = intake().revoked();
   }
 
   /// Checks retuning against the monitor's parameters. A monitor whose parameters are refused does not start, so they
@@ -169,15 +169,14 @@ class ControllerNode final : public CommandedNode {
     }
   }
 
-  bool set_parameter_map(msg::SetParametersRequest& request, msg::SetParametersResponse& response) {
-    const Answer answer = retune(request.parameters);
-    response.success = answer.accepted ? 1 : 0;
-    response.message = ascii(answer.text);
-    return true;
+  bool set_parameter_map(SetParameters::Request& request, SetParameters::Response& response) {
+    const Answer retuned = retune(request.parameters);
+    return answer(response, retuned.accepted, retuned.text);
   }
 
   /// As dynamic_reconfigure requires, the response holds the values in force, whether the request was accepted or not.
-  bool set_parameters(msg::ReconfigureRequest& request, msg::ReconfigureResponse& response) {
+  bool set_parameters(dynamic_reconfigure::Reconfigure::Request& request,
+                      dynamic_reconfigure::Reconfigure::Response& response) {
     const std::string text = request_text(request.config, process().retuner()->live());
     if (!text.empty()) retune(text);
     response.config = config_of(process().retuner()->live());

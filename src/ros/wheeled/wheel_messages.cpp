@@ -4,18 +4,18 @@
 
 namespace robot_control {
 
-msg::Float64MultiArray joint_commands(const CommandFrame& command, const DriveTrain& robot) {
-  msg::Float64MultiArray message;
+std_msgs::Float64MultiArray joint_commands(const CommandFrame& command, const DriveTrain& robot) {
+  std_msgs::Float64MultiArray message;
   for (const WheelModel& wheel : robot.wheels) message.data.push_back(command.joints[wheel.joint].velocity);
-  msg::MultiArrayDimension dimension;
+  std_msgs::MultiArrayDimension dimension;
   dimension.label = "wheel";
   dimension.size = dimension.stride = static_cast<std::uint32_t>(message.data.size());
   message.layout.dim.push_back(dimension);
   return message;
 }
 
-msg::JointState joint_targets(const CommandFrame& command, const DriveTrain& robot, ros::Time stamp) {
-  msg::JointState message;
+sensor_msgs::JointState joint_targets(const CommandFrame& command, const DriveTrain& robot, ros::Time stamp) {
+  sensor_msgs::JointState message;
   message.header.stamp = stamp;
   for (const WheelModel& wheel : robot.wheels) {
     message.name.push_back(robot.joints[wheel.joint].name);
@@ -24,9 +24,9 @@ msg::JointState joint_targets(const CommandFrame& command, const DriveTrain& rob
   return message;
 }
 
-msg::DriveState drive_state(const CommandFrame& command, const CommandFrame& plan, std::uint64_t reasons,
-                            const DriveTrain& robot, ros::Time stamp) {
-  msg::DriveState message;
+DriveState drive_state(const CommandFrame& command, const CommandFrame& plan, std::uint64_t reasons,
+                       const DriveTrain& robot, ros::Time stamp) {
+  DriveState message;
   message.header.stamp = stamp;
   for (const BitName& row : kCommandReasonNames) {
     if ((reasons & row.bit) == 0) continue;

@@ -11,7 +11,7 @@ WheelOutputs::WheelOutputs(const Setup& setup)
       keeper_(setup.parameters, drive_train_of(*setup.machine)) {}
 
 void WheelOutputs::connect(ros::NodeHandle& handle) {
-  wheel_odom_ = handle.advertise<msg::Odometry>("wheel_odom", 10);
+  wheel_odom_ = handle.advertise<nav_msgs::Odometry>("wheel_odom", 10);
 }
 
 void WheelOutputs::publish(const StateFrame& state, ros::Time stamp) {

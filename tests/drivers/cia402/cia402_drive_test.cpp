@@ -204,7 +204,7 @@ TEST(Cia402Drive, DrivesOnWithoutADerivedVelocityThatIsNotSent) {
   device.objects().set({0x1801, 1}, canopen::kPdoDisabled);
   rig.motor().velocity = 10;
   rig.run(0.1);
-  EXPECT_EQ(rig.drive().status().state, DriveState::kRunning);
+  EXPECT_EQ(rig.drive().status().state, DrivePhase::kRunning);
   EXPECT_NEAR(rig.drive().sample().joint.velocity * -2.5, 10, 0.3);
 }
 
@@ -382,7 +382,7 @@ TEST_F(TwoAxes, FailTogetherAndAreResetTogether) {
   ASSERT_TRUE(rig_.runs());
   device_->inject(DeviceFault::kEncoder);
   rig_.run(0.1);
-  EXPECT_TRUE(rig_.all_are(DriveState::kFault));
+  EXPECT_TRUE(rig_.all_are(DrivePhase::kFault));
   EXPECT_THAT(rig_.drive(0).words(), HasSubstr("has another axis in fault"));
   EXPECT_THAT(rig_.drive(1).words(), HasSubstr("reports an error: 0x7305"));
   device_->inject(DeviceFault::kNone);
@@ -402,8 +402,8 @@ TEST_F(TwoAxes, StartAgainTogetherWhereOneFailedAndCouldStillBrake) {
   for (const unsigned axis : {0U, 1U}) {
     device_->objects().set(on_axis(kDcLinkVoltage, axis), 10'000);
     rig_.run(0.5);
-    EXPECT_EQ(rig_.drive(1 - axis).status().state, DriveState::kFault) << axis;
-    EXPECT_EQ(rig_.drive(axis).status().state, DriveState::kRunning) << axis;
+    EXPECT_EQ(rig_.drive(1 - axis).status().state, DrivePhase::kFault) << axis;
+    EXPECT_EQ(rig_.drive(axis).status().state, DrivePhase::kRunning) << axis;
     device_->objects().set(on_axis(kDcLinkVoltage, axis), 48'000);
     rig_.command_all({.enabled = true, .reset = true});
     rig_.cycle();
@@ -422,7 +422,7 @@ TEST(Cia402Drive, ContinuesItsPositionOverTheOverflowOf32Bits) {
   const double before = rig.drive().sample().joint.position;
   rig.motor().velocity = 10;
   rig.run(0.1);
-  EXPECT_EQ(rig.drive().status().state, DriveState::kRunning) << rig.drive().words();
+  EXPECT_EQ(rig.drive().status().state, DrivePhase::kRunning) << rig.drive().words();
   EXPECT_NEAR(rig.drive().sample().joint.position - before, 10 * 0.1 / pair.drive.drive.gear, 0.02);
 }
 

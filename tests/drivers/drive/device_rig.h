@@ -79,7 +79,7 @@ class DeviceRig {
     for (long i = 0; i < std::lround(seconds / period_) && !condition(); ++i) cycle();
     return condition();
   }
-  bool all_are(DriveState state) {
+  bool all_are(DrivePhase state) {
     for (std::size_t i = 0; i < drives().size(); ++i) {
       if (drive(i).status().state != state) return false;
     }
@@ -88,7 +88,7 @@ class DeviceRig {
   void command_all(const DriveCommand& command) { commands.assign(drives().size(), command); }
   ::testing::AssertionResult runs(double seconds = 5) {
     command_all({.enabled = true});
-    if (run_until([this] { return all_are(DriveState::kRunning); }, seconds)) return ::testing::AssertionSuccess();
+    if (run_until([this] { return all_are(DrivePhase::kRunning); }, seconds)) return ::testing::AssertionSuccess();
     auto failure = ::testing::AssertionFailure();
     for (std::size_t i = 0; i < drives().size(); ++i) failure << drive(i).words() << '\n';
     return failure;

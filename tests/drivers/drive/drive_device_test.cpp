@@ -141,9 +141,9 @@ class DriveAndDevice : public ::testing::TestWithParam<Dialect> {
  protected:
   DriveAndDevice() { device_ = &GetParam().add(rig_, 1, 0); }
 
-  DriveState state() { return rig_.drive().status().state; }
+  DrivePhase state() { return rig_.drive().status().state; }
   bool fails(double seconds = 2) {
-    return rig_.run_until([this] { return state() == DriveState::kFault; }, seconds);
+    return rig_.run_until([this] { return state() == DrivePhase::kFault; }, seconds);
   }
   double motor_per_joint() { return -2.5; }  // direction and gear of node 1
 
@@ -152,10 +152,10 @@ class DriveAndDevice : public ::testing::TestWithParam<Dialect> {
 };
 
 TEST_P(DriveAndDevice, GetsReadyWithoutTorqueAndRunsWhenItIsEnabled) {
-  ASSERT_TRUE(rig_.run_until([this] { return state() == DriveState::kReady; }, 5)) << rig_.drive().words();
+  ASSERT_TRUE(rig_.run_until([this] { return state() == DrivePhase::kReady; }, 5)) << rig_.drive().words();
   rig_.command_all({.torque = 2});
   rig_.run(0.5);
-  EXPECT_EQ(state(), DriveState::kReady);
+  EXPECT_EQ(state(), DrivePhase::kReady);
   EXPECT_EQ(rig_.motor().velocity, 0);
   EXPECT_TRUE(rig_.runs());
 }
@@ -163,7 +163,7 @@ TEST_P(DriveAndDevice, GetsReadyWithoutTorqueAndRunsWhenItIsEnabled) {
 TEST_P(DriveAndDevice, SaysThatItWaitsWhileTheDeviceIsOff) {
   device_->inject(DeviceFault::kOff);
   rig_.run(2);
-  EXPECT_EQ(state(), DriveState::kStarting);
+  EXPECT_EQ(state(), DrivePhase::kStarting);
   EXPECT_THAT(rig_.drive().words(), HasSubstr("wheel_1 (node 1): starting; the drive waits for a first frame"));
   device_->inject(DeviceFault::kNone);
   EXPECT_TRUE(rig_.runs());
@@ -224,7 +224,7 @@ void drive_with_losses(const Dialect& dialect, int seconds) {
   for (int i = 0; i < 2 * seconds; ++i) {
     rig.command_all({.enabled = true, .torque = i % 2 == 0 ? 0.5 : -0.5});
     rig.run(0.5);
-    ASSERT_TRUE(rig.all_are(DriveState::kRunning)) << i << rig.drive(0).words() << rig.drive(1).words();
+    ASSERT_TRUE(rig.all_are(DrivePhase::kRunning)) << i << rig.drive(0).words() << rig.drive(1).words();
   }
 }
 
@@ -240,7 +240,7 @@ TEST_P(DriveAndDevice, NoticesWithinItsMaximumSilenceThatTheCableIsOut) {
   ASSERT_TRUE(rig_.runs());
   rig_.bus().connect(rig_.host(), false);
   int cycles = 0;
-  for (; state() == DriveState::kRunning && cycles < 100; ++cycles) rig_.cycle();
+  for (; state() == DrivePhase::kRunning && cycles < 100; ++cycles) rig_.cycle();
   EXPECT_LE(cycles, 22);
   EXPECT_THAT(rig_.drive().words(), HasSubstr("fault; the drive is silent"));
 }
@@ -275,7 +275,7 @@ TEST_P(DriveAndDevice, StaysInFaultUntilTheReset) {
   device_->inject(DeviceFault::kNone);
   rig_.command_all({.enabled = true, .torque = 2});
   rig_.run(3);
-  EXPECT_EQ(state(), DriveState::kFault);
+  EXPECT_EQ(state(), DrivePhase::kFault);
   EXPECT_EQ(rig_.motor().torque, 0);
   rig_.command_all({.enabled = true, .reset = true});
   rig_.cycle();
@@ -305,7 +305,7 @@ TEST_P(DriveAndDevice, OneResetIsOneAttempt) {
   rig_.cycle();
   rig_.command_all({.enabled = true, .torque = 2});
   rig_.run(8);
-  EXPECT_EQ(state(), DriveState::kFault);
+  EXPECT_EQ(state(), DrivePhase::kFault);
   EXPECT_THAT(rig_.drive().words(), HasSubstr("reports an error"));
   EXPECT_GE(clears, 1U);
   EXPECT_LE(clears, Drive::kMaxClears);
@@ -323,7 +323,7 @@ TEST_P(DriveAndDevice, AForeignCommanderIsNamedAndTheJointCanStillBrake) {
     GetParam().add(rig, 1, 0);
     ASSERT_TRUE(rig.runs());
     rig.drive().receive(frame, rig.now_ns());
-    EXPECT_EQ(rig.drive().status().state, DriveState::kFault);
+    EXPECT_EQ(rig.drive().status().state, DrivePhase::kFault);
     EXPECT_THAT(rig.drive().words(), HasSubstr("is commanded by another program"));
     rig.command_all({.enabled = true, .torque = 1});
     rig.run(0.02);
@@ -332,7 +332,7 @@ TEST_P(DriveAndDevice, AForeignCommanderIsNamedAndTheJointCanStillBrake) {
 }
 
 TEST_P(DriveAndDevice, APositionThatJumpsBeforeTheMotorHasTorqueIsAnotherZero) {
-  ASSERT_TRUE(rig_.run_until([this] { return state() == DriveState::kReady; }, 5)) << rig_.drive().words();
+  ASSERT_TRUE(rig_.run_until([this] { return state() == DrivePhase::kReady; }, 5)) << rig_.drive().words();
   rig_.run(0.1);
   const double before = rig_.drive().sample().joint.position;
   device_->inject(DeviceFault::kOtherZero);
@@ -494,7 +494,7 @@ TEST_P(InjectedFault, IsSaidInWords) {
   rig.run(0.2);
   device.inject(GetParam().fault);
   rig.run(0.5);
-  EXPECT_EQ(rig.drive().status().state, DriveState::kFault);
+  EXPECT_EQ(rig.drive().status().state, DrivePhase::kFault);
   EXPECT_THAT(rig.drive().words(), HasSubstr(GetParam().words));
 }
 

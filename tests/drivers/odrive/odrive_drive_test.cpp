@@ -66,7 +66,7 @@ TEST(OdriveDrive, DoesNotExecuteTheSetPointOfAnEarlierProgram) {
     rig.bus().lose(0.1);
     rig.command_all({.enabled = true});
     ASSERT_TRUE(rig.run_until(
-        [&] { return rig.motor().torque != 0 || rig.drive().status().state == DriveState::kRunning; }, 20))
+        [&] { return rig.motor().torque != 0 || rig.drive().status().state == DrivePhase::kRunning; }, 20))
         << rig.drive().words();
     EXPECT_EQ(rig.motor().torque, 0);
     EXPECT_EQ(device.set_point(), 0);
@@ -91,7 +91,7 @@ TEST(OdriveDrive, HasItsWholeTorqueAgainAfterItBrakedInAFault) {
   rig.command_all({.enabled = true, .brake_torque = 1, .brake_damping = 0.01});
   rig.answers = false;
   rig.run(0.5);
-  ASSERT_EQ(rig.drive().status().state, DriveState::kFault);
+  ASSERT_EQ(rig.drive().status().state, DrivePhase::kFault);
   rig.answers = true;
   rig.command_all({.enabled = true, .reset = true, .brake_torque = 1, .brake_damping = 0.01});
   rig.cycle();
@@ -234,7 +234,7 @@ TEST(OdriveDrive, APositionIsNoZeroBeforeTheAxisIsInClosedLoop) {
     ZeroUntilClosedLoop axis(turns);
     for (int attempt = 0; attempt < 3; ++attempt) {
       for (int i = 0; i < 300; ++i) axis.cycle(i == 0);
-      ASSERT_EQ(axis.drive().status().state, DriveState::kRunning) << axis.drive().words();
+      ASSERT_EQ(axis.drive().status().state, DrivePhase::kRunning) << axis.drive().words();
       const double position = axis.drive().sample().joint.position;
       for (int i = 0; i < 100; ++i) {
         axis.cycle();
@@ -242,7 +242,7 @@ TEST(OdriveDrive, APositionIsNoZeroBeforeTheAxisIsInClosedLoop) {
       }
       axis.lose_torque();
       for (int i = 0; i < 20; ++i) axis.cycle();
-      ASSERT_EQ(axis.drive().status().state, DriveState::kFault);
+      ASSERT_EQ(axis.drive().status().state, DrivePhase::kFault);
     }
   }
 }
@@ -263,7 +263,7 @@ TEST(OdriveDrive, ThatTakesSpeedsBrakesByItselfWhenItsAnswersAreLost) {
   EXPECT_NEAR(rig.motor().velocity, 0, 0.05);
   rig.answers = true;
   rig.run(1);
-  EXPECT_EQ(rig.drive().status().state, DriveState::kFault);
+  EXPECT_EQ(rig.drive().status().state, DrivePhase::kFault);
   EXPECT_NEAR(rig.motor().velocity, 0, 0.05);
 }
 
@@ -274,7 +274,7 @@ TEST(OdriveDrive, IsIdleAgainWhenItIsNotEnabled) {
   rig.command_all({.torque = 1});
   rig.run(0.3);
   EXPECT_EQ(device.state(), AxisState::kIdle);
-  EXPECT_EQ(rig.drive().status().state, DriveState::kReady);
+  EXPECT_EQ(rig.drive().status().state, DrivePhase::kReady);
   EXPECT_TRUE(rig.runs());
 }
 

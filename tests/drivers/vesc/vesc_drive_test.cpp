@@ -69,7 +69,7 @@ TEST(VescDrive, TheTachometerOverflowsWithoutAJump) {
   rig.motor().velocity = 10;
   rig.run(2);
   EXPECT_GT(rig.motor().position, kCount * (2147483648.0 + 20));
-  EXPECT_EQ(rig.drive().status().state, DriveState::kRunning) << rig.drive().words();
+  EXPECT_EQ(rig.drive().status().state, DrivePhase::kRunning) << rig.drive().words();
 }
 
 TEST(VescDrive, TheEffortHasTheSignOfTheTorqueAlsoWhereItBrakes) {
@@ -122,7 +122,7 @@ TEST(VescDrive, NoCurrentBeyondTheVelocityLimitIsNoFault) {
   device.inject(DeviceFault::kEncoder);
   rig.command_all({.enabled = true, .torque = 1});
   rig.run(0.3);
-  EXPECT_EQ(rig.drive().status().state, DriveState::kRunning) << rig.drive().words();
+  EXPECT_EQ(rig.drive().status().state, DrivePhase::kRunning) << rig.drive().words();
 }
 
 TEST(VescDrive, AnOrderToEveryDriveIsThatOfAnotherProgram) {
@@ -150,7 +150,7 @@ TEST(VescDrive, ThatTakesSpeedsBrakesByItselfWhenItsAnswersAreLost) {
   EXPECT_NEAR(rig.motor().velocity, 0, 0.05);
   rig.answers = true;
   rig.run(1);
-  EXPECT_EQ(rig.drive().status().state, DriveState::kFault);
+  EXPECT_EQ(rig.drive().status().state, DrivePhase::kFault);
   EXPECT_NEAR(rig.motor().velocity, 0, 0.05);
 }
 

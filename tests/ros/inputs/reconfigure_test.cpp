@@ -24,13 +24,13 @@ void put(Entries& entries, const std::string& name, Value value) {
 }
 
 std::string text(const std::string& name, double value) {
-  msg::Config request;
+  dynamic_reconfigure::Config request;
   put(request.doubles, name, value);
   return request_text(request, kParameters);
 }
 
 TEST(Reconfigure, NamesAreFlatAndValuesHaveTheirTypes) {
-  const msg::Config config = config_of(kParameters);
+  const dynamic_reconfigure::Config config = config_of(kParameters);
   ASSERT_EQ(config.doubles.size(), 3U);
   EXPECT_EQ(config.doubles[1].name, "feed_forward_mass");
   EXPECT_EQ(config.doubles[1].value, 12.5);
@@ -41,7 +41,7 @@ TEST(Reconfigure, NamesAreFlatAndValuesHaveTheirTypes) {
 }
 
 TEST(Reconfigure, TheDescriptionHasARangeForEveryValue) {
-  const msg::ConfigDescription description = description_of(kParameters);
+  const dynamic_reconfigure::ConfigDescription description = description_of(kParameters);
   ASSERT_EQ(description.groups.size(), 1U);
   EXPECT_EQ(description.groups[0].name, "Default");
   ASSERT_EQ(description.groups[0].parameters.size(), 4U);
@@ -55,7 +55,7 @@ TEST(Reconfigure, TheDescriptionHasARangeForEveryValue) {
 }
 
 TEST(Reconfigure, ARequestIsOneMapWithTheKeysOfTheYamlFile) {
-  msg::Config request;
+  dynamic_reconfigure::Config request;
   put(request.doubles, "feed_forward_mass", 13.0);
   put(request.doubles, "max_linear_speed", 0.5);
   put(request.doubles, "feed_forward_yaw_inertia", 0.75);
@@ -77,12 +77,12 @@ TEST(Reconfigure, WhatIsNoNumberGoesOnAsSuch) {
 }
 
 TEST(Reconfigure, ARequestThatNamesNoValueIsNone) {
-  EXPECT_EQ(request_text(msg::Config(), kParameters), "");
+  EXPECT_EQ(request_text(dynamic_reconfigure::Config(), kParameters), "");
   EXPECT_EQ(request_text(config_of({}), kParameters), "");  // a client sends the states of groups
 }
 
 TEST(Reconfigure, ANameCannotBreakOutOfItsQuotes) {
-  msg::Config request;
+  dynamic_reconfigure::Config request;
   put(request.strs, "x': 1, max_linear_speed: 2, 'y", std::string("'}"));
   EXPECT_EQ(request_text(request, kParameters), "{'x'': 1, max_linear_speed: 2, ''y': '''}'}");
 }

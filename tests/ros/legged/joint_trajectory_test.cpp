@@ -28,7 +28,7 @@ class JointTrajectoryTest : public testing::Test {
   }
   const std::string& name(std::size_t joint) const { return robot_.joints[joint].name; }
   void add(double time, const std::vector<double>& positions) {
-    msg::JointTrajectoryPoint& point = message_.points.emplace_back();
+    trajectory_msgs::JointTrajectoryPoint& point = message_.points.emplace_back();
     point.positions.assign(positions.begin(), positions.end());
     point.time_from_start.fromSec(time);
   }
@@ -36,7 +36,7 @@ class JointTrajectoryTest : public testing::Test {
 
   LegModel robot_ = read_legs(load_description(PROJECT_DIRECTORY "/urdf/quadbot.urdf"), {}, {});
   JointTrajectory::Positions start_{};
-  msg::JointTrajectory message_;
+  trajectory_msgs::JointTrajectory message_;
   JointTrajectory path_;
 };
 
@@ -74,7 +74,7 @@ TEST_F(JointTrajectoryTest, TakesAFirstPointAtTimeZeroWhereTheJointsAre) {
 
 struct BrokenMessage {
   const char* name;
-  std::function<void(msg::JointTrajectory&)> breaks;
+  std::function<void(trajectory_msgs::JointTrajectory&)> breaks;
   const char* sentence;
 };
 

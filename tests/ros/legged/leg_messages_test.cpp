@@ -13,7 +13,7 @@ using testing::HasSubstr;
 using testing::StartsWith;
 
 TEST(LegMessages, AFootTargetLiftsTheFootOfItsName) {
-  msg::FootTarget message;
+  FootTarget message;
   message.foot = "rear_left";
   message.x = 0.01;
   message.y = -0.02;
@@ -60,7 +60,7 @@ TEST(LegMessages, TheStateNamesPostureFootAndReasons) {
   LegModel robot;
   robot.joints.resize(2);
   robot.joints[1].name = "knee";
-  const msg::LegState message =
+  const LegState message =
       leg_state({command, plan, {}, state, all_gaits({}), kReasonOutOfReach}, robot, ros::Time(1, 2));
   EXPECT_EQ(message.posture, "standing");
   EXPECT_EQ(message.lifted, "rear_right");

@@ -39,7 +39,7 @@ TEST(Ascii, IsAllThatSafetyStatusAndDiagnosticsHold) {
     permit.state = SupervisorState::kStopped;
     permit.causes = permit.first_cause = permit.active = permit.warnings = row.bit;
     permit.evidence[0] = {.cause = row.bit, .joint = 0, .value = 2, .limit = 1};
-    const msg::SafetyStatus status = safety_status(permit, robot, {}, TimeMap{ClockMode::kLockstep}, 1'000'000, {});
+    const SafetyStatus status = safety_status(permit, robot, {}, TimeMap{ClockMode::kLockstep}, 1'000'000, {});
     for (const auto* texts :
          {&status.causes, &status.sentences, &status.remedies, &status.remedies_before_reset, &status.actors,
           &status.details, &status.warnings, &status.warning_sentences, &status.missing, &status.reset_refusal}) {

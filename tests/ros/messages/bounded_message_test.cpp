@@ -1,13 +1,13 @@
 // Checks which bytes a publisher may send, and which part of them is read.
 #include "ros/messages/bounded_message.h"
 
+#include <diagnostic_msgs/DiagnosticStatus.h>
+#include <dynamic_reconfigure/Reconfigure.h>
 #include <gtest/gtest.h>
+#include <robot_control/SafetyStatus.h>
 
 #include <limits>
-#include <stdexcept>
 #include <vector>
-
-#include "ros/messages/reconfigure_messages.h"
 
 namespace robot_control {
 namespace {
@@ -35,8 +35,8 @@ void set_length(Bytes& bytes, std::size_t place, std::uint32_t length) {
   for (std::size_t i = 0; i < 4; ++i) bytes[place + i] = static_cast<std::uint8_t>(length >> (8 * i));
 }
 
-msg::TwistStamped stamped(std::size_t name_length) {
-  msg::TwistStamped message;
+geometry_msgs::TwistStamped stamped(std::size_t name_length) {
+  geometry_msgs::TwistStamped message;
   message.header.frame_id = std::string(name_length, 'a');
   message.twist.linear.x = 0.5;
   return message;
@@ -45,12 +45,12 @@ msg::TwistStamped stamped(std::size_t name_length) {
 constexpr std::size_t kFrameIdLength = 12;  // after seq and stamp
 
 TEST(BoundedMessage, TakesEveryMessageOfItsType) {
-  msg::Twist twist;
+  geometry_msgs::Twist twist;
   twist.angular.z = std::numeric_limits<double>::quiet_NaN();
   EXPECT_TRUE(read<BoundedTwist>(wire(twist)).accepted);
-  EXPECT_TRUE(read<BoundedBool>(wire(msg::Bool{})).accepted);
-  EXPECT_TRUE(read<BoundedEmpty>(wire(msg::Empty{})).accepted);
-  EXPECT_TRUE(read<BoundedFloat64>(wire(msg::Float64{})).accepted);
+  EXPECT_TRUE(read<BoundedBool>(wire(std_msgs::Bool{})).accepted);
+  EXPECT_TRUE(read<BoundedEmpty>(wire(std_msgs::Empty{})).accepted);
+  EXPECT_TRUE(read<BoundedFloat64>(wire(std_msgs::Float64{})).accepted);
   const BoundedTwistStamped longest = read<BoundedTwistStamped>(wire(stamped(kMaxFrameId)));
   EXPECT_TRUE(longest.accepted);
   EXPECT_EQ(longest.message.twist.linear.x, 0.5);
@@ -80,17 +80,30 @@ TEST(BoundedMessage, RefusesANameThatPointsBeyondTheMessage) {
   }
 }
 
-TEST(MessageAllocator, AllocatesNoArrayThatOnlyItsLengthFieldAnnounces) {
+TEST(ArrayBound, AllocatesNoArrayThatOnlyItsLengthFieldAnnounces) {
   for (const std::uint32_t length : {1u << 16, 1u << 24, 0xffffffffu}) {
-    Bytes bytes = wire(msg::ReconfigureRequest{});
+    Bytes bytes = wire(dynamic_reconfigure::Reconfigure::Request{});
     set_length(bytes, 0, length);
-    EXPECT_THROW(read<msg::ReconfigureRequest>(bytes), std::length_error) << length;
+    EXPECT_THROW(read<dynamic_reconfigure::Reconfigure::Request>(bytes), ros::serialization::StreamOverrunException)
+        << length;
   }
+}
+
+TEST(ArrayBound, TakesTheShortestElements) {
+  diagnostic_msgs::DiagnosticStatus status;
+  status.values.resize(1000);
+  EXPECT_EQ(read<diagnostic_msgs::DiagnosticStatus>(wire(status)).values.size(), 1000);
+  dynamic_reconfigure::Config config;
+  config.bools.resize(1000);
+  EXPECT_EQ(read<dynamic_reconfigure::Config>(wire(config)).bools.size(), 1000);
+  SafetyStatus sentences;
+  sentences.sentences.resize(1000);
+  EXPECT_EQ(read<SafetyStatus>(wire(sentences)).sentences.size(), 1000);
 }
 
 TEST(BoundedMessage, IsTheMessageItselfToItsPublisher) {
   EXPECT_STREQ(ros::message_traits::datatype<BoundedTwist>(), "geometry_msgs/Twist");
-  EXPECT_STREQ(ros::message_traits::md5sum<BoundedTwist>(), ros::message_traits::md5sum<msg::Twist>());
+  EXPECT_STREQ(ros::message_traits::md5sum<BoundedTwist>(), ros::message_traits::md5sum<geometry_msgs::Twist>());
 }
 
 }  // namespace

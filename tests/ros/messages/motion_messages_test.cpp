@@ -38,7 +38,7 @@ TEST_F(MotionMessagesTest, JointStatesCarryEveryJointInFrameOrder) {
     const auto value = static_cast<double>(i);
     sensors_.joints[i] = {.position = 1 + value, .velocity = 10 + value, .effort = 100 + value};
   }
-  const msg::JointState message = joint_states(sensors_, nullptr, robot_, stamp_);
+  const sensor_msgs::JointState message = joint_states(sensors_, nullptr, robot_, stamp_);
   EXPECT_THAT(message.name, ElementsAre("left", "right", "mast"));
   EXPECT_THAT(message.position, ElementsAre(1, 2, 3));
   EXPECT_THAT(message.velocity, ElementsAre(10, 11, 12));
@@ -56,11 +56,11 @@ TEST_F(MotionMessagesTest, JointStatesCarryTheWheelsTrackedVelocities) {
 TEST_F(MotionMessagesTest, ABatteryThatGivesCurrentDischargesAndWhatIsNotMeasuredIsUnknown) {
   sensors_.battery_voltage = 23.5;
   sensors_.battery_current = 2;
-  const msg::BatteryState message = battery_state(sensors_, stamp_);
+  const sensor_msgs::BatteryState message = battery_state(sensors_, stamp_);
   EXPECT_EQ(message.header.stamp, stamp_);
   EXPECT_EQ(message.voltage, 23.5F);
   EXPECT_EQ(message.current, -2.0F);
-  EXPECT_EQ(message.power_supply_status, msg::BatteryState::POWER_SUPPLY_STATUS_DISCHARGING);
+  EXPECT_EQ(message.power_supply_status, sensor_msgs::BatteryState::POWER_SUPPLY_STATUS_DISCHARGING);
   EXPECT_EQ(message.present, 1);
   for (const float value : {message.temperature, message.charge, message.capacity, message.percentage}) {
     EXPECT_TRUE(std::isnan(value));
@@ -74,7 +74,7 @@ TEST_F(MotionMessagesTest, OdometryCarriesBothCovariancesAndBothFrames) {
     state_.base.pose_covariance[i] = static_cast<double>(i);
     state_.base.twist_covariance[i] = -static_cast<double>(i);
   }
-  const msg::Odometry message = odometry(state_, "odom", "base_link", stamp_);
+  const nav_msgs::Odometry message = odometry(state_, "odom", "base_link", stamp_);
   EXPECT_EQ(message.header.frame_id, "odom");
   EXPECT_EQ(message.child_frame_id, "base_link");
   EXPECT_EQ(message.pose.pose.position.y, 2);
@@ -91,7 +91,7 @@ TEST_F(MotionMessagesTest, OdometryCarriesBothCovariancesAndBothFrames) {
 TEST_F(MotionMessagesTest, GivenDiagonalsReplaceTheCovariancesOfOdometryAndAreNamedAtStart) {
   state_.base.pose_covariance.fill(7);
   state_.base.twist_covariance.fill(8);
-  msg::Odometry message = odometry(state_, "odom", "base_link", stamp_);
+  nav_msgs::Odometry message = odometry(state_, "odom", "base_link", stamp_);
   ReportParameters given;
   EXPECT_EQ(covariance_note(given), "");
   state_covariances(given, message);
@@ -108,7 +108,7 @@ TEST_F(MotionMessagesTest, GivenDiagonalsReplaceTheCovariancesOfOdometryAndAreNa
 
 TEST_F(MotionMessagesTest, TransformIsTheOdometrysPose) {
   state_.base.pose_odom = {.position = {1, 2, 3}, .orientation = {0, 0, 0.6, 0.8}};
-  const msg::TransformStamped message = transform(odometry(state_, "odom", "base_link", stamp_));
+  const geometry_msgs::TransformStamped message = transform(odometry(state_, "odom", "base_link", stamp_));
   EXPECT_EQ(message.header.frame_id, "odom");
   EXPECT_EQ(message.child_frame_id, "base_link");
   EXPECT_EQ(message.header.stamp, stamp_);
@@ -117,7 +117,7 @@ TEST_F(MotionMessagesTest, TransformIsTheOdometrysPose) {
 }
 
 TEST_F(MotionMessagesTest, ImuSaysWhatItDoesNotMeasure) {
-  const msg::Imu message = imu(sensors_, robot_, stamp_);
+  const sensor_msgs::Imu message = imu(sensors_, robot_, stamp_);
   EXPECT_EQ(message.header.frame_id, "imu_link");
   EXPECT_EQ(message.orientation_covariance[0], -1);
   EXPECT_THAT(message.angular_velocity_covariance, Each(0));
@@ -131,7 +131,7 @@ TEST_F(MotionMessagesTest, WheelOdometryIsTheWheelsAloneWithUnknownCovariance) {
   state_.base.pose_odom.position = {9, 9, 9};
   state_.base.pose_covariance.fill(9);
   state_.wheeled.odometry = {.x = 1, .y = 2, .yaw = 1, .linear = 3, .angular = 4};
-  const msg::Odometry message = wheel_odometry(state_, "odom", "base_link", stamp_);
+  const nav_msgs::Odometry message = wheel_odometry(state_, "odom", "base_link", stamp_);
   EXPECT_EQ(message.header.frame_id, "odom");
   EXPECT_EQ(message.child_frame_id, "base_link");
   EXPECT_EQ(message.pose.pose.position.x, 1);
@@ -151,7 +151,7 @@ TEST_F(MotionMessagesTest, ImuDataHasTheOrientationOfTheImuNotOfTheBase) {
   const double half = std::sqrt(0.5);
   state_.base.attitude = {0, -half, 0, half};
   robot_.imu_in_base.orientation = {0, 0, half, half};
-  const msg::Imu message = imu_data(sensors_, state_, robot_, EstimatorParameters{}, 0.001, stamp_);
+  const sensor_msgs::Imu message = imu_data(sensors_, state_, robot_, EstimatorParameters{}, 0.001, stamp_);
   EXPECT_EQ(message.header.frame_id, "imu_link");
   EXPECT_EQ(message.header.stamp, stamp_);
   const auto& q = message.orientation;
@@ -169,7 +169,7 @@ TEST_F(MotionMessagesTest, ImuDataCarriesTheSamplesAndEveryCovariance) {
   EstimatorParameters parameters;
   parameters.gyro_noise = 2;
   parameters.accelerometer_noise = 3;
-  const msg::Imu message = imu_data(sensors_, state_, robot_, parameters, 0.25, stamp_);
+  const sensor_msgs::Imu message = imu_data(sensors_, state_, robot_, parameters, 0.25, stamp_);
   EXPECT_EQ(message.angular_velocity.z, 3);
   EXPECT_EQ(message.linear_acceleration.x, 4);
   EXPECT_THAT(message.orientation_covariance, ElementsAre(1, 2, 3, 4, 5, 6, 7, 8, 9));
@@ -196,14 +196,14 @@ TEST_F(MotionMessagesTest, VelocityOutIsWhatTheLimitsLeft) {
   command_.requested.twist.linear[0] = 9;
   command_.twist_limited.linear[0] = 0.5;
   command_.twist_limited.angular[2] = 0.2;
-  const msg::TwistStamped message = velocity_out(command_, "base_link", stamp_);
+  const geometry_msgs::TwistStamped message = velocity_out(command_, "base_link", stamp_);
   EXPECT_EQ(message.header.frame_id, "base_link");
   EXPECT_EQ(message.twist.linear.x, 0.5);
   EXPECT_EQ(message.twist.angular.z, 0.2);
 }
 
 TEST_F(MotionMessagesTest, TwistKeepsAllSixAxes) {
-  msg::Twist message;
+  geometry_msgs::Twist message;
   message.linear.x = 1, message.linear.y = 2, message.linear.z = 3;
   message.angular.x = 4, message.angular.y = 5, message.angular.z = 6;
   const Twist twist = twist_of(message);
@@ -212,7 +212,7 @@ TEST_F(MotionMessagesTest, TwistKeepsAllSixAxes) {
 }
 
 TEST_F(MotionMessagesTest, AnImuOfAnotherNodeIsTakenWithItsAgeAndItsGaps) {
-  msg::Imu message;
+  sensor_msgs::Imu message;
   message.angular_velocity.z = 0.5;
   message.linear_acceleration.z = 9.81;
   const ExternalImuSample sample = imu_sample(message, 1'000'000'000, 3'000'000);

@@ -29,7 +29,7 @@ class SafetyStatusTest : public testing::Test {
     robot_.joints[1].name = "right_wheel_joint";
   }
 
-  msg::SafetyStatus message() const { return safety_status(permit_, robot_, absent_, time_, kPeriod, {}); }
+  SafetyStatus message() const { return safety_status(permit_, robot_, absent_, time_, kPeriod, {}); }
 
   Permit stopped() const {
     Permit stopped = permit_;
@@ -45,10 +45,10 @@ class SafetyStatusTest : public testing::Test {
 };
 
 TEST_F(SafetyStatusTest, SaysThatAHealthyRobotMayDrive) {
-  const msg::SafetyStatus status = message();
-  EXPECT_EQ(status.state, static_cast<int>(msg::SafetyStatus::READY));
+  const SafetyStatus status = message();
+  EXPECT_EQ(status.state, static_cast<int>(SafetyStatus::READY));
   EXPECT_EQ(status.state_name, "READY");
-  EXPECT_EQ(status.permit, static_cast<int>(msg::SafetyStatus::PERMIT_DRIVE));
+  EXPECT_EQ(status.permit, static_cast<int>(SafetyStatus::PERMIT_DRIVE));
   EXPECT_THAT(status.causes, IsEmpty());
   EXPECT_EQ(status.first_cause, "");
   EXPECT_EQ(status.run, 7u);
@@ -59,7 +59,7 @@ TEST_F(SafetyStatusTest, NamesTheConditionsThatAreBlindWithoutATorque) {
   sensors.joint_count = 2;
   const auto warnings = [&](std::uint32_t valid) {
     for (JointSample& joint : sensors.joints) joint.valid = valid;
-    msg::SafetyStatus status = message();
+    SafetyStatus status = message();
     warn_of_blind_conditions(sensors, status);
     EXPECT_EQ(status.warning_sentences.size(), status.warnings.size());
     return status.warnings;
@@ -79,7 +79,7 @@ TEST_F(SafetyStatusTest, HasASentenceAndARemedyForEveryCause) {
   permit_.causes = kCauseEmergencyStopTopic | kCauseControllerLost;
   permit_.active = kCauseControllerLost;
   permit_.first_cause = kCauseControllerLost;
-  const msg::SafetyStatus status = message();
+  const SafetyStatus status = message();
   EXPECT_THAT(status.causes, ElementsAre("e_stop_topic", "controller_lost"));
   EXPECT_THAT(status.active, ElementsAre("controller_lost"));
   EXPECT_EQ(status.first_cause, "controller_lost");
@@ -112,7 +112,7 @@ TEST_F(SafetyStatusTest, InventsNoEvidence) {
 TEST_F(SafetyStatusTest, ReportsWarningsBesideTheCauses) {
   permit_.warnings = kCauseBatteryLow;
   permit_.evidence[0] = {.cause = kCauseBatteryLow, .value = 20.9, .limit = 21};
-  const msg::SafetyStatus status = message();
+  const SafetyStatus status = message();
   EXPECT_THAT(status.warnings, ElementsAre("battery_low"));
   EXPECT_THAT(status.warning_sentences, ElementsAre("the battery is low: 20.9 V, limit 21 V (charge it soon)"));
   EXPECT_THAT(status.causes, IsEmpty());
@@ -122,7 +122,7 @@ TEST_F(SafetyStatusTest, ReportsWarningsBesideTheCauses) {
 TEST_F(SafetyStatusTest, AsksForAResetOfWhatLatchedAlone) {
   permit_.causes = kCauseImuLost | kCauseEmergencyStopService;
   permit_.warnings = kCauseTilt;
-  const msg::SafetyStatus status = message();
+  const SafetyStatus status = message();
   ASSERT_THAT(status.causes, ElementsAre("e_stop_service", "imu_lost"));
   EXPECT_EQ(status.remedies[0], "call e_stop_reset");
   EXPECT_THAT(status.remedies_before_reset, ElementsAre("", Not(HasSubstr("e_stop_reset"))));
@@ -192,7 +192,7 @@ TEST(RobotKindMessage, NamesTheNodesOfTheRobotsKindAndItsJoints) {
   robot.joints[1].role = JointRole::kHeld;
   robot.joints[2].name = "swivel";
   robot.joints[2].role = JointRole::kPassive;
-  const msg::RobotKind message = robot_kind(robot, {.kind = kLeggedKind, .driver = "driver"}, false);
+  const RobotKind message = robot_kind(robot, {.kind = kLeggedKind, .driver = "driver"}, false);
   EXPECT_EQ(message.robot, "quadbot");
   EXPECT_EQ(message.kind, "quadruped");
   EXPECT_THAT(message.roles, ElementsAre("driver", "estimator", "controller", "monitor"));
@@ -200,7 +200,7 @@ TEST(RobotKindMessage, NamesTheNodesOfTheRobotsKindAndItsJoints) {
   EXPECT_THAT(message.joints, ElementsAre("knee", "camera", "swivel"));
   EXPECT_THAT(message.joint_roles, ElementsAre("driven", "held", "passive"));
   EXPECT_THAT(message.fault_components, IsEmpty());
-  const msg::RobotKind simulated = robot_kind(robot, {.kind = kLeggedKind}, true);
+  const RobotKind simulated = robot_kind(robot, {.kind = kLeggedKind}, true);
   EXPECT_THAT(simulated.fault_components, testing::Contains("knee_motor"));
   EXPECT_THAT(simulated.fault_components, testing::Contains("camera_motor"));
   EXPECT_THAT(simulated.fault_components, Not(testing::Contains("swivel_motor")));
@@ -210,7 +210,7 @@ TEST(RobotKindMessage, NamesTheNodesOfTheRobotsKindAndItsJoints) {
 TEST_F(SafetyStatusTest, ARemedyNamesTheProgramsOfTheRobot) {
   permit_.causes = kCauseControllerLost | kCauseDriverLost;
   const Programs programs{.kind = kLeggedKind, .driver = "driver"};
-  const msg::SafetyStatus status = safety_status(permit_, robot_, absent_, time_, kPeriod, programs);
+  const SafetyStatus status = safety_status(permit_, robot_, absent_, time_, kPeriod, programs);
   EXPECT_THAT(status.remedies_before_reset,
               ElementsAre("look whether driver runs and gets its core", "look whether leg_controller runs"));
 }

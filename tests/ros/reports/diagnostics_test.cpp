@@ -11,7 +11,7 @@ namespace {
 using testing::HasSubstr;
 
 std::string value_of(const DiagnosticReport& report, const std::string& key) {
-  for (const msg::KeyValue& pair : report.message().values) {
+  for (const diagnostic_msgs::KeyValue& pair : report.message().values) {
     if (pair.key == key) return pair.value;
   }
   return "(none)";
@@ -35,7 +35,7 @@ class PermitReport : public testing::Test {
 };
 
 TEST_F(PermitReport, IsContentWithAHealthyRobot) {
-  EXPECT_EQ(report().message().level, static_cast<int>(msg::DiagnosticStatus::OK));
+  EXPECT_EQ(report().message().level, static_cast<int>(diagnostic_msgs::DiagnosticStatus::OK));
   EXPECT_EQ(value_of(report(), "state"), "DRIVE");
   EXPECT_EQ(value_of(report(), "speed_limit_m_s"), "(none)");
 }
@@ -43,7 +43,7 @@ TEST_F(PermitReport, IsContentWithAHealthyRobot) {
 TEST_F(PermitReport, WarnsOfWarnings) {
   permit_.warnings = kCauseBatteryLow;
   permit_.speed_limit = 0.3;
-  EXPECT_EQ(report().message().level, static_cast<int>(msg::DiagnosticStatus::WARN));
+  EXPECT_EQ(report().message().level, static_cast<int>(diagnostic_msgs::DiagnosticStatus::WARN));
   EXPECT_THAT(report().message().message, HasSubstr("the battery is low"));
   EXPECT_EQ(value_of(report(), "warnings"), "battery_low");
   EXPECT_EQ(value_of(report(), "speed_limit_m_s"), "0.3");
@@ -52,7 +52,7 @@ TEST_F(PermitReport, WarnsOfWarnings) {
 TEST_F(PermitReport, ACauseOutweighsAWarning) {
   permit_.warnings = kCauseBatteryLow;
   permit_.causes = kCauseTilt;
-  EXPECT_EQ(report().message().level, static_cast<int>(msg::DiagnosticStatus::ERROR));
+  EXPECT_EQ(report().message().level, static_cast<int>(diagnostic_msgs::DiagnosticStatus::ERROR));
   EXPECT_THAT(report().message().message, HasSubstr("tilted too far"));
 }
 
@@ -73,14 +73,14 @@ class StateReport : public testing::Test {
 };
 
 TEST_F(StateReport, IsContentWithAHealthyState) {
-  EXPECT_EQ(report().message().level, static_cast<int>(msg::DiagnosticStatus::OK));
+  EXPECT_EQ(report().message().level, static_cast<int>(diagnostic_msgs::DiagnosticStatus::OK));
   EXPECT_EQ(value_of(report(), "slip"), "");
 }
 
 TEST_F(StateReport, WarnsOfASensorThatIsLost) {
   for (const std::uint64_t flag : {kStateNoGyro, kStateNoAccelerometer, kStateNoLeftEncoder, kStateNoRightEncoder}) {
     state_.base.flags = kStateValid | flag;
-    EXPECT_EQ(report().message().level, static_cast<int>(msg::DiagnosticStatus::WARN));
+    EXPECT_EQ(report().message().level, static_cast<int>(diagnostic_msgs::DiagnosticStatus::WARN));
     EXPECT_THAT(report().message().message, HasSubstr(sentences_of(kStateFlagNames, flag, {})));
     const BitName& row = *row_of(kStateFlagNames, flag);
     EXPECT_EQ(value_of(report(), "estimate: " + std::string(row.name)), row.sentence);
@@ -90,7 +90,7 @@ TEST_F(StateReport, WarnsOfASensorThatIsLost) {
 
 TEST_F(StateReport, WarnsOfAStateThatIsNotValid) {
   state_.base.flags = 0;
-  EXPECT_EQ(report().message().level, static_cast<int>(msg::DiagnosticStatus::WARN));
+  EXPECT_EQ(report().message().level, static_cast<int>(diagnostic_msgs::DiagnosticStatus::WARN));
   EXPECT_THAT(report().message().message, HasSubstr("not valid"));
 }
 
@@ -111,7 +111,7 @@ TEST_F(StateReport, WarnsOfSlipInWordsAlsoOfAMoment) {
   EXPECT_EQ(value_of(report(), "slip remedy: spinning"), "accelerate less");
   EXPECT_EQ(value_of(report(), "slip remedy: left"), "(none)");
   state_.wheeled.slip = 0;
-  EXPECT_EQ(report(kSlipSideways).message().level, static_cast<int>(msg::DiagnosticStatus::WARN));
+  EXPECT_EQ(report(kSlipSideways).message().level, static_cast<int>(diagnostic_msgs::DiagnosticStatus::WARN));
   EXPECT_THAT(report(kSlipSideways).message().message, HasSubstr("the robot slides sideways"));
   EXPECT_EQ(value_of(report(kSlipSideways), "slip"), "");
   EXPECT_EQ(value_of(report(kSlipSideways), "slip_lately"), "sideways");
@@ -120,7 +120,7 @@ TEST_F(StateReport, WarnsOfSlipInWordsAlsoOfAMoment) {
 TEST_F(StateReport, WarnsOfAPoseWhoseWheelsSlip) {
   state_.base.flags = kStateValid | kStateDegraded;
   state_.base.degraded = kDegradedPosition;
-  EXPECT_EQ(report().message().level, static_cast<int>(msg::DiagnosticStatus::WARN));
+  EXPECT_EQ(report().message().level, static_cast<int>(diagnostic_msgs::DiagnosticStatus::WARN));
   EXPECT_THAT(report().message().message, HasSubstr("wheels or feet contradict the IMU, as in a slip"));
   EXPECT_EQ(value_of(report(), "degraded"), "position");
   EXPECT_THAT(value_of(report(), "degraded remedy: position"), HasSubstr("at the IMU's mounting"));
@@ -133,7 +133,8 @@ TEST_F(StateReport, ReportsHowWellSlipIsNoticed) {
                                      {60.0, "off: residuals 60 x the sensors' noise"}}) {
     state_.wheeled.residual_level = level;
     EXPECT_EQ(value_of(report(), "slip_detection"), words);
-    EXPECT_EQ(report().message().level, static_cast<int>(msg::DiagnosticStatus::OK)) << "the floor is as it is";
+    EXPECT_EQ(report().message().level, static_cast<int>(diagnostic_msgs::DiagnosticStatus::OK))
+        << "the floor is as it is";
   }
 }
 
@@ -194,7 +195,7 @@ TEST(CommandReasons, OfAMomentAreReported) {
   report_command(report, {}, std::uint64_t{kReasonJerkYielded} | kReasonSaturated, {}, {});
   EXPECT_EQ(value_of(report, "reasons"), "");
   EXPECT_EQ(value_of(report, "reasons_lately"), "jerk_yielded saturated");
-  EXPECT_EQ(report.message().level, static_cast<int>(msg::DiagnosticStatus::OK));
+  EXPECT_EQ(report.message().level, static_cast<int>(diagnostic_msgs::DiagnosticStatus::OK));
 }
 
 TEST(CommandReasons, ThatRefuseCommandsWarn) {
@@ -202,7 +203,7 @@ TEST(CommandReasons, ThatRefuseCommandsWarn) {
        {kReasonRefused, kReasonStale, kReasonManySenders, kReasonRevoked, kReasonPartIgnored}) {
     DiagnosticReport report("diff_drive_controller", "diffbot");
     report_command(report, {}, bit, {}, {});
-    EXPECT_EQ(report.message().level, static_cast<int>(msg::DiagnosticStatus::WARN));
+    EXPECT_EQ(report.message().level, static_cast<int>(diagnostic_msgs::DiagnosticStatus::WARN));
     EXPECT_THAT(report.message().message, HasSubstr(sentences_of(kCommandReasonNames, bit, {})));
   }
 }
@@ -211,11 +212,11 @@ TEST(CommandSenders, AreAValueAndWarnWhereThereIsMoreThanOne) {
   DiagnosticReport one("diff_drive_controller", "diffbot");
   report_command(one, {}, 0, {}, {"/teleop"});
   EXPECT_EQ(value_of(one, "senders"), "/teleop");
-  EXPECT_EQ(one.message().level, static_cast<int>(msg::DiagnosticStatus::OK));
+  EXPECT_EQ(one.message().level, static_cast<int>(diagnostic_msgs::DiagnosticStatus::OK));
   DiagnosticReport two("diff_drive_controller", "diffbot");
   report_command(two, {}, 0, {}, {"/navigation", "/teleop"});
   EXPECT_EQ(value_of(two, "senders"), "/navigation, /teleop");
-  EXPECT_EQ(two.message().level, static_cast<int>(msg::DiagnosticStatus::WARN));
+  EXPECT_EQ(two.message().level, static_cast<int>(diagnostic_msgs::DiagnosticStatus::WARN));
   EXPECT_THAT(two.message().message, HasSubstr("/navigation, /teleop"));
 }
 

@@ -38,7 +38,7 @@ class StopLogTest : public testing::Test {
   std::string report() { return report(message()); }
 
   /// "W text" and "I text", a line each.
-  std::string report(const msg::SafetyStatus& status) {
+  std::string report(const SafetyStatus& status) {
     std::string text;
     for (const ReportLine& line : log_.update(status)) text += (line.warning ? "W " : "I ") + line.text + "\n";
     return text;
@@ -61,7 +61,7 @@ class StopLogTest : public testing::Test {
     return enter(SupervisorState::kReady);
   }
 
-  msg::SafetyStatus message() const { return safety_status(permit_, robot_, {}, time_, 1'000'000, {}); }
+  SafetyStatus message() const { return safety_status(permit_, robot_, {}, time_, 1'000'000, {}); }
 
   StopLog log_{kLogPeriod, 1.25};
   Permit permit_;
@@ -133,8 +133,8 @@ TEST_F(StopLogTest, AReleaseThatWaitsForAZeroFirstIsTwoEvents) {
 }
 
 TEST_F(StopLogTest, SaysOnceThatItWaitsForAZeroRequestWhenSilenceWouldHaveEndedTheWait) {
-  msg::SafetyStatus status = message();
-  status.state = msg::SafetyStatus::INIT;
+  SafetyStatus status = message();
+  status.state = SafetyStatus::INIT;
   status.state_name = "INIT";
   status.awaiting_zero_request = 1;
   std::vector<std::string> said;
@@ -152,8 +152,8 @@ TEST_F(StopLogTest, SaysOnceThatItWaitsForAZeroRequestWhenSilenceWouldHaveEndedT
 }
 
 TEST_F(StopLogTest, SaysNothingOfAWaitThatSilenceEnds) {
-  msg::SafetyStatus status = message();
-  status.state = msg::SafetyStatus::INIT;
+  SafetyStatus status = message();
+  status.state = SafetyStatus::INIT;
   status.awaiting_zero_request = 1;
   report(status);
   status.cycle += 1260;
@@ -184,7 +184,7 @@ TEST_F(StopLogTest, SaysThatTheWayIsNotFree) {
 }
 
 TEST_F(StopLogTest, AWarningOfTheMachineDoesNotHideThatTheWayIsNotFree) {
-  msg::SafetyStatus status = message();
+  SafetyStatus status = message();
   status.warnings = {"torque_not_measured"};
   status.warning_sentences = {"drives measure no torque"};
   status.speed_limit = 0;

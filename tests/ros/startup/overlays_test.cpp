@@ -63,17 +63,10 @@ TEST(Overlays, SpellListsAsYamlDoes) {
   EXPECT_EQ(overlays[2].text, "[]");
 }
 
-TEST(Overlays, AreSaidUnlessTheLaunchFileItselfCausesThem) {
-  const char* environment[] = {"HOME=/home/user",
-                               "ROBOT_CONTROL_SET_BY_SIM=robot.clock  mujoco_plant.seed",
-                               "ROBOT_CONTROL_SET_BY_BACKEND=robot.bus",
-                               "ROBOT_CONTROL_SET_BY_EMPTY=",
-                               "ROBOT_CONTROL_OTHER=robot.rate",
-                               nullptr};
-  EXPECT_EQ(set_by_launch(environment), (std::set<std::string>{"robot.clock", "mujoco_plant.seed", "robot.bus"}));
+TEST(Overlays, AreReportedUnlessALaunchFileSetsThem) {
   const std::vector<Overlay> overlays = {{"robot.clock", "\"wall\"", "/robot/clock"},
                                          {"robot.rate", "500", "/robot/rate"}};
-  EXPECT_EQ(override_lines(overlays, "p.yaml", set_by_launch(environment)),
+  EXPECT_EQ(override_lines(overlays, "p.yaml", {"clock", "bus"}),
             std::vector<std::string>{"/robot/rate = 500 overrides robot.rate of p.yaml"});
   EXPECT_EQ(override_lines(overlays, "p.yaml").size(), 2u) << "a refused start names them all";
 }

@@ -29,12 +29,12 @@ TEST_F(WheelMessagesTest, JointCommandsAreTheWheelsVelocityTargets) {
   command_.joints[0].velocity = 4.5;
   command_.joints[1].velocity = 5.5;
   command_.joints[2].velocity = 99;
-  const msg::Float64MultiArray message = joint_commands(command_, robot_);
+  const std_msgs::Float64MultiArray message = joint_commands(command_, robot_);
   EXPECT_THAT(message.data, ElementsAre(4.5, 5.5));
   ASSERT_EQ(message.layout.dim.size(), 1u);
   EXPECT_EQ(message.layout.dim[0].label, "wheel");
   EXPECT_EQ(message.layout.dim[0].size, 2u);
-  const msg::JointState targets = joint_targets(command_, robot_, stamp_);
+  const sensor_msgs::JointState targets = joint_targets(command_, robot_, stamp_);
   EXPECT_THAT(targets.name, ElementsAre("left", "right"));
   EXPECT_THAT(targets.velocity, ElementsAre(4.5, 5.5));
 }
@@ -54,7 +54,7 @@ TEST_F(WheelMessagesTest, DriveStateComparesTheWheelsWithThePlanOfTwoCyclesBefor
   command_.joints[0] = {.mode = JointMode::kEffort, .velocity = 9, .effort = 0.25};
   command_.joints[1] = {.mode = JointMode::kEffort, .velocity = 9, .effort = -0.5};
   command_.wheeled.velocity = {4.25, 5.75, 99};
-  const msg::DriveState message = drive_state(command_, plan, 0, robot_, stamp_);
+  const DriveState message = drive_state(command_, plan, 0, robot_, stamp_);
   EXPECT_EQ(message.header.stamp, stamp_);
   EXPECT_THAT(message.name, ElementsAre("left", "right"));
   EXPECT_THAT(message.wanted, ElementsAre(4.5, 5.5));
@@ -67,7 +67,7 @@ TEST_F(WheelMessagesTest, DriveStateComparesTheWheelsWithThePlanOfTwoCyclesBefor
 
 TEST_F(WheelMessagesTest, DriveStateReportsEveryReasonWithSentenceAndRemedy) {
   for (const BitName& row : kCommandReasonNames) {
-    const msg::DriveState message = drive_state(command_, command_, row.bit, robot_, stamp_);
+    const DriveState message = drive_state(command_, command_, row.bit, robot_, stamp_);
     EXPECT_THAT(message.reasons, ElementsAre(std::string(row.name)));
     ASSERT_EQ(message.sentences.size(), 1u);
     EXPECT_THAT(message.sentences[0], testing::StartsWith(with_programs(row.sentence, Programs{})));

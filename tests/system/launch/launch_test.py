@@ -142,7 +142,9 @@ class LaunchTest(unittest.TestCase):
         second = Launch("clock:=lockstep", "cycles:=200", without="HOME")
         self.addCleanup(second.end)
         self.assertEqual(second.wait(), 0, second.output)
-        self.assertEqual(set(rospy.get_param("/mujoco_plant")), {"config", "cycles"})
+        plant = rospy.get_param("/mujoco_plant")
+        self.assertEqual(set(plant), {"config", "cycles", "scene", "seed", "laser"})
+        self.assertEqual([plant["scene"], plant["seed"], plant["laser"]], ["", "", {"rate": ""}])
         self.assertEqual([rospy.get_param(f"/robot/{name}") for name in ("urdf", "command_script", "bus")], [""] * 3)
         self.assertTrue(rospy.get_param("/diff_drive_controller/config").endswith("/robot_params.yaml"))
 

@@ -12,12 +12,13 @@ import numpy as np
 import rospy
 import rostest
 from actionlib_msgs.msg import GoalID, GoalStatus
+from diagnostic_msgs.msg import DiagnosticArray
 from nav_msgs.msg import OccupancyGrid, Odometry
 from robot_control.msg import FollowPathActionGoal, NavigateToAction, NavigateToGoal
 from sensor_msgs.msg import LaserScan
 from std_msgs.msg import Float64
-from system.navigation.navigation_support import Localised, message_of, missing, share, transform
-from system.system_support import Process, Program, init_test_node, refusal, wait_for
+from system.navigation.navigation_support import Latest, Localised, message_of, missing, share, transform
+from system.system_support import Process, Program, init_test_node, refusal, truncated_messages, wait_for
 from tf2_msgs.msg import TFMessage
 
 HALL = np.zeros((80, 120), dtype=np.int8)
@@ -141,9 +142,12 @@ class NavigationInputsTest(unittest.TestCase):
             self.map.publish(message)
             wait_for(reason, lambda reason=reason: reason in self.navigate.output)
         self.assertIn("map is refused: the map is in the frame 'house'", self.answer())
-        self.map.publish(message_of(MAP))
-        time.sleep(1.0)
-        self.assert_driven()
+        large = np.full((1100, 1100), -1, dtype=np.int8)  # longer than the 1 MB that other nodes take
+        large[:80, :120] = HALL
+        for hall in (large, HALL):
+            self.map.publish(message_of((*MAP[:3], hall)))
+            time.sleep(1.0)
+            self.assert_driven()
 
     def test_3_each_wrong_scan_is_named_and_the_laser_is_trusted_again(self) -> None:
         def changed(**fields: float | list[float] | str) -> Callable[[LaserScan], LaserScan]:
@@ -207,11 +211,33 @@ class NavigationInputsTest(unittest.TestCase):
         wait_for("no limit after the goal", lambda: math.isinf(clearances[-1]))
         subscriber.unregister()
 
-    def test_6_a_parameter_of_another_type_refuses_the_start(self) -> None:
-        for name, value in {"speed": "fast", "unknown_is_free": 1, "map_frame": 2}.items():
-            with self.subTest(name):
-                rospy.set_param("/wrong", {name: value})
-                self.assertIn(f"~{name} must be", refusal("navigate", "__name:=wrong"))
+    def test_6_all_wrong_parameters_refuse_the_start_at_once(self) -> None:
+        rospy.set_param("/wrong", {"speed": "fast", "unknown_is_free": 1, "map_frame": [1], "sped": 0.4})
+        refused = refusal("navigate", "__name:=wrong")
+        for problem in ("navigate.speed", "must be true or false", "navigate.map_frame", "navigate.sped"):
+            self.assertIn(problem, refused)
+
+    def test_6_bad_messages_are_refused_and_the_node_goes_on(self) -> None:
+        topics = {"scan": LaserScan, "odom": Odometry, "map": OccupancyGrid, "tf": TFMessage}
+        with truncated_messages(topics):
+            pass
+        for topic in topics:
+            wait_for(
+                topic, lambda topic=topic: f"{topic}: a message of the wrong length was refused" in self.navigate.output
+            )
+        bad = transform("map", "odom")
+        bad.transform.translation.x = math.nan
+        publisher = rospy.Publisher("tf", TFMessage, queue_size=1, latch=True)
+        publisher.publish(TFMessage([bad]))
+        wait_for("the refusal", lambda: "a transform to odom is refused: it is not finite" in self.navigate.output)
+        publisher.unregister()
+        time.sleep(1.2)
+        self.assert_driven()
+
+    def test_6_the_state_is_on_diagnostics(self) -> None:
+        found = Latest("/diagnostics", DiagnosticArray)
+        wait_for("a report", lambda: found.message is not None and found.message.status[0].name == "navigate")
+        self.assertIn("goal", {value.key for value in found.message.status[0].values})
 
     def test_7_one_that_is_started_again_ends_the_path_of_the_one_before_and_frees_the_robot(self) -> None:
         clearances: list[float] = []

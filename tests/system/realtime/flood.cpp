@@ -1,7 +1,13 @@
 /// flood RATE: sends RATE messages a second on every input topic of a robot. It calls the services as often, or as fast
 /// as they are answered. None of them stops the robot. It ends on SIGINT, and then prints how many it sent.
 
+#include <geometry_msgs/TwistStamped.h>
 #include <ros/ros.h>
+#include <std_msgs/Bool.h>
+#include <std_msgs/Empty.h>
+#include <std_msgs/Float64.h>
+#include <std_srvs/SetBool.h>
+#include <std_srvs/Trigger.h>
 
 #include <atomic>
 #include <chrono>
@@ -12,8 +18,6 @@
 #include <string>
 #include <thread>
 #include <vector>
-
-#include "ros/messages/simulation_messages.h"
 
 namespace robot_control {
 namespace {
@@ -41,24 +45,25 @@ struct Flow {
 class Flood {
  public:
   explicit Flood(double rate) : rate_(rate) {
-    msg::Twist twist;
+    geometry_msgs::Twist twist;
     twist.linear.x = 1.0;
-    msg::TwistStamped stamped;
+    geometry_msgs::TwistStamped stamped;
     stamped.twist = twist;
-    msg::Bool no_stop;
+    std_msgs::Bool no_stop;
     no_stop.data = 0;
-    msg::Float64 far;
+    std_msgs::Float64 far;
     far.data = 1000.0;
     publish("cmd_vel", twist);
     publish("cmd_vel_stamped", stamped);
     publish("e_stop", no_stop);
-    publish("heartbeat", msg::Empty());
+    publish("heartbeat", std_msgs::Empty());
     publish("clearance", far);
-    msg::SetBoolRequest run_on;
+    std_srvs::SetBool::Request run_on;
     run_on.data = 0;
-    call<msg::TriggerResponse>("e_stop_reset", msg::TriggerRequest());  // in DRIVE: accepted, without effect
-    call<msg::TriggerResponse>("reset_odometry", msg::TriggerRequest());
-    call<msg::SetBoolResponse>("mujoco_plant/set_pause", run_on);
+    call<std_srvs::Trigger::Response>("e_stop_reset",
+                                      std_srvs::Trigger::Request());  // in DRIVE: accepted, without effect
+    call<std_srvs::Trigger::Response>("reset_odometry", std_srvs::Trigger::Request());
+    call<std_srvs::SetBool::Response>("mujoco_plant/set_pause", run_on);
   }
 
   void run() {

@@ -64,7 +64,7 @@ def main() -> None:
     argparse.ArgumentParser(
         prog="robot_status.py",
         description="Publishes the robot's state for a host on robot_status (robot_control/RobotStatus): latched, once "
-        "per second and on every change. sim.launch and backend.launch start it.",
+        "per second and on every change. sim.launch and robot.launch start it.",
     ).parse_args(rospy.myargv()[1:])
     with running_node("robot_status") as signals:
         status = Status()

@@ -1,0 +1,41 @@
+#pragma once
+/// The blocks `slam`, `localization` and `navigate`.
+
+#include <optional>
+#include <string>
+
+#include "parameters/block.h"
+
+namespace robot_control::navigation {
+
+struct SlamParameters {
+  std::string map;  ///< YAML file of a saved map that grows on; empty: the map begins empty where the robot is
+};
+
+inline Keys keys(SlamParameters& slam) {
+  return {{"map", &slam.map, {}, 0, 0, kPath | kMayBeEmpty}};
+}
+
+struct LocalizationParameters {
+  std::string map;                            ///< YAML file; empty: it waits for load_map
+  std::optional<NumberList<3>> initial_pose;  ///< x, y [m], yaw [rad] at the start; none: it waits for initialpose
+};
+
+inline Keys keys(LocalizationParameters& localization) {
+  return {{"map", &localization.map, {}, 0, 0, kPath | kMayBeEmpty},
+          {"initial_pose", &localization.initial_pose, "m, m, rad", -1e6, 1e6, kOptional}};
+}
+
+struct NavigateParameters {
+  double speed = 0.5;            ///< m/s of a goal that names none
+  bool unknown_is_free = false;  ///< goals and ways may lie where neither map nor laser has been
+  std::string map_frame = "map";
+};
+
+inline Keys keys(NavigateParameters& navigate) {
+  return {{"speed", &navigate.speed, "m/s", 0.01, 10},
+          {"unknown_is_free", &navigate.unknown_is_free},
+          {"map_frame", &navigate.map_frame}};
+}
+
+}  // namespace robot_control::navigation
