@@ -1,8 +1,6 @@
 /// Checks who may open a channel's object, and what a node does with an object that others may open.
 
 #include <fcntl.h>
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -17,6 +15,7 @@
 #include "bus/bus.h"
 #include "support/bus/scoped_bus.h"
 #include "support/bus/test_frame.h"
+#include "support/matchers.h"
 #include "support/message_of.h"
 #include "support/processes/anonymous_memory.h"
 #include "support/processes/child_process.h"
@@ -24,8 +23,6 @@
 namespace robot_control {
 namespace {
 
-using testing::AllOf;
-using testing::HasSubstr;
 using Frames = LatestFrames<TestFrame>;
 
 constexpr uid_t kNobody = 65534;

@@ -1,28 +1,24 @@
 #include "bus/bus_cleanup.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include <array>
-#include <csignal>
 #include <filesystem>
 #include <memory>
 
 #include "bus/bus.h"
-#include "rt/clock.h"
 #include "signals/command_frame.h"
 #include "signals/permit.h"
 #include "support/bus/scoped_bus.h"
 #include "support/bus/test_frame.h"
+#include "support/matchers.h"
 #include "support/processes/child_process.h"
 
 namespace robot_control {
 namespace {
 
 using ::testing::Contains;
-using ::testing::Not;
 using Frames = LatestFrames<TestFrame>;
 using Permits = LatestFrames<Permit>;
 

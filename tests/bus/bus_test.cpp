@@ -1,21 +1,18 @@
 #include "bus/bus.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <cstdlib>
 #include <fstream>
 
 #include "support/bus/scoped_bus.h"
 #include "support/bus/test_frame.h"
+#include "support/matchers.h"
 #include "support/message_of.h"
 
 namespace robot_control {
 namespace {
 
-using testing::HasSubstr;
 using Frames = LatestFrames<TestFrame>;
 
 struct WideFrame {

@@ -1,15 +1,12 @@
 #include "files/input_file.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 #include <sys/stat.h>
 
+#include "support/matchers.h"
 #include "support/temporary_folder.h"
 
 namespace robot_control {
 namespace {
-
-using ::testing::HasSubstr;
 
 class AnInputFile : public ::testing::Test {
  protected:

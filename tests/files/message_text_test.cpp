@@ -1,13 +1,9 @@
 #include "files/message_text.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
+#include "support/matchers.h"
 
 namespace robot_control {
 namespace {
-
-using ::testing::HasSubstr;
-using ::testing::Not;
 
 TEST(MessageText, EscapesControlCharactersAndWhatIsNoUtf8) {
   EXPECT_EQ(printable(std::string_view("a\0b\x1b[2J\x7f", 8)), R"(a\x00b\x1b[2J\x7f)");

@@ -4,8 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <csignal>
-#include <fstream>
 #include <functional>
 
 #include "kinds/pendulum.h"

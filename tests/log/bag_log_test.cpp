@@ -1,22 +1,16 @@
 #include "log/bag_log.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include <filesystem>
 
 #include "log/log_error.h"
 #include "log/trace_reader.h"
 #include "loop/log_header.h"
 #include "recorded_drive.h"
+#include "support/matchers.h"
 #include "support/temporary_folder.h"
 
 namespace robot_control {
 namespace {
-
-using ::testing::ElementsAre;
-using ::testing::HasSubstr;
-using ::testing::ThrowsMessage;
 
 struct Found {
   std::vector<std::uint64_t> cycles = {};
@@ -155,7 +149,7 @@ TEST_F(ABagLog, OnRequestHoldsWhatIsRequested) {
   log->request(false);
   stand(5000);
   log->close();
-  EXPECT_THAT(log->rows(), testing::AllOf(testing::Ge(12'000u), testing::Le(16'000u)));
+  EXPECT_THAT(log->rows(), AllOf(testing::Ge(12'000u), testing::Le(16'000u)));
 }
 
 TEST_F(ABagLog, IsSplitBySizeAndLosesNothing) {

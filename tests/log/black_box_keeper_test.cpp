@@ -2,8 +2,6 @@
 
 #include "log/black_box/black_box_keeper.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 #include <sys/stat.h>
 
 #include <chrono>
@@ -15,15 +13,11 @@
 #include "log/trace_reader.h"
 #include "loop/log_header.h"
 #include "recorded_drive.h"
+#include "support/matchers.h"
 #include "support/temporary_folder.h"
 
 namespace robot_control {
 namespace {
-
-using ::testing::ElementsAre;
-using ::testing::HasSubstr;
-using ::testing::ThrowsMessage;
-using ::testing::UnorderedElementsAre;
 
 struct ABlackBoxKeeper : testing::Test {
   static constexpr std::int64_t kSecond = 1'000'000'000;
@@ -170,7 +164,7 @@ TEST_F(ABlackBoxKeeper, SavesWhatWasBeforeAStopAndFiveSecondsAfterItAndKeepsTheN
   drive_on(*keeper, 500);
   for (const char* stop : {"stop.1.bag: ", "stop.2.bag: ", "stop.3.bag: "}) {
     stop_and_release(*keeper);
-    EXPECT_THAT(notes(*keeper, 1), ElementsAre(testing::AllOf(HasSubstr(stop), HasSubstr("e_stop"))));
+    EXPECT_THAT(notes(*keeper, 1), ElementsAre(AllOf(HasSubstr(stop), HasSubstr("e_stop"))));
     if (stop[5] == '1') {
       EXPECT_EQ(rows_of("stop.1.bag"), 5600u);
     }

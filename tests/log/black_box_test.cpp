@@ -1,18 +1,13 @@
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include <algorithm>
 #include <filesystem>
 
 #include "black_box_fixture.h"
 #include "log/replay/replay.h"
+#include "support/matchers.h"
 #include "support/processes/child_process.h"
 
 namespace robot_control {
 namespace {
-
-using ::testing::HasSubstr;
-using ::testing::ThrowsMessage;
 
 /// Every message of a log, as bits.
 std::vector<std::string> messages_of(const std::string& bag) {

@@ -1,6 +1,3 @@
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include <algorithm>
 #include <cmath>
 #include <set>
@@ -8,6 +5,7 @@
 #include "log/fields/trace_fields.h"
 #include "log/rows/traces.h"
 #include "signals/wheeled/drive_tuning.h"
+#include "support/matchers.h"
 
 namespace robot_control {
 namespace {

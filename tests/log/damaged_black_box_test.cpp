@@ -1,7 +1,5 @@
 /// A killed, damaged or cut black box gives its valid part, and reports the rest.
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 #include <sys/resource.h>
 
 #include <csignal>
@@ -10,12 +8,10 @@
 #include <random>
 
 #include "black_box_fixture.h"
+#include "support/matchers.h"
 
 namespace robot_control {
 namespace {
-
-using ::testing::HasSubstr;
-using ::testing::ThrowsMessage;
 
 namespace fs = std::filesystem;
 

@@ -1,8 +1,5 @@
 /// A log whose messages have another layout is refused with the version that wrote it and the remedy.
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include <string>
 #include <utility>
 #include <vector>
@@ -11,6 +8,7 @@
 #include "log/messages/log_messages.h"
 #include "log/messages/trace_message.h"
 #include "log/trace_reader.h"
+#include "support/matchers.h"
 #include "support/message_of.h"
 #include "support/temporary_folder.h"
 
@@ -42,7 +40,7 @@ TEST(ALogOfAnotherLayout, OfSnapshotsIsRefusedWithItsVersionAndTheRemedy) {
       message_of<TraceError>([&] { reader.read({.snapshot = [](const LawSnapshot&, std::int64_t) {}}); });
   for (const std::string& part : {path, package_version(), std::string("version 0.3.0, build gcc 9 wrote it"),
                                   std::string("replay with that build")}) {
-    EXPECT_THAT(message, testing::HasSubstr(part));
+    EXPECT_THAT(message, HasSubstr(part));
   }
 }
 

@@ -1,8 +1,5 @@
 #include "log/messages/trace_message.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include <cmath>
 #include <cstring>
 
@@ -11,11 +8,10 @@
 #include "recorded_drive.h"
 #include "signals/names.h"
 #include "support/log_table.h"
+#include "support/matchers.h"
 
 namespace robot_control {
 namespace {
-
-using ::testing::HasSubstr;
 
 struct TraceMessages : testing::Test {
   TraceMessages() : TraceMessages(drive_parameters()) {}

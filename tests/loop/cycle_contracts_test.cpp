@@ -2,8 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <vector>
-
 #include "cycle_fixture.h"
 #include "loop/build_id.h"
 

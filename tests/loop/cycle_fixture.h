@@ -2,8 +2,6 @@
 /// Four cycles on channels in private memory, around a machine that only stores the reports it receives.
 
 #include <memory>
-#include <string>
-#include <vector>
 
 #include "control/wheeled/drive_controller.h"
 #include "drivers/driver.h"

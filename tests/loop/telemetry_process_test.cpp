@@ -1,12 +1,10 @@
 #include "loop/processes/telemetry_process.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include "cycle_fixture.h"
 #include "loop/cycles/trace_sink.h"
 #include "robots/differential_drive.h"
 #include "support/bus/scoped_bus.h"
+#include "support/matchers.h"
 #include "support/temporary_folder.h"
 
 namespace robot_control {

@@ -1,19 +1,13 @@
 /// Joints between the body and the floor: legs that fold are refused, robots that only look like them stand.
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include <tuple>
 
 #include "machine/random_text.h"
 #include "machine/urdf_text.h"
+#include "support/matchers.h"
 
 namespace robot_control {
 namespace {
-
-using testing::AllOf;
-using testing::HasSubstr;
-using testing::Not;
 
 struct Leg {
   std::string name = "";

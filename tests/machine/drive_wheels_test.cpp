@@ -1,16 +1,10 @@
 /// Selects the drive wheels by position, shape and axis; by name only if the user names them.
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include "machine/urdf_text.h"
+#include "support/matchers.h"
 
 namespace robot_control {
 namespace {
-
-using testing::AllOf;
-using testing::HasSubstr;
-using testing::Not;
 
 std::string joint_name(const DriveTrain& robot, std::size_t wheel) {
   return robot.joints[robot.wheels[wheel].joint].name;

@@ -1,20 +1,14 @@
 /// Parts that end at the height of the wheels, or almost.
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include <cmath>
 
 #include "machine/bodies/rigid_bodies.h"
 #include "machine/random_text.h"
 #include "machine/urdf_text.h"
+#include "support/matchers.h"
 
 namespace robot_control {
 namespace {
-
-using testing::AllOf;
-using testing::HasSubstr;
-using testing::Not;
 
 constexpr double kFloor = -0.1;  // m, of two_wheels()
 

@@ -1,19 +1,14 @@
 /// Wheels whose collision meshes are not quite round.
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include <cmath>
 
 #include "machine/random_text.h"
 #include "machine/urdf_text.h"
+#include "support/matchers.h"
 #include "support/temporary_folder.h"
 
 namespace robot_control {
 namespace {
-
-using testing::HasSubstr;
-using testing::Not;
 
 /// OBJ: a prism about z, 0.03 long, with the corner of the angle φ at the radius reach(φ).
 template <typename Reach>

@@ -1,21 +1,15 @@
 /// A URDF omits or misstates values; the reader replaces them, and each replacement is noted.
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include <Eigen/Eigenvalues>
 #include <cmath>
 
 #include "machine/bodies/link_inertia.h"
 #include "machine/bodies/rigid_bodies.h"
 #include "machine/urdf_text.h"
+#include "support/matchers.h"
 
 namespace robot_control {
 namespace {
-
-using testing::AllOf;
-using testing::HasSubstr;
-using testing::Not;
 
 const JointModel& joint_of(const DriveTrain& robot, const std::string& name) {
   for (const JointModel& each : robot.joints) {

@@ -4,8 +4,6 @@
 
 #include <chrono>
 #include <cmath>
-#include <cstdlib>
-#include <filesystem>
 
 #include "machine/bodies/rigid_bodies.h"
 #include "machine/random_text.h"

@@ -1,22 +1,16 @@
 /// Every refusal names the file, the element and the remedy.
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include <limits>
 
 #include "machine/urdf_text.h"
 #include "machine/wheeled/drive_train.h"
+#include "support/matchers.h"
 #include "support/message_of.h"
 #include "support/quiet_refusal.h"
 #include "support/robots/diffbot_urdf.h"
 
 namespace robot_control {
 namespace {
-
-using testing::AllOf;
-using testing::HasSubstr;
-using testing::Not;
 
 const std::string kFirstJoint = "<joint name=\"left_wheel_joint\"";
 const std::string kLeftLink = "<link name=\"left_wheel_link\">";

@@ -1,19 +1,14 @@
 /// The parts that carry a robot besides its drive wheels: casters with and without a swivel, rockers, many axles,
 /// tracks.
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include <cmath>
 
 #include "machine/bodies/rigid_bodies.h"
 #include "machine/urdf_text.h"
+#include "support/matchers.h"
 
 namespace robot_control {
 namespace {
-
-using testing::HasSubstr;
-using testing::Not;
 
 /// A wheel of 0.1 m below an upright swivel, which it follows by `trail`.
 std::string swivel(const std::string& trail) {

@@ -1,22 +1,15 @@
 /// Machines without differential drive: omni wheels, rollers, steered wheels, a drive that the file names.
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include <array>
 #include <cmath>
 
 #include "machine/bodies/rigid_bodies.h"
 #include "machine/random_text.h"
 #include "machine/urdf_text.h"
+#include "support/matchers.h"
 
 namespace robot_control {
 namespace {
-
-using testing::AllOf;
-using testing::AnyOf;
-using testing::HasSubstr;
-using testing::Not;
 
 std::string four_wheels() {
   return two_wheels() + wheel("rear_left", "-0.3 0.25 0") + wheel("rear_right", "-0.3 -0.25 0");

@@ -1,20 +1,15 @@
 /// XML that ROS accepts is accepted here, too, and so are meshes as shapes.
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include <cmath>
 
 #include "machine/bodies/rigid_bodies.h"
 #include "machine/urdf_text.h"
+#include "support/matchers.h"
 #include "support/quiet_refusal.h"
 #include "support/temporary_folder.h"
 
 namespace robot_control {
 namespace {
-
-using testing::AllOf;
-using testing::HasSubstr;
 
 std::string refusal(const std::string& content) {
   return quiet_refusal<RobotError>([&] { read_drive_train(robot_of(content), {}); });

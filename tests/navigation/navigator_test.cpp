@@ -1,15 +1,13 @@
 #include "navigation/navigator.h"
 
-#include <gmock/gmock.h>
-
 #include "navigation/guard.h"
 #include "navigation/house.h"
+#include "support/matchers.h"
 
 namespace robot_control::navigation {
 namespace {
 
 using namespace testing_house;
-using testing::HasSubstr;
 using State = NavigatorState;
 
 constexpr double kPeriod = 0.1;  // s

@@ -1,19 +1,17 @@
 #include "navigation/planner.h"
 
-#include <gmock/gmock.h>
-
 #include <fstream>
 #include <iterator>
 #include <random>
 
 #include "navigation/house.h"
 #include "navigation/map_consistency.h"
+#include "support/matchers.h"
 
 namespace robot_control::navigation {
 namespace {
 
 using namespace testing_house;
-using testing::HasSubstr;
 
 constexpr PlanarPose kLeft{1.6, 1.6, 0}, kRight{4.7, 1.6, 0};
 

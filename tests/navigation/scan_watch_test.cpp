@@ -1,13 +1,11 @@
 #include "navigation/scan_watch.h"
 
-#include <gmock/gmock.h>
-
 #include <functional>
+
+#include "support/matchers.h"
 
 namespace robot_control::navigation {
 namespace {
-
-using testing::HasSubstr;
 
 /// A laser of 360 rays; each test breaks one thing.
 class ScanWatchTest : public testing::Test {

@@ -1,7 +1,5 @@
 #include "configuration/wheeled/calibration_file.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 #include <unistd.h>
 
 #include <fstream>
@@ -9,14 +7,12 @@
 #include <sstream>
 
 #include "configuration/parameters.h"
+#include "support/matchers.h"
 #include "support/message_of.h"
 #include "support/temporary_folder.h"
 
 namespace robot_control {
 namespace {
-
-using ::testing::AllOf;
-using ::testing::HasSubstr;
 
 /// The healthy case is the calibration of a robot after an hour. Each test spoils one thing.
 class CalibrationFile : public ::testing::Test {

@@ -1,21 +1,15 @@
 #include "configuration/command_sources.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include <fstream>
 
 #include "configuration/parameters.h"
-#include "files/message_text.h"
 #include "parameters/problem_list.h"
+#include "support/matchers.h"
 #include "support/message_of.h"
 #include "support/temporary_folder.h"
 
 namespace robot_control {
 namespace {
-
-using ::testing::AllOf;
-using ::testing::HasSubstr;
 
 class CommandSources : public ::testing::Test {
  protected:
@@ -36,7 +30,7 @@ TEST_F(CommandSources, TheShippedListIsTakenHighestPriorityFirst) {
   const CommandSourceList list = read_command_sources(std::string(PROJECT_DIRECTORY) + "/config/command_sources.yaml");
   std::vector<std::string> names;
   for (const CommandSource& source : list.sources) names.push_back(source.name);
-  EXPECT_THAT(names, ::testing::ElementsAre("joy_vel", "key_vel", "console_vel", "cmd_vel", "path_vel"));
+  EXPECT_THAT(names, ElementsAre("joy_vel", "key_vel", "console_vel", "cmd_vel", "path_vel"));
   EXPECT_EQ(list.sources[0].priority, 40);
   EXPECT_TRUE(list.sources[0].stamped);
   EXPECT_FALSE(list.sources[3].stamped);

@@ -1,19 +1,11 @@
 // Conditions of the safety monitor: maps of limit, persistence and reaction.
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
-
 #include "configuration/parameters.h"
 #include "parameters/parameter_file.h"
 #include "parameters/suggestion.h"
+#include "support/matchers.h"
 
 namespace robot_control {
 namespace {
-
-using ::testing::HasSubstr;
-using ::testing::Not;
-using ::testing::Optional;
 
 /// The healthy case is a copy of the shipped file. Each test spoils one thing.
 class ReadConditions : public ::testing::Test {

@@ -1,19 +1,13 @@
 /// Tests a file over the installed one, configurations of the peer, and YAML tags.
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include "control/wheeled/limits/drive_limits.h"
 #include "parameter_file.h"
 #include "parameters/suggestion.h"
+#include "support/matchers.h"
 #include "support/message_of.h"
 
 namespace robot_control {
 namespace {
-
-using ::testing::AllOf;
-using ::testing::HasSubstr;
-using ::testing::Not;
 
 class Layers : public ::testing::Test {
  protected:

@@ -1,23 +1,16 @@
 // A request changes values while a node runs: it is accepted as a whole, or refused with every reason.
 #include "configuration/live_parameters.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include <chrono>
 #include <random>
 
 #include "parameters/parameter_file.h"
 #include "parameters/parameter_tree.h"
 #include "parameters/schema.h"
+#include "support/matchers.h"
 
 namespace robot_control {
 namespace {
-
-using ::testing::AllOf;
-using ::testing::ElementsAre;
-using ::testing::HasSubstr;
-using ::testing::IsEmpty;
 
 const std::string kBlock = "diff_drive_controller";
 

@@ -1,15 +1,10 @@
 // Gaits of the user's own: maps gait_1 … gait_4 of the leg controller.
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include "control/legged/gait.h"
 #include "parameters/parameter_file.h"
+#include "support/matchers.h"
 
 namespace robot_control {
 namespace {
-
-using ::testing::ElementsAre;
-using ::testing::HasSubstr;
 
 /// The healthy case is the shipped file with one gait. Each test spoils one thing.
 class OwnGaitsTest : public ::testing::Test {

@@ -1,14 +1,10 @@
 #include "configuration/rate_notes.h"
 
-#include <gmock/gmock.h>
-
 #include "parameters/parameter_file.h"
+#include "support/matchers.h"
 
 namespace robot_control {
 namespace {
-
-using ::testing::ElementsAre;
-using ::testing::IsEmpty;
 
 std::vector<std::string> notes_at(const std::string& rate, std::string_view block) {
   return rate_notes(read_parameters(shipped_path(), {{"robot.rate", rate, "test"}}), block);

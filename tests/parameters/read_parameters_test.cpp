@@ -1,8 +1,5 @@
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 #include <yaml-cpp/yaml.h>
 
-#include <algorithm>
 #include <map>
 #include <set>
 #include <span>
@@ -12,16 +9,10 @@
 #include "parameters/problem_list.h"
 #include "parameters/schema.h"
 #include "parameters/suggestion.h"
+#include "support/matchers.h"
 
 namespace robot_control {
 namespace {
-
-using ::testing::ElementsAre;
-using ::testing::HasSubstr;
-using ::testing::IsEmpty;
-using ::testing::Not;
-using ::testing::Optional;
-using ::testing::ThrowsMessage;
 
 /// The healthy case is a copy of the shipped file. Each test spoils one thing.
 class ReadParameters : public ::testing::Test {
@@ -467,8 +458,7 @@ TEST_F(ReadParameters, EscapesWhatATerminalWouldInterpret) {
 TEST(Listing, OfThousandsOfProblemsFitsAMessageAndCountsTheRest) {
   const std::string text = listing("my.yaml", std::vector<std::string>(3000, "robot.ratee = 500: unknown key"));
   EXPECT_LT(text.size(), 2000u);
-  EXPECT_THAT(text, testing::AllOf(testing::StartsWith("my.yaml: 3000 problems"),
-                                   testing::ContainsRegex("and 29[0-9]+ more$")));
+  EXPECT_THAT(text, AllOf(StartsWith("my.yaml: 3000 problems"), testing::ContainsRegex("and 29[0-9]+ more$")));
 }
 
 TEST(Schema, PathsAreUnique) {

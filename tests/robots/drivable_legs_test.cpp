@@ -1,9 +1,7 @@
 /// A robot on legs that cannot stand is refused.
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include "robots/quadruped_fixture.h"
+#include "support/matchers.h"
 #include "support/message_of.h"
 
 namespace robot_control {
@@ -26,13 +24,13 @@ TEST(Quadruped, AtARateAtWhichItFallsIsRefused) {
     return message_of<ParameterError>([&] { Quadruped(parameters, legged_robot("quadbot")).require_drivable(); }, "");
   };
   EXPECT_EQ(refusal_at(100), "");
-  EXPECT_THAT(refusal_at(99), testing::HasSubstr("robot.rate = 99 Hz: a robot on legs falls below 100 Hz"));
+  EXPECT_THAT(refusal_at(99), HasSubstr("robot.rate = 99 Hz: a robot on legs falls below 100 Hz"));
 }
 
 TEST(Quadruped, OfLegsThatDoNotReachTheGroundIsRefused) {
   LegModel robot = legged_robot("quadbot");
   robot.legs[0].foot_radius = -10;
-  EXPECT_THAT(refusal_of(robot), testing::HasSubstr("does not reach the ground while the robot stands 0.3 m above"));
+  EXPECT_THAT(refusal_of(robot), HasSubstr("does not reach the ground while the robot stands 0.3 m above"));
 }
 
 TEST(Quadruped, OfAKneeThatDoesNotBearATrotIsRefused) {
@@ -42,8 +40,8 @@ TEST(Quadruped, OfAKneeThatDoesNotBearATrotIsRefused) {
   EXPECT_EQ(refusal_of(robot), "");
   robot.joints[8].effort_limit = needs / 0.66;
   EXPECT_THAT(refusal_of(robot),
-              testing::HasSubstr("the knee rear_left_knee_joint needs 6.99 N·m for half of the weight, as in a trot: "
-                                 "0.66 of its effort limit, at most 0.65. Give"));
+              HasSubstr("the knee rear_left_knee_joint needs 6.99 N·m for half of the weight, as in a trot: "
+                        "0.66 of its effort limit, at most 0.65. Give"));
 }
 
 }  // namespace

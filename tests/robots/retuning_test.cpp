@@ -1,20 +1,15 @@
 #include "robots/wheeled/retuning.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include <random>
 #include <string_view>
 #include <thread>
 
 #include "loop/cycle_fixture.h"
 #include "support/allocation_guard.h"
+#include "support/matchers.h"
 
 namespace robot_control {
 namespace {
-
-using ::testing::AllOf;
-using ::testing::HasSubstr;
 
 /// Healthy: the defaults on two wheels, which the controller drives at up to (1 + 2·0.25)/0.1 = 15 rad/s; the monitor
 /// stops beyond 1.25·15 = 18.75.
@@ -191,7 +186,6 @@ TEST_F(RetunedLoop, RunsWithASetFromTheNextCycleOn) {
 }
 
 TEST_F(RetunedLoop, AllocatesNothingForASet) {
-  if (!AllocationGuard::kCounts) GTEST_SKIP() << "the sanitizer owns the allocator";
   tuning.wheels[0].kp = 1;
   hand_over();
   const AllocationGuard guard;

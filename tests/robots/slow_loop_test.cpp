@@ -1,17 +1,11 @@
 #include "robots/wheeled/slow_loop.h"
 
-#include <gmock/gmock.h>
-
-#include "control/wheeled/wheel_loops/feed_forward.h"
 #include "gate/wheeled/wheel_stop.h"
+#include "support/matchers.h"
 #include "support/robots/diffbot_urdf.h"
 
 namespace robot_control {
 namespace {
-
-using ::testing::ElementsAre;
-using ::testing::HasSubstr;
-using ::testing::IsEmpty;
 
 constexpr Role kRoles4[] = {Role::kDriver, Role::kEstimator, Role::kController, Role::kMonitor};
 

@@ -1,20 +1,14 @@
 #include "robots/wheeled/within_drives.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include <filesystem>
 #include <fstream>
 
 #include "machine/wheeled/drive_train.h"
+#include "support/matchers.h"
 #include "support/robots/diffbot_urdf.h"
 
 namespace robot_control {
 namespace {
-
-using ::testing::ElementsAre;
-using ::testing::HasSubstr;
-using ::testing::IsEmpty;
 
 /// Diffbot has 3.5 N·m and 30 rad/s, and no torque rate of its own.
 class WithinDrives : public ::testing::Test {

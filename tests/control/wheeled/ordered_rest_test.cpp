@@ -2,8 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
-
 #include "control/wheeled/control_bench.h"
 
 namespace robot_control {

@@ -298,7 +298,6 @@ TEST_F(Tune, WhileBrakedAtSpeedChangesNothingThatTheIntegratorsKnow) {
 }
 
 TEST_F(Tune, AllocatesNothing) {
-  if (!AllocationGuard::kCounts) GTEST_SKIP() << "the sanitizer owns the allocator";
   ControlBench bench = driving();
   given.pid_kp = 1;
   const DriveTuning tuning = drive_tuning(given, bench.robot, bench.period);

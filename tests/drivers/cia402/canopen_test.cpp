@@ -1,12 +1,9 @@
 #include "drivers/cia402/canopen.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
+#include "support/matchers.h"
 
 namespace robot_control::canopen {
 namespace {
-
-using ::testing::ElementsAre;
 
 TEST(Canopen, AnNmtCommandIsTwoBytesToAllNodesOrOne) {
   const can_frame frame = encode_nmt({.command = NmtCommand::kStart, .node = 5});

@@ -1,15 +1,11 @@
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include <cmath>
 #include <numbers>
 
 #include "drivers/drive/device_rig.h"
+#include "support/matchers.h"
 
 namespace robot_control::cia402 {
 namespace {
-
-using ::testing::HasSubstr;
 
 std::string words_after(
     const Cia402Pair& pair, const std::function<void(Cia402Device&)>& change = [](auto&) {}) {
@@ -267,7 +263,7 @@ TEST(Cia402Drive, StepsThroughThePowerStates) {
   });
   ASSERT_TRUE(rig.runs());
   rig.run(0.1);
-  EXPECT_THAT(controlwords, ::testing::ElementsAre(0x06, 0x07, 0x0F));
+  EXPECT_THAT(controlwords, ElementsAre(0x06, 0x07, 0x0F));
 }
 
 TEST(Cia402Drive, ResetsNoFaultByItself) {

@@ -1,14 +1,10 @@
 #include "drivers/cia402/pdo.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include "drivers/cia402/drive_objects.h"
+#include "support/matchers.h"
 
 namespace robot_control::canopen {
 namespace {
-
-using ::testing::ElementsAre;
 
 constexpr std::uint8_t kNode = 5;
 const cia402::AxisPdos kPdos;

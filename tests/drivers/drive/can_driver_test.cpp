@@ -2,18 +2,15 @@
 
 #include "drivers/drive/can_driver.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
 #include "drivers/drive/device_rig.h"
 #include "drivers/driver_contract.h"
+#include "support/matchers.h"
 
 namespace robot_control {
 namespace {
-
-using ::testing::HasSubstr;
 
 enum class TestedDialect { kOdrive, kCia402, kVesc };
 constexpr const char* kNames[] = {"odrive", "cia402", "vesc"};

@@ -1,17 +1,14 @@
 #include "drivers/line/can_load.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include <algorithm>
 #include <random>
 #include <string>
 #include <vector>
 
+#include "support/matchers.h"
+
 namespace robot_control {
 namespace {
-
-using ::testing::HasSubstr;
 
 std::string binary(std::uint32_t value, unsigned bits) {
   std::string text;

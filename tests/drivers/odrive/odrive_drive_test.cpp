@@ -1,16 +1,12 @@
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include <cmath>
 
 #include "drivers/drive/device_rig.h"
 #include "drivers/odrive/odrive_messages_05.h"
 #include "drivers/odrive/odrive_messages_06.h"
+#include "support/matchers.h"
 
 namespace robot_control::odrive {
 namespace {
-
-using ::testing::HasSubstr;
 
 std::string words_after(const OdrivePair& pair, double seconds = 3) {
   DeviceRig rig;

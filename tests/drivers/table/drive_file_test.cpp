@@ -1,6 +1,3 @@
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include <filesystem>
 #include <fstream>
 #include <regex>
@@ -12,13 +9,11 @@
 #include "drivers/table/read_drive_file.h"
 #include "drivers/vesc/vesc_parameters.h"
 #include "parameters/problem_list.h"
+#include "support/matchers.h"
 #include "support/message_of.h"
 
 namespace robot_control {
 namespace {
-
-using ::testing::AllOf;
-using ::testing::HasSubstr;
 
 const std::vector<std::string> kWheels = {"left_wheel_joint", "right_wheel_joint"};
 

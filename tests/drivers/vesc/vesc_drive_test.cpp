@@ -1,15 +1,10 @@
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <cmath>
 #include <numbers>
 
 #include "drivers/drive/device_rig.h"
+#include "support/matchers.h"
 
 namespace robot_control::vesc {
 namespace {
-
-using ::testing::HasSubstr;
 
 constexpr double kCount = 2 * std::numbers::pi / 42;  // rad of the motor, 7 pole pairs
 constexpr double kGear = 2.5;

@@ -1,7 +1,5 @@
 // Samples are missing, not finite or impossible, and sensors are lost.
 
-#include <cstring>
-
 #include "estimation/wheeled/estimator_fixture.h"
 #include "support/constants.h"
 

@@ -1,8 +1,6 @@
 // Wheels slip: the state soon reports which and why, and the covariance holds what the path errs. Rolling wheels raise
 // no flag.
 
-#include <cstring>
-
 #include "estimation/wheeled/estimator_fixture.h"
 #include "support/constants.h"
 

@@ -1,16 +1,10 @@
 #include "log/bag/bag_chunk.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include "log/bag/read_bag.h"
+#include "support/matchers.h"
 
 namespace robot_control {
 namespace {
-
-using ::testing::AnyOf;
-using ::testing::HasSubstr;
-using ::testing::StartsWith;
 
 /// Reads a chunk of these bytes that announces `size` bytes; returns its content, or the message of the refusal.
 std::string said_of(const std::string& bytes, std::uint32_t size) {

@@ -1,14 +1,10 @@
 /// Bags without a valid end.
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include "log/bag/read_bag.h"
+#include "support/matchers.h"
 
 namespace robot_control {
 namespace {
-
-using ::testing::HasSubstr;
 
 constexpr std::size_t kChunks = 3, kMessages = 50;
 

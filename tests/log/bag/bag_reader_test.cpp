@@ -1,15 +1,11 @@
 #include "log/bag/bag_reader.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include "log/bag/read_bag.h"
+#include "support/matchers.h"
 #include "support/message_of.h"
 
 namespace robot_control {
 namespace {
-
-using ::testing::HasSubstr;
 
 TEST(ASoundBag, IsReadToItsLastMessage) {
   const MadeBag made = make_bag(3, 200);

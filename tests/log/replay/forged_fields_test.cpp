@@ -2,9 +2,6 @@
 /// checksum of the message may escape. The page docs/log.md lists the fields with such edits, and this test reads the
 /// list.
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include <algorithm>
 #include <fstream>
 #include <random>
@@ -16,6 +13,7 @@
 #include "files/input_file.h"
 #include "log/messages/message_checksum.h"
 #include "log/replay/recorded.h"
+#include "support/matchers.h"
 
 namespace robot_control {
 namespace {
@@ -165,7 +163,7 @@ TEST_P(EditsOfForgedFields, WithARenewedChecksumAreNoticedOrListedInTheDocumenta
     for (int i = 0; noticed && i < (known ? GetParam() : kTries); ++i) noticed = notices_edit(places_[field], true);
     EXPECT_EQ(noticed, known) << name << (known ? " is not listed" : " is listed, but every edit is noticed");
   }
-  EXPECT_THAT(listed, testing::IsEmpty()) << "no such fields";
+  EXPECT_THAT(listed, IsEmpty()) << "no such fields";
 }
 
 }  // namespace

@@ -2,8 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
-
 #include "log/replay/recorded.h"
 #include "robots/differential_drive.h"
 

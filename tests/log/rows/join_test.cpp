@@ -1,18 +1,13 @@
 #include "log/rows/join.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include <random>
 #include <string>
 
 #include "log/rows/traces.h"
+#include "support/matchers.h"
 
 namespace robot_control {
 namespace {
-
-using ::testing::ElementsAre;
-using ::testing::IsEmpty;
 
 constexpr double kPeriod = 0.001;
 constexpr std::size_t kWindow = 8;

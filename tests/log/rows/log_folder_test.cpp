@@ -1,20 +1,14 @@
 #include "log/log_folder.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include <filesystem>
 
 #include "log/log_error.h"
 #include "log/log_file.h"
+#include "support/matchers.h"
 #include "support/temporary_folder.h"
 
 namespace robot_control {
 namespace {
-
-using ::testing::ElementsAre;
-using ::testing::HasSubstr;
-using ::testing::IsEmpty;
 
 class ALogFolder : public ::testing::Test {
  protected:

@@ -8,7 +8,6 @@
 #include <filesystem>
 #include <fstream>
 #include <string>
-#include <vector>
 
 #include "simulation/closed_loop.h"
 #include "support/log_table.h"

@@ -1,21 +1,17 @@
 /// Files that are no plain XML are refused by name, in few words.
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 #include <urdf_model/model.h>
 
 #include "machine/description/mesh.h"
 #include "machine/description/robot_description.h"
 #include "machine/description/urdf_document.h"
 #include "machine/description/xacro.h"
+#include "support/matchers.h"
 #include "support/message_of.h"
 #include "support/temporary_folder.h"
 
 namespace robot_control {
 namespace {
-
-using testing::AllOf;
-using testing::HasSubstr;
 
 constexpr std::size_t kShort = 2048;
 

@@ -1,23 +1,18 @@
 #include "machine/description/mesh.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include <algorithm>
 #include <chrono>
 #include <limits>
 
 #include "machine/description/robot_description.h"
 #include "mesh_texts.h"
+#include "support/matchers.h"
 #include "support/message_of.h"
 #include "support/quiet_refusal.h"
 #include "support/temporary_folder.h"
 
 namespace robot_control {
 namespace {
-
-using testing::AllOf;
-using testing::HasSubstr;
 
 using Corner = Eigen::Vector3d;
 
@@ -196,7 +191,7 @@ TEST_F(Mesh, CountsThatAreNotMetAreRefusedOrIgnored) {
     for (const char* element : {"count=\"9\"", "count=\"3\"", "count=\"1\"", "stride=\"3\"", "0 1 2"}) {
       const std::string attribute = std::string(element).substr(0, std::string(element).find('"'));
       const std::string to = element[0] == '0' ? count : attribute + "\"" + count + "\"";
-      EXPECT_THAT(refusal("a.dae", dae_with(element, to)), testing::AnyOf("accepted", says("mesh: "))) << to;
+      EXPECT_THAT(refusal("a.dae", dae_with(element, to)), AnyOf("accepted", says("mesh: "))) << to;
     }
   }
   EXPECT_THAT(refusal("a.obj", kObj + "f 1 2 99999999999\n"), says("unreadable"));

@@ -1,18 +1,13 @@
 #include "machine/description/xacro.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include "machine/description/other_process.h"
 #include "machine/description/robot_description.h"
+#include "support/matchers.h"
 #include "support/quiet_refusal.h"
 #include "support/temporary_folder.h"
 
 namespace robot_control {
 namespace {
-
-using testing::AllOf;
-using testing::HasSubstr;
 
 constexpr const char* kRobot =
     "<robot name=\"bot\" xmlns:xacro=\"http://www.ros.org/wiki/xacro\">"

@@ -2,8 +2,6 @@
 
 #include "machine/legs/leg_model.h"
 
-#include <gmock/gmock.h>
-
 #include <algorithm>
 #include <cmath>
 
@@ -12,12 +10,11 @@
 #include "machine/legs/legs_corpus.h"
 #include "machine/legs/lying_posture.h"
 #include "machine/quadruped_urdf.h"
+#include "support/matchers.h"
 #include "support/message_of.h"
 
 namespace robot_control {
 namespace {
-
-using testing::HasSubstr;
 
 constexpr double kDigits = 1.5e-9;      // m, of the feet in FACTS.json, which has nine decimals
 constexpr double kEffortDigits = 1e-5;  // N·m

@@ -2,13 +2,11 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cmath>
 #include <random>
 
 #include "control/wheeled/control_problems.h"
 #include "control/wheeled/test_robot.h"
-#include "control/wheeled/wheel_loops/feed_forward.h"
 #include "control/wheeled/wheel_loops/wheel_loop_stability.h"
 #include "support/constants.h"
 

@@ -1,19 +1,14 @@
 /// Robots on feet whose lowest points differ from those of the wheels.
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include <random>
 
 #include "drivers/mujoco/plant_fixture.h"
+#include "support/matchers.h"
 #include "support/message_of.h"
 #include "support/robots/made_robot.h"
 
 namespace robot_control {
 namespace {
-
-using testing::AllOf;
-using testing::HasSubstr;
 
 class FeetOnGround : public PlantTest {
  protected:

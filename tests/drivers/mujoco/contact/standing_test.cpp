@@ -1,18 +1,14 @@
 /// Robots that stand on more than their wheels.
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include <cmath>
 
 #include "drivers/mujoco/plant_fixture.h"
+#include "support/matchers.h"
 #include "support/message_of.h"
 #include "support/robots/made_robot.h"
 
 namespace robot_control {
 namespace {
-
-using testing::HasSubstr;
 
 std::string part(const std::string& name, const std::string& shape, const std::string& parent, const std::string& joint,
                  const std::string& mass = "0.5") {

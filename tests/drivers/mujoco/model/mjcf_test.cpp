@@ -5,9 +5,6 @@
 #include <gtest/gtest.h>
 #include <mujoco/mujoco.h>
 
-#include <algorithm>
-#include <fstream>
-
 #include "drivers/mujoco/constants.h"
 #include "drivers/mujoco/model/mujoco_model.h"
 #include "drivers/mujoco/mujoco_errors.h"

@@ -1,13 +1,9 @@
 #include "drivers/mujoco/motors/brake_limits.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <cmath>
-
 #include "drivers/driver.h"
 #include "drivers/mujoco/constants.h"
 #include "machine/wheeled/tipping.h"
+#include "support/matchers.h"
 #include "support/message_of.h"
 #include "support/robots/made_robot.h"
 
@@ -76,23 +72,23 @@ TEST_F(CheckBrake, AcceptsWhatALightWheelBears) {
 
 TEST_F(CheckBrake, RefusesDampingThatALightWheelDoesNotBear) {
   brake_.damping = 2.6;  // 2.6 · 0.001 / 0.005 = 0.52
-  EXPECT_THAT(refusal(), testing::HasSubstr("brake_damping"));
+  EXPECT_THAT(refusal(), HasSubstr("brake_damping"));
 }
 
 TEST_F(CheckBrake, RefusesStiffnessThatALightWheelDoesNotBear) {
   brake_.stiffness = 2600;  // 2600 · 10⁻⁶ / 0.005 = 0.52
-  EXPECT_THAT(refusal(), testing::HasSubstr("brake_stiffness"));
+  EXPECT_THAT(refusal(), HasSubstr("brake_stiffness"));
 }
 
 TEST(CheckBrakeOfATinyWheel, NamesItsNumbers) {
   const std::string message = message_of<DriverError>(
       [&] { check_brake({.effort = 1, .damping = 1, .stiffness = 1, .hold_speed = 1}, "tiny", 4e-7, kStep); });
-  EXPECT_THAT(message, testing::AllOf(testing::HasSubstr("4e-07 kg·m²"), testing::HasSubstr("up to 0.0002 ")));
+  EXPECT_THAT(message, AllOf(HasSubstr("4e-07 kg·m²"), HasSubstr("up to 0.0002 ")));
 }
 
 TEST_F(CheckBrake, RefusesABrakeThatDoesNotHold) {
   brake_.stiffness = 0;
-  EXPECT_THAT(refusal(), testing::HasSubstr("brake_stiffness"));
+  EXPECT_THAT(refusal(), HasSubstr("brake_stiffness"));
 }
 
 }  // namespace

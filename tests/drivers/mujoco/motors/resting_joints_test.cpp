@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 
 #include "drivers/mujoco/constants.h"
 #include "drivers/mujoco/plant_fixture.h"
