@@ -28,8 +28,7 @@ class BlindMonitor : public ::testing::Test {
   std::unique_ptr<MonitorCycle> make_monitor() {
     return std::make_unique<MonitorCycle>(
         std::make_unique<MonitorOf<SafetyMonitor>>(SafetyParameters{}, loop.robot, kPeriod), loop.robot.hash, kLossNs,
-        MonitorCycle::Channels{&loop.sensors.reader, &loop.state.reader, &loop.command.reader, loop.permit.writer},
-        CommandScript(), virtual_clock);
+        loop.of_monitor(), CommandScript(), virtual_clock);
   }
 
   /// The driver publishes and wakes the monitor in every period.
@@ -124,11 +123,7 @@ TEST_F(BlindMonitor, ADriverThatEndedAndIsStartedAgainIsLost) {
 class MonitorWithoutDriver : public BlindMonitor {
  protected:
   MonitorWithoutDriver() {
-    loop.permit.memory = std::make_unique<LatestFrames<Permit>>();
-    loop.permit.writer = FrameWriter<Permit>(loop.permit.memory.get());
-    loop.permit.reader.remap(loop.permit.memory.get());
-    loop.sensors.memory = std::make_unique<LatestFrames<SensorFrame>>();
-    loop.sensors.reader.remap(loop.sensors.memory.get());
+    static_cast<TestChannels&>(loop) = {};
     loop.monitor = make_monitor();
   }
 };

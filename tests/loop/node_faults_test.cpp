@@ -19,13 +19,7 @@ constexpr FaultComponent kNodes[]{FaultComponent::kController, FaultComponent::k
 /// A loop in DRIVE whose controller pushes ever harder at wheels that never turn.
 class NodeFaults : public ::testing::Test {
  protected:
-  NodeFaults() { start(loop); }
-
-  static void start(Loop& any) {
-    any.step();
-    any.controller->inbox().store({.content = {.twist = kAhead}, .count = 1});
-    any.steps(20);
-  }
+  NodeFaults() { loop.drive(); }
 
   static void inject(Loop& any, FaultComponent component, FaultKind kind) {
     InjectedFaults faults = any.machine.faults;
@@ -126,7 +120,7 @@ TEST_F(NodeFaults, StuckIsOldContentUnderANewHead) {
 
 TEST_F(NodeFaults, DelayedIsTheContentOfTenCyclesAgo) {
   Loop healthy;
-  start(healthy);
+  healthy.drive();
   inject(FaultComponent::kController, FaultKind::kDelayed);
   std::vector<double> efforts;
   for (std::size_t i = 0; i < 20; ++i) {  // then the monitor takes the command for stale
@@ -140,7 +134,7 @@ TEST_F(NodeFaults, DelayedIsTheContentOfTenCyclesAgo) {
 
 TEST_F(NodeFaults, AWrongControllerTurnsEveryEffortRound) {
   Loop healthy;
-  start(healthy);
+  healthy.drive();
   inject(FaultComponent::kController, FaultKind::kWrong);
   for (int i = 0; i < 20; ++i) {
     healthy.step();
