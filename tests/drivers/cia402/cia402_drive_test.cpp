@@ -17,6 +17,13 @@ std::string words_after(
   return rig.drive().words();
 }
 
+auto without(const canopen::ObjectAddress& object) {
+  return [=](Cia402Device& device) { device.objects().remove(object); };
+}
+auto with(const canopen::ObjectAddress& object, std::uint32_t value) {
+  return [=](Cia402Device& device) { device.objects().set(object, value); };
+}
+
 TEST(Cia402Drive, PrefersTheCyclicTorqueModeAndTakesTheProfileMode) {
   for (const auto& [modes, mode] : {std::pair{0x208U, Mode::kCyclicTorque}, {0x8U, Mode::kTorque}}) {
     Cia402Pair pair = cia402_pair(5);
@@ -49,18 +56,13 @@ TEST(Cia402Drive, ComparesWhatItReadsWithTheFile) {
   pair.drive.rated_torque = 3;
   EXPECT_THAT(words_after(pair), HasSubstr("rated torque (6076), 2 instead of 3"));
   pair = cia402_pair(5);
-  EXPECT_THAT(words_after(pair, [](Cia402Device& device) { device.objects().set(kMaxTorque, 500); }),
-              HasSubstr("maximum torque (6072), 1 instead of 1.6"));
+  EXPECT_THAT(words_after(pair, with(kMaxTorque, 500)), HasSubstr("maximum torque (6072), 1 instead of 1.6"));
 }
 
 TEST(Cia402Drive, SaysWhatIsMissingAndWhatWasRefusedWithTheAbortInWords) {
   const Cia402Pair pair = cia402_pair(5);
-  EXPECT_THAT(words_after(pair, [](auto& device) { device.objects().remove(kRatedTorque); }),
-              HasSubstr("lacks rated torque (6076); state rated_torque"));
-  EXPECT_THAT(words_after(pair,
-                          [](auto& device) {
-                            device.objects().remove({0x6077, 0});
-                          }),
+  EXPECT_THAT(words_after(pair, without(kRatedTorque)), HasSubstr("lacks rated torque (6076); state rated_torque"));
+  EXPECT_THAT(words_after(pair, without({0x6077, 0})),
               HasSubstr("refused to set TPDO of statusword, position and torque (0x6040041: object cannot be mapped"));
   Cia402Pair fixed = pair;
   fixed.device.fixed_mapping = true;
@@ -82,7 +84,7 @@ TEST(Cia402Drive, TakesAFixedMappingThatHoldsWhatItNeeds) {
     device.objects().set({0x1600, 3}, 0x607A0020);
   };
   EXPECT_THAT(words_after(pair, with_position), HasSubstr("its RPDO, which holds another object: 0x607A0020"));
-  const auto without_position = [](Cia402Device& device) { device.objects().set({0x1A00, 0}, 1); };
+  const auto without_position = with({0x1A00, 0}, 1);
   EXPECT_THAT(words_after(pair, without_position), HasSubstr("lacks an entry of its PDO: (0x60640020"));
 }
 
@@ -145,11 +147,7 @@ TEST(Cia402Drive, TakesAVelocityAtAnyPlaceOfAFixedPdo) {
   pair.drive.pdos = PdoSource::kFixed;
   pair.drive.velocity_pdo = VelocityPdo::kTrue;
   EXPECT_THAT(words_after(pair), HasSubstr("running"));
-  EXPECT_THAT(words_after(pair,
-                          [](auto& device) {
-                            device.objects().set({0x1A01, 0}, 0);
-                          }),
-              HasSubstr("lacks an entry of its PDO: (0x606C0020"));
+  EXPECT_THAT(words_after(pair, with({0x1A01, 0}, 0)), HasSubstr("lacks an entry of its PDO: (0x606C0020"));
   DeviceRig rig;
   Cia402Device& device = add(rig, pair);
   device.objects().set({0x1A01, 0}, 2);
@@ -175,22 +173,9 @@ VelocitySource velocity_of(const Cia402Pair& pair, const std::function<void(Cia4
 TEST(Cia402Drive, MapsTheVelocityWhereItCan) {
   const Cia402Pair pair = cia402_pair(5);
   EXPECT_EQ(velocity_of(pair), VelocitySource::kDrive);
-  EXPECT_EQ(velocity_of(pair,
-                        [](Cia402Device& device) {
-                          device.objects().remove({0x606C, 0});
-                        }),
-            VelocitySource::kNotMapped);
-  EXPECT_EQ(velocity_of(pair,
-                        [](Cia402Device& device) {
-                          device.objects().remove({0x1801, 1});
-                        }),
-            VelocitySource::kNotMapped);
-  EXPECT_EQ(velocity_of(pair,
-                        [](Cia402Device& device) {
-                          device.objects().remove({0x1A01, 2});
-                        }),
-            VelocitySource::kDrive)
-      << "one entry is enough";
+  EXPECT_EQ(velocity_of(pair, without({0x606C, 0})), VelocitySource::kNotMapped);
+  EXPECT_EQ(velocity_of(pair, without({0x1801, 1})), VelocitySource::kNotMapped);
+  EXPECT_EQ(velocity_of(pair, without({0x1A01, 2})), VelocitySource::kDrive) << "one entry is enough";
 }
 
 TEST(Cia402Drive, DrivesOnWithoutADerivedVelocityThatIsNotSent) {
@@ -207,13 +192,10 @@ TEST(Cia402Drive, DrivesOnWithoutADerivedVelocityThatIsNotSent) {
 // A wrong unit would move the joint by a multiple of its way.
 TEST(Cia402Drive, MapsNoVelocityWithoutItsUnit) {
   Cia402Pair pair = cia402_pair(5);
-  const auto without = [](Cia402Device& device) { device.objects().remove(kVelocityUnit); };
-  EXPECT_EQ(velocity_of(pair, without), VelocitySource::kNoUnit);
-  EXPECT_EQ(velocity_of(pair, [](Cia402Device& device) { device.objects().set(kVelocityUnit, 0x00B5'0300); }),
-            VelocitySource::kNoUnit)
-      << "increments per second";
+  EXPECT_EQ(velocity_of(pair, without(kVelocityUnit)), VelocitySource::kNoUnit);
+  EXPECT_EQ(velocity_of(pair, with(kVelocityUnit, 0x00B5'0300)), VelocitySource::kNoUnit) << "increments per second";
   pair.drive.velocity_unit = pair.device.velocity_unit = 0.01 * kRpm;
-  EXPECT_EQ(velocity_of(pair, without), VelocitySource::kDrive) << "it is stated";
+  EXPECT_EQ(velocity_of(pair, without(kVelocityUnit)), VelocitySource::kDrive) << "it is stated";
 }
 
 TEST(Cia402Drive, MapsNoVelocityThatIsNotWantedOrHasNoRoom) {
@@ -229,16 +211,8 @@ TEST(Cia402Drive, UsesTheVelocityOfAFixedPdoThatComesWithSync) {
   pair.device.fixed_mapping = true;
   pair.drive.pdos = PdoSource::kFixed;
   EXPECT_EQ(velocity_of(pair), VelocitySource::kDrive);
-  EXPECT_EQ(velocity_of(pair,
-                        [](Cia402Device& device) {
-                          device.objects().set({0x1801, 2}, canopen::kOnEvent);
-                        }),
-            VelocitySource::kNotMapped);
-  EXPECT_EQ(velocity_of(pair,
-                        [](Cia402Device& device) {
-                          device.objects().set({0x1A01, 0}, 0);
-                        }),
-            VelocitySource::kNotMapped);
+  EXPECT_EQ(velocity_of(pair, with({0x1801, 2}, canopen::kOnEvent)), VelocitySource::kNotMapped);
+  EXPECT_EQ(velocity_of(pair, with({0x1A01, 0}, 0)), VelocitySource::kNotMapped);
 }
 
 TEST(Cia402Drive, AVelocityThatIsNotSentAnyMoreIsNamed) {
@@ -306,8 +280,7 @@ TEST(Cia402Drive, JudgesTheVoltageWhereTheDriveHasIt) {
   device.objects().set(kDcLinkVoltage, 12000);
   rig.run(0.3);
   EXPECT_THAT(rig.drive().words(), HasSubstr("has a low supply: voltage, 12 instead of 18"));
-  EXPECT_THAT(words_after(cia402_pair(5), [](auto& each) { each.objects().remove(kDcLinkVoltage); }),
-              HasSubstr("running"));
+  EXPECT_THAT(words_after(cia402_pair(5), without(kDcLinkVoltage)), HasSubstr("running"));
 }
 
 struct ReactionCase {

@@ -1,4 +1,4 @@
-/// The driver on simulated devices, through a real file descriptor, held to the contract of every driver.
+/// The driver on simulated devices, through a real file descriptor; every_drive_test.cpp holds it to the contract.
 
 #include "drivers/drive/can_driver.h"
 
@@ -6,7 +6,7 @@
 #include <unistd.h>
 
 #include "drivers/drive/device_rig.h"
-#include "drivers/driver_contract.h"
+#include "support/allocation_guard.h"
 #include "support/matchers.h"
 
 namespace robot_control {
@@ -82,21 +82,6 @@ class CanMachine final : public Driver {
   std::size_t party_ = 0;
   std::optional<CanDriver> driver_;
 };
-
-MachineUnderTest machine(const std::string& name, TestedDialect dialect) {
-  return {.name = name,
-          .make = [dialect] { return std::make_unique<CanMachine>(dialect); },
-          .effort_limit = 4,
-          .effort = 0.5,
-          .damping = 2,
-          .stiffness = 20};
-}
-
-INSTANTIATE_TEST_SUITE_P(CanMachines, DriverContract,
-                         testing::Values(machine("Odrive", TestedDialect::kOdrive),
-                                         machine("Cia402", TestedDialect::kCia402),
-                                         machine("Vesc", TestedDialect::kVesc)),
-                         machine_name);
 
 class CanDriverOn : public ::testing::TestWithParam<TestedDialect> {
  protected:
@@ -206,6 +191,18 @@ TEST_P(CanDriverOn, NothingMovesAfterAFaultUntilTheNextStart) {
   machine_.start();
   EXPECT_EQ(cycle().driver_state, DriverState::kRunning);
   EXPECT_GT(cycles(500, drive_).joints[0].velocity, 4);
+}
+
+TEST_P(CanDriverOn, ReadAndWriteDoNotAllocate) {
+  machine_.start();
+  const std::vector<JointCommand> commands(2, drive_);
+  SensorFrame frame;
+  const AllocationGuard guard;
+  for (int i = 0; i < 100; ++i) {
+    machine_.read(frame);
+    machine_.write(commands);
+  }
+  EXPECT_EQ(guard.count(), 0u);
 }
 
 TEST_P(CanDriverOn, BrakesAndHoldsOnASlope) {

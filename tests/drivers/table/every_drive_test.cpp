@@ -57,17 +57,12 @@ class EveryDrive : public testing::TestWithParam<DriveUnderTest> {
     const JointCommand command = GetParam().takes_speeds
                                      ? JointCommand{.mode = JointMode::kDriveVelocity, .velocity = kSpeed}
                                      : JointCommand{.mode = JointMode::kVelocity, .velocity = kSpeed, .damping = 0.2};
-    for (int i = 0; i < seconds * DriveMachine::kRate; ++i) {
-      machine_.read(frame_);
-      machine_.write(std::vector<JointCommand>(2, command));
-    }
-    return frame_.driver_state;
+    return machine_.cycles(static_cast<int>(std::lround(seconds * DriveMachine::kRate)), command).driver_state;
   }
   bool turns() const { return std::abs(machine_.joints[0].velocity) + std::abs(machine_.joints[1].velocity) > 0.5; }
 
   static constexpr double kSpeed = 5;  // rad/s
   DriveMachine machine_{*GetParam().row, GetParam().takes_speeds};
-  SensorFrame frame_;
 };
 
 TEST_P(EveryDrive, IsAtRestWhileItsAnswersFailAndUntilTheReset) {
@@ -79,17 +74,18 @@ TEST_P(EveryDrive, IsAtRestWhileItsAnswersFailAndUntilTheReset) {
     run(1);
     for (int i = 0; i < 20; ++i) {
       ASSERT_FALSE(turns()) << 0.1 * i;
+      if (i == 10) machine_.reset();
       run(0.1);
     }
     ASSERT_EQ(machine_.board().inject(component, "ok"), "");
     EXPECT_EQ(run(2), DriverState::kFault);
     EXPECT_FALSE(turns());
-    for (int i = 0; i < 20 && frame_.driver_state == DriverState::kFault; ++i) {
+    for (int i = 0; i < 20 && machine_.frame().driver_state == DriverState::kFault; ++i) {
       machine_.reset();
       run(1);
     }
     run(3);
-    ASSERT_EQ(frame_.driver_state, DriverState::kRunning) << machine_.warning();
+    ASSERT_EQ(machine_.frame().driver_state, DriverState::kRunning) << machine_.warning();
     ASSERT_TRUE(turns()) << machine_.warning();
   }
 }
