@@ -72,7 +72,7 @@ TEST_F(CommandWatchTest, NamesThePartsThatTheMachineCannotExecuteAndPassesTheOth
   EXPECT_EQ(watch.partial(), 1u);
 }
 
-TEST_F(CommandWatchTest, AnIgnoredPartEndsWithItsCommand) {
+TEST_F(CommandWatchTest, ForgetsAnIgnoredPartWithItsCommand) {
   request.content.twist.linear[1] = 0.3;
   ++request.count;
   for (std::uint64_t k = 0; k < 2000; ++k) watch.step(request, k);
