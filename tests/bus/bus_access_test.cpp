@@ -28,8 +28,7 @@ using Frames = LatestFrames<TestFrame>;
 constexpr uid_t kNobody = 65534;
 constexpr unsigned kAlarm = 10;  // s; a process that waits that long on a pipe would wait endlessly
 
-class BusAccessTest : public testing::Test {
- protected:
+struct BusAccessTest : testing::Test {
   std::string file() const { return "/dev/shm" + bus_object_name(bus_.name(), ChannelNames::kState); }
 
   std::string write_error() const {

@@ -57,8 +57,7 @@ void end_bus(const std::string& bus, std::uint64_t causes = 0) {
   publish_permit(bus, causes);
 }
 
-class BusCleanup : public ::testing::Test {
- protected:
+struct BusCleanup : ::testing::Test {
   std::vector<std::string> removed() const { return remove_ended_buses(own_.name()); }
 
   ScopedBus own_;

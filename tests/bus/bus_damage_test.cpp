@@ -21,8 +21,7 @@ using Frames = LatestFrames<TestFrame>;
 constexpr std::uint64_t kMutants = 3000;
 constexpr std::uint64_t kLockedMutants = 20;  // a reader gives a living writer's object 0.1 s to settle
 
-class BusDamageTest : public testing::Test {
- protected:
+struct BusDamageTest : testing::Test {
   BusDamageTest() {
     const OwnedChannel<Frames> writer(bus_.name(), ChannelNames::kState);
     publish(writer, 5);

@@ -20,8 +20,7 @@ using Frames = LatestFrames<TestFrame>;
 constexpr std::int64_t kLong = 10'000'000'000;  // ns; a wait that ends this late was not woken
 
 /// A writer in a process of its own has published cycle 5; the reader is here.
-class BusRestartTest : public testing::Test {
- protected:
+struct BusRestartTest : testing::Test {
   BusRestartTest() : writer_([this] { return write(5, true); }) {
     for (const std::int64_t end = monotonic_ns() + kLong; monotonic_ns() < end && !has_frame(5);) {
       channel_.poll();

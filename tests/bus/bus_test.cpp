@@ -24,8 +24,7 @@ struct Row {
   std::uint64_t number = 0;
 };
 
-class BusTest : public testing::Test {
- protected:
+struct BusTest : testing::Test {
   std::string file(const std::string& channel = ChannelNames::kState) const {
     return "/dev/shm" + bus_object_name(bus_.name(), channel);
   }

@@ -25,8 +25,7 @@ std::span<std::byte> bytes_of(Object& object) {
 
 /// Cycles 0 … 9 were published; a copy of that is damaged. It lies on the heap, where the address sanitizer detects an
 /// access beyond its end.
-class DamagedFrames : public testing::Test {
- protected:
+struct DamagedFrames : testing::Test {
   using Frames = LatestFrames<TestFrame>;
 
   DamagedFrames() {

@@ -20,8 +20,7 @@ struct Frame {
 };
 
 /// Publication 1, of cycle 1, exists before a reader starts.
-class LatestFramesModelTest : public testing::Test {
- protected:
+struct LatestFramesModelTest : testing::Test {
   LatestFramesModelTest() {
     model_.name(frames_.sequence.word(), "sequence");
     model_.name(frames_.newest.word(), "newest");

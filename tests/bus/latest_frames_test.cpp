@@ -13,8 +13,7 @@ namespace {
 constexpr std::uint64_t kRun = 7;
 
 /// Cycles 0 … 9 of run 7 were published.
-class LatestFramesTest : public testing::Test {
- protected:
+struct LatestFramesTest : testing::Test {
   LatestFramesTest() {
     for (std::uint64_t cycle = 0; cycle < 10; ++cycle) publish(kRun, cycle);
   }

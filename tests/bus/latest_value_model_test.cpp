@@ -15,8 +15,7 @@ struct Pair {
   std::uint64_t second = 0;
 };
 
-class LatestValueModelTest : public testing::Test {
- protected:
+struct LatestValueModelTest : testing::Test {
   LatestValueModelTest() {
     model_.name(0, "version");
     model_.name(1, "words");

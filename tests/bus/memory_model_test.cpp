@@ -16,8 +16,7 @@ constexpr auto kRelaxed = std::memory_order_relaxed;
 constexpr auto kAcquire = std::memory_order_acquire;
 constexpr auto kRelease = std::memory_order_release;
 
-class MemoryModelTest : public testing::TestWithParam<Schedules> {
- protected:
+struct MemoryModelTest : testing::TestWithParam<Schedules> {
   MemoryModelTest() { model_.second_writes(y_.word()); }
 
   /// The values of `result_`.

@@ -15,8 +15,7 @@ struct SmallFrame {
 };
 
 /// The same publications into shared memory and into the frames of one thread.
-class OwnFramesTest : public testing::Test {
- protected:
+struct OwnFramesTest : testing::Test {
   using Memory = LatestFrames<SmallFrame>;
   std::unique_ptr<Memory> shared_ = std::make_unique<Memory>();
   std::unique_ptr<Memory> memory_ = std::make_unique<Memory>();

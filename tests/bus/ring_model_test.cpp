@@ -18,8 +18,7 @@ struct Row {
   std::uint64_t second = 0;
 };
 
-class RingModelTest : public testing::Test {
- protected:
+struct RingModelTest : testing::Test {
   RingModelTest() {
     model_.name(ring_.written.word(), "written");
     model_.name(ring_.dropped.word(), "dropped");

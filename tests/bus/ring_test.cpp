@@ -28,8 +28,7 @@ bool is_row(const WideRow& row, std::uint64_t number) {
   return true;
 }
 
-class RingTest : public testing::Test {
- protected:
+struct RingTest : testing::Test {
   void append(std::uint64_t first, std::uint64_t count, const std::atomic<std::uint64_t>* read = nullptr) {
     for (std::uint64_t i = 0; i < count; ++i) writer_.append(row_of(first + i), read);
   }

@@ -42,8 +42,7 @@ inline std::string machine_name(const testing::TestParamInfo<MachineUnderTest>& 
   return info.param.name;
 }
 
-class DriverContract : public testing::TestWithParam<MachineUnderTest> {
- protected:
+struct DriverContract : testing::TestWithParam<MachineUnderTest> {
   static constexpr double kStanding = 0.05;  ///< rad/s: safety_monitor.standstill_speed
 
   void SetUp() override {

@@ -9,8 +9,7 @@
 namespace robot_control {
 namespace {
 
-class ExternalImuTest : public testing::Test {
- protected:
+struct ExternalImuTest : testing::Test {
   SensorFrame read() {
     SensorFrame frame;
     machine_.read(frame);

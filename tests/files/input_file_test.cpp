@@ -8,8 +8,7 @@
 namespace robot_control {
 namespace {
 
-class AnInputFile : public ::testing::Test {
- protected:
+struct AnInputFile : ::testing::Test {
   TemporaryFolder folder_;
 };
 

@@ -17,8 +17,7 @@
 namespace robot_control {
 namespace {
 
-class AnOutputFile : public ::testing::Test {
- protected:
+struct AnOutputFile : ::testing::Test {
   std::string file(const std::string& name = "file") const { return folder_.path() / name; }
   static struct stat status(const std::string& path) {
     struct stat result {};

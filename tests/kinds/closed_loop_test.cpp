@@ -13,8 +13,7 @@
 namespace robot_control {
 namespace {
 
-class SecondKind : public testing::Test {
- protected:
+struct SecondKind : testing::Test {
   static Parameters parameters() {
     Parameters parameters = default_parameters();
     parameters.robot = {};

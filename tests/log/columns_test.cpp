@@ -18,8 +18,7 @@ std::vector<std::string> names_of(const std::vector<TraceColumn>& columns) {
   return names;
 }
 
-class Columns : public ::testing::Test {
- protected:
+struct Columns : ::testing::Test {
   Columns() {
     row.run = 2;
     row.cycle = 1234;

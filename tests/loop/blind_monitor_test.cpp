@@ -14,8 +14,7 @@ std::int64_t virtual_clock() {
 }
 
 /// A loop in READY whose monitor has a clock; one period passes in each cycle.
-class BlindMonitor : public ::testing::Test {
- protected:
+struct BlindMonitor : ::testing::Test {
   static constexpr std::uint64_t kLoss = 20;
 
   BlindMonitor() {
@@ -120,8 +119,7 @@ TEST_F(BlindMonitor, ADriverThatEndedAndIsStartedAgainIsLost) {
 
 // Before the first sensor frame.
 
-class MonitorWithoutDriver : public BlindMonitor {
- protected:
+struct MonitorWithoutDriver : BlindMonitor {
   MonitorWithoutDriver() {
     static_cast<TestChannels&>(loop) = {};
     loop.monitor = make_monitor();
@@ -154,8 +152,7 @@ TEST_F(MonitorWithoutDriver, RefusesAReset) {
 
 // A latch outlives its processes.
 
-class LatchedLoop : public BlindMonitor {
- protected:
+struct LatchedLoop : BlindMonitor {
   LatchedLoop() {
     e_stop();
     cycles(3);

@@ -207,8 +207,7 @@ TEST(LawSnapshots, AreTakenInTheFirstTwoRowsInANewRunAndEveryKSnapshotCycles) {
   EXPECT_EQ(copy.bytes, 1u);
 }
 
-class EstimatorCycleTest : public Bench {
- protected:
+struct EstimatorCycleTest : Bench {
   EstimatorCycleTest() { start(); }
   void start(Now clock = nullptr) {
     auto law = std::make_unique<NotedEstimator>();
@@ -296,8 +295,7 @@ TEST_F(EstimatorCycleTest, NotesItsTimesAndProcess) {
   EXPECT_EQ(cycle_->snapshot()->head.cycle, 1u);
 }
 
-class ControllerCycleTest : public Bench {
- protected:
+struct ControllerCycleTest : Bench {
   ControllerCycleTest() { start(); }
   void start(CommandScript script = {}, Now clock = nullptr) {
     auto law = std::make_unique<NotedController>();
@@ -494,8 +492,7 @@ TEST_F(ControllerCycleTest, NotesItsTimesAndProcess) {
   EXPECT_EQ(cycle_->snapshot()->head.cycle, 1u);
 }
 
-class MonitorCycleTest : public Bench {
- protected:
+struct MonitorCycleTest : Bench {
   MonitorCycleTest() { start(); }
   void start(CommandScript script = {}, Now clock = nullptr, InheritedLatch latch = {}, std::uint64_t causes = 0) {
     auto law = std::make_unique<NotedMonitor>();
@@ -762,8 +759,7 @@ TEST_F(MonitorCycleTest, NeverTimesOutBeforeItsFirstFrame) {
   EXPECT_EQ(law_->steps, 1);
 }
 
-class DriverCycleTest : public Bench {
- protected:
+struct DriverCycleTest : Bench {
   DriverCycleTest() {
     driver_.set_driver_instance(99);
     driver_.begin_run(kRun);

@@ -7,8 +7,7 @@ namespace robot_control {
 namespace {
 
 /// A loop in DRIVE with a standing command.
-class RunningLoop : public ::testing::Test {
- protected:
+struct RunningLoop : ::testing::Test {
   RunningLoop() { loop.drive(); }
 
   Loop loop;

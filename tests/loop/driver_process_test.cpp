@@ -48,8 +48,7 @@ class SlowMachine final : public Simulator {
   std::atomic<bool>& again_;
 };
 
-class DriverProcessTest : public testing::Test {
- protected:
+struct DriverProcessTest : testing::Test {
   DriverProcessTest() { parameters_.loop.realtime = RealtimePolicy::kOff; }
 
   DriverProcess& opened() {

@@ -16,8 +16,7 @@ namespace {
 
 constexpr std::uint64_t kStops = kCauseEmergencyStopService | kCauseStall;
 
-class LatchFileTest : public testing::Test {
- protected:
+struct LatchFileTest : testing::Test {
   void keep(std::uint64_t causes, std::uint64_t first = kCauseStall) {
     LatchFile file(path);
     file.finish(causes, causes == 0 ? 0 : first);

@@ -17,8 +17,7 @@ namespace {
 constexpr FaultComponent kNodes[]{FaultComponent::kController, FaultComponent::kEstimator, FaultComponent::kMonitor};
 
 /// A loop in DRIVE whose controller pushes ever harder at wheels that never turn.
-class NodeFaults : public ::testing::Test {
- protected:
+struct NodeFaults : ::testing::Test {
   NodeFaults() { loop.drive(); }
 
   static void inject(Loop& any, FaultComponent component, FaultKind kind) {

@@ -9,8 +9,7 @@ namespace robot_control {
 namespace {
 
 /// A loop in DRIVE with a standing command.
-class PausedLoop : public ::testing::Test {
- protected:
+struct PausedLoop : ::testing::Test {
   PausedLoop() { loop.drive(); }
 
   /// The other nodes wake as often as the paused frame is published.

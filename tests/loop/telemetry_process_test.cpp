@@ -10,8 +10,7 @@
 namespace robot_control {
 namespace {
 
-class TelemetryProcessTest : public testing::Test {
- protected:
+struct TelemetryProcessTest : testing::Test {
   using Channel = OwnedChannel<Ring<DriverTrace>>;
 
   Channel claim() const { return {bus_.name(), kTraceChannels[0]}; }

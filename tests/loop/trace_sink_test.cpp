@@ -15,8 +15,7 @@ struct Row {
   std::uint64_t number = 0;
 };
 
-class TraceSinkTest : public testing::Test {
- protected:
+struct TraceSinkTest : testing::Test {
   static constexpr TraceRing kRing = TraceRing::kController;
 
   std::string bus() const { return bus_.name(); }

@@ -15,8 +15,7 @@
 namespace robot_control {
 namespace {
 
-class ABlackBox : public Losses {
- protected:
+struct ABlackBox : Losses {
   /// ns; ten milliseconds are promised if telemetry's thread precedes others. Otherwise up to 144 were measured.
   static constexpr std::int64_t kMaxMissing = 1'000'000'000;
 

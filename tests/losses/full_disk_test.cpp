@@ -23,8 +23,7 @@ bool mount_small_disk(const std::string& folder) {
          mount("tmpfs", folder.c_str(), "tmpfs", MS_NOSUID | MS_NODEV, "size=512k") == 0;
 }
 
-class AFullDisk : public Losses {
- protected:
+struct AFullDisk : Losses {
   AFullDisk() : folder_(nodes().folder() / "log") {
     std::filesystem::create_directories(folder_);
     nodes().log_into(folder_);

@@ -7,8 +7,7 @@
 namespace robot_control {
 namespace {
 
-class AHog : public Losses {
- protected:
+struct AHog : Losses {
   static Parameters on_one_core() {
     Parameters parameters = DrivingRobot::quick(kParams);
     parameters.loop.core = 0;

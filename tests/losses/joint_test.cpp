@@ -48,8 +48,7 @@ struct FailingJoint {
   std::uint64_t cycles;  ///< from the sample to the brake, beyond those of the monitor and the gate
 };
 
-class AJoint : public Losses, public ::testing::WithParamInterface<FailingJoint> {
- protected:
+struct AJoint : Losses, ::testing::WithParamInterface<FailingJoint> {
   AJoint() : Losses(with_four_wheels()) {}
 };
 

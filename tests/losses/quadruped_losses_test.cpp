@@ -29,8 +29,7 @@ Parameters of_quadbot() {
   return parameters;
 }
 
-class LossOfQuadbot : public ::testing::Test {
- protected:
+struct LossOfQuadbot : ::testing::Test {
   explicit LossOfQuadbot(const Parameters& parameters = of_quadbot())
       : robot_(parameters,
                std::make_shared<Quadruped>(parameters, read_legs(load_description(parameters.urdf), {}, {}))) {}
@@ -178,8 +177,7 @@ INSTANTIATE_TEST_SUITE_P(OfTheChain, NightlyLateNode,
                          ::testing::Values(LoopNode::kController, LoopNode::kEstimator, LoopNode::kMonitor));
 
 /// The chain runs on core 0, the test elsewhere.
-class HogOfATrottingQuadbot : public LossOfQuadbot {
- protected:
+struct HogOfATrottingQuadbot : LossOfQuadbot {
   static Parameters on_one_core() {
     Parameters parameters = of_quadbot();
     parameters.loop.core = 0;

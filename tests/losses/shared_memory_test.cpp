@@ -52,8 +52,7 @@ void PrintTo(const Channel& channel, std::ostream* out) {
   *out << channel.name;
 }
 
-class AWoundedChannel : public Losses, public ::testing::WithParamInterface<Channel> {
- protected:
+struct AWoundedChannel : Losses, ::testing::WithParamInterface<Channel> {
   const char* channel() const { return GetParam().name; }
   std::filesystem::path file() { return "/dev/shm" + bus_object_name(nodes().bus(), channel()); }
   bool maps(LoopNode node) const { return (GetParam().mapped & bits({node})) != 0; }

@@ -89,8 +89,7 @@ INSTANTIATE_TEST_SUITE_P(Each, ALostPlant, ::testing::Values(SIGSTOP, SIGKILL, S
                          [](const auto& each) { return name_of_signal(each.param); });
 
 /// The plant was absent for some milliseconds, or its absence could not be detected: time proves nothing.
-class APlantStartedAgain : public Losses {
- protected:
+struct APlantStartedAgain : Losses {
   void start_again() {
     nodes().end(LoopNode::kPlant);
     log().forget();

@@ -11,8 +11,7 @@ namespace {
 
 constexpr std::int64_t kSpellNs = 100'000'000;
 
-class Witness : public ::testing::Test {
- protected:
+struct Witness : ::testing::Test {
   Witness() {
     while (witness_.longest_gap_ns(0) == 0) sleep_ns(1'000'000);
     began_ns_ = monotonic_ns();

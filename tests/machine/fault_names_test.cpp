@@ -28,8 +28,7 @@ MachineModel three_wheels() {
   return machine;
 }
 
-class FaultNames : public testing::Test {
- protected:
+struct FaultNames : testing::Test {
   std::string set(const std::string& component, const std::string& kind) {
     return set_fault(faults_, machine_, component, kind);
   }

@@ -25,8 +25,7 @@ std::vector<std::string> quadruped_names() {
   return names;
 }
 
-class QuadrupedCorpus : public testing::TestWithParam<std::string> {
- protected:
+struct QuadrupedCorpus : testing::TestWithParam<std::string> {
   void SetUp() override {
     if (quadrupeds().empty()) GTEST_SKIP() << kNoQuadrupeds;
     facts_ = facts()[GetParam()];

@@ -26,8 +26,7 @@ std::vector<std::string> robots() {
   return names;
 }
 
-class RobotCorpus : public testing::TestWithParam<std::string> {
- protected:
+struct RobotCorpus : testing::TestWithParam<std::string> {
   void SetUp() override {
     if (corpus().empty()) GTEST_SKIP() << kNoCorpus;
     truth_ = YAML::LoadFile((corpus() / "TRUTH.json").string())[GetParam()];

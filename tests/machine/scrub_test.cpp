@@ -63,8 +63,7 @@ TEST(Scrub, IsThatOfTheTwistOfTheWheels) {
   for (std::size_t i = 0; i < 4; ++i) EXPECT_NEAR(efforts[i], wanted[i], 1e-12);
 }
 
-class Strain : public testing::Test {
- protected:
+struct Strain : testing::Test {
   const Scrub scrub_{skid_steer()};
   std::array<double, kMaxWheels> efforts_{};
 

@@ -251,8 +251,7 @@ TEST(Suspicious, AWorldThatTheRobotIsFixedToFarAway) {
   EXPECT_THAT(suspicion(world(50)), HasSubstr("<link name=\"world\">: it lies 50"));
 }
 
-class Files : public testing::Test {
- protected:
+struct Files : testing::Test {
   RobotDescription with(const std::string& text) {
     return load_description(folder_.write("r.urdf", robot_of(text).text).string());
   }

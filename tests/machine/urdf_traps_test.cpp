@@ -125,8 +125,7 @@ std::string prism(double radius) {
   return vertices + faces;
 }
 
-class MeshShapes : public testing::Test {
- protected:
+struct MeshShapes : testing::Test {
   MeshShapes() { folder_.write("wheel.obj", prism(1)); }
 
   RobotDescription with_wheel_mesh(const std::string& mesh) const {

@@ -13,8 +13,7 @@ namespace robot_control::navigation {
 namespace {
 
 /// A map of 3 × 2 cells, as map_server's map_saver writes it.
-class MapFileTest : public testing::Test {
- protected:
+struct MapFileTest : testing::Test {
   void SetUp() override {
     std::filesystem::create_directories(folder_);
     write("house.pgm", "P5\n# CREATOR: map_saver.cpp 0.050 m/pix\n3 2\n255\n" + std::string("\xfe\xcd\0\xfe\xfe\0", 6));

@@ -13,8 +13,7 @@ using namespace testing_house;
 constexpr double kScanPeriod = 0.1;  // s
 
 /// An empty hall of 10 m, 5 m ahead of its lower left corner the laser, and a box of 0.5 m in it.
-class MoversTest : public testing::Test {
- protected:
+struct MoversTest : testing::Test {
   Scan seen(Point box) const {
     Grid world;
     world.columns = world.rows = 100, world.resolution = kCell;

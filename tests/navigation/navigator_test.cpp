@@ -14,8 +14,7 @@ constexpr double kPeriod = 0.1;  // s
 constexpr double kSpeed = 0.5;   // m/s
 
 /// A robot in two rooms with a door, which follows paths exactly and at once, with a laser of 10 Hz in virtual time.
-class NavigatorTest : public testing::Test {
- protected:
+struct NavigatorTest : testing::Test {
   void box(int column, int row, std::int8_t cell = kOccupiedCell) {
     for (int i = -2; i <= 2; ++i) {
       for (int j = -2; j <= 2; ++j) world_.cells[world_.index({column + i, row + j})] = cell;

@@ -8,8 +8,7 @@ namespace robot_control::navigation {
 namespace {
 
 /// A laser of 360 rays; each test breaks one thing.
-class ScanWatchTest : public testing::Test {
- protected:
+struct ScanWatchTest : testing::Test {
   static Scan healthy(float range = 2) { return {-M_PI, 2 * M_PI / 360, 0.05, 8.0, std::vector<float>(360, range)}; }
   std::string refusal(const std::function<void(Scan&)>& broken) {
     Scan scan = healthy();

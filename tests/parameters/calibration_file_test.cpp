@@ -15,8 +15,7 @@ namespace robot_control {
 namespace {
 
 /// The healthy case is the calibration of a robot after an hour. Each test spoils one thing.
-class CalibrationFile : public ::testing::Test {
- protected:
+struct CalibrationFile : ::testing::Test {
   CalibrationFile() {
     robot_.name = "diff\"bot\\";
     robot_.wheels.resize(2);

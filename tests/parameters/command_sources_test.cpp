@@ -11,8 +11,7 @@
 namespace robot_control {
 namespace {
 
-class CommandSources : public ::testing::Test {
- protected:
+struct CommandSources : ::testing::Test {
   CommandSourceList read(const std::string& text) {
     const std::string path = folder_.path() / "sources.yaml";
     std::ofstream(path) << text;

@@ -8,8 +8,7 @@ namespace robot_control {
 namespace {
 
 /// The healthy case is a copy of the shipped file. Each test spoils one thing.
-class ReadConditions : public ::testing::Test {
- protected:
+struct ReadConditions : ::testing::Test {
   std::string at(const std::string& group) const {
     return "[" + file.path() + ":" + std::to_string(file.line_of("  " + group + ":")) + "]";
   }

@@ -37,8 +37,7 @@ std::string damaged(std::string text, std::mt19937& random) {
 }
 
 /// First seed, and last seed + 1.
-class ReadParametersFuzz : public testing::TestWithParam<std::pair<unsigned, unsigned>> {
- protected:
+struct ReadParametersFuzz : testing::TestWithParam<std::pair<unsigned, unsigned>> {
   /// `read(seed, random)` may throw a ParameterError, and nothing else.
   template <class Read>
   static void expect_read_or_refused(Read read) {

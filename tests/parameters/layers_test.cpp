@@ -9,8 +9,7 @@
 namespace robot_control {
 namespace {
 
-class Layers : public ::testing::Test {
- protected:
+struct Layers : ::testing::Test {
   Parameters read(const std::string& text, const std::vector<Overlay>& overlays = {}) {
     file.write(text);
     return read_parameters(file.path(), overlays, shipped_path());

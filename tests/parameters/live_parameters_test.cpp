@@ -15,8 +15,7 @@ namespace {
 const std::string kBlock = "diff_drive_controller";
 
 /// The healthy case has the shipped values in force. Each test spoils one thing of a request.
-class LiveParameters : public ::testing::Test {
- protected:
+struct LiveParameters : ::testing::Test {
   LiveChange read(const std::string& request) const { return read_live(base, kBlock, request); }
 
   /// The only problem, if it is the only one.

@@ -7,8 +7,7 @@ namespace robot_control {
 namespace {
 
 /// The healthy case is the shipped file with one gait. Each test spoils one thing.
-class OwnGaitsTest : public ::testing::Test {
- protected:
+struct OwnGaitsTest : ::testing::Test {
   Parameters read(const std::vector<Overlay>& changes = {}) const {
     return read_parameters(file.path(), laid(changes));
   }

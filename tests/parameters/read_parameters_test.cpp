@@ -15,8 +15,7 @@ namespace robot_control {
 namespace {
 
 /// The healthy case is a copy of the shipped file. Each test spoils one thing.
-class ReadParameters : public ::testing::Test {
- protected:
+struct ReadParameters : ::testing::Test {
   std::string at(const std::string& start, int nth = 1) const {
     return "[" + file.path() + ":" + std::to_string(file.line_of(start, nth)) + "]";
   }

@@ -242,8 +242,7 @@ INSTANTIATE_TEST_SUITE_P(Robots, QuadrupedOf, testing::ValuesIn(legged_robots(tr
 INSTANTIATE_TEST_SUITE_P(Nightly, QuadrupedOf, testing::ValuesIn(legged_robots(false)), robot_name);
 INSTANTIATE_TEST_SUITE_P(Robots, NightlyQuadrupedOf, testing::ValuesIn(legged_robots()), robot_name);
 
-class Quadbot : public testing::Test {
- protected:
+struct Quadbot : testing::Test {
   void SetUp() override {
     robot.wait(0.3);
     robot.run(2.0, stance(kStanceStand));

@@ -13,8 +13,7 @@ namespace {
 
 /// Healthy: the defaults on two wheels, which the controller drives at up to (1 + 2·0.25)/0.1 = 15 rad/s; the monitor
 /// stops beyond 1.25·15 = 18.75.
-class RetuningTest : public ::testing::Test {
- protected:
+struct RetuningTest : ::testing::Test {
   std::string refusal(const std::string& request) {
     const DriveTuning before = handed_over();
     try {
@@ -148,8 +147,7 @@ TEST_F(RetuningTest, CountsWhatSeveralThreadsSetAtOnce) {
 }
 
 /// A loop in DRIVE with a standing command, and a new set that waits for it.
-class RetunedLoop : public ::testing::Test {
- protected:
+struct RetunedLoop : ::testing::Test {
   RetunedLoop() {
     loop.step();  // a command from before the run would be dropped
     loop.controller->inbox().store({.content = {.twist = {.linear = {0.5, 0, 0}}}, .count = 1});

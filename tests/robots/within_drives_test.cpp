@@ -11,8 +11,7 @@ namespace robot_control {
 namespace {
 
 /// Diffbot has 3.5 N·m and 30 rad/s, and no torque rate of its own.
-class WithinDrives : public ::testing::Test {
- protected:
+struct WithinDrives : ::testing::Test {
   Parameters limited(const std::string& left, const std::string& right = "") {
     std::ofstream(path_) << "bus: {dialect: cia402}\n"
                          << "every_joint: {torque_limit: 4, velocity_limit: 30, gear: 2}\n"

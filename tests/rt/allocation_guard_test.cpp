@@ -19,8 +19,7 @@ void keep(const void* memory) {
   asm volatile("" : : "g"(memory) : "memory");
 }
 
-class AllocationGuardTest : public testing::Test {
- protected:
+struct AllocationGuardTest : testing::Test {
   void SetUp() override {
     if (!AllocationGuard::kCounts) GTEST_SKIP() << "the sanitizer owns the allocator";
   }

@@ -10,8 +10,7 @@ namespace {
 constexpr std::int64_t kStart = 5'000'000'000;
 constexpr std::int64_t kPeriod = 1'000'000;
 
-class PeriodicTest : public testing::Test {
- protected:
+struct PeriodicTest : testing::Test {
   Periodic schedule_{kStart, kPeriod};
 };
 

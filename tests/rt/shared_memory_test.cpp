@@ -18,8 +18,7 @@ namespace {
 constexpr std::size_t kBytes = 8192;
 
 /// An object of kBytes, mapped by its creator.
-class SharedMemoryTest : public testing::Test {
- protected:
+struct SharedMemoryTest : testing::Test {
   SharedMemoryTest() : object_(*SharedMemory::create(name_)) {
     object_.reserve(kBytes);
     mapping_ = object_.map(kBytes);

@@ -28,8 +28,7 @@ static_assert(kWithoutPadding<DriverTrace> && kWithoutPadding<EstimatorTrace> &&
               kWithoutPadding<MonitorTrace>);
 
 template <class Frame>
-class FrameTest : public testing::Test {
- protected:
+struct FrameTest : testing::Test {
   FrameTest() {
     frame_.head.run = 7;
     frame_.head.cycle = 1234;

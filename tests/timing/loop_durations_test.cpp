@@ -18,8 +18,7 @@ CycleTimes punctual(std::uint64_t cycle) {
   return times;
 }
 
-class LoopDurationsTest : public testing::Test {
- protected:
+struct LoopDurationsTest : testing::Test {
   LoopDurations all{{Role::kDriver, Role::kEstimator, Role::kController, Role::kMonitor}};
 
   void add(std::uint64_t first, std::uint64_t last) {

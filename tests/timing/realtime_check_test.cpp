@@ -8,8 +8,7 @@ namespace {
 constexpr std::int64_t kInterval = 1'000'000'000;
 
 /// A thread that waits 1000 times per second and does nothing else that blocks.
-class RealtimeCheckTest : public testing::Test {
- protected:
+struct RealtimeCheckTest : testing::Test {
   RealtimeReading reading{.counters = {.page_faults = 40, .run_queue_ns = 0}};
   RealtimeCheck check;
 

@@ -14,8 +14,7 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr std::uint64_t kPlanar = kPartLinearX | kPartAngularZ;  ///< of a differential drive
 
-class CommandWatchTest : public testing::Test {
- protected:
+struct CommandWatchTest : testing::Test {
   void send(double linear) {
     request.content.twist.linear[0] = linear;
     ++request.count;

@@ -14,8 +14,7 @@ namespace robot_control {
 namespace {
 
 /// Driving at 0.5 m/s and 0.2 rad/s, healthy.
-class DriveControllerTest : public testing::Test {
- protected:
+struct DriveControllerTest : testing::Test {
   void SetUp() override { start(); }
 
   void start() {
@@ -306,8 +305,7 @@ TEST_F(DriveControllerTest, NeverExceedsLimitsUnderRandomCommandsPermitsAndFault
 }
 
 /// These are the default limits: 1 m/s² usually, 2 m/s² in an emergency, 10 m/s³.
-class Emergency : public DriveControllerTest {
- protected:
+struct Emergency : DriveControllerTest {
   Emergency() { bench = ControlBench(); }
 
   /// Expects this deceleration of the limited speed, m/s², over the next 0.6 s, and the way in m to standstill.

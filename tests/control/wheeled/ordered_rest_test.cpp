@@ -10,8 +10,7 @@ namespace {
 constexpr double kDegree = std::numbers::pi / 180;
 
 /// Healthy case: 0.5 m/s on the level, and loops that are as slow as 20 Hz make them.
-class OrderedRest : public testing::Test {
- protected:
+struct OrderedRest : testing::Test {
   OrderedRest() {
     bench.run(0.5);
     bench.send(0.5, 0);

@@ -65,8 +65,7 @@ TEST(RimSpeedScale, NoRimOfAnyRobotExceedsIt) {
 }
 
 /// The healthy case is a curve of 1 m radius at 0.8 m/s, its outer rim at 1 m/s, driven until it is steady.
-class PermitSpeed : public testing::Test {
- protected:
+struct PermitSpeed : testing::Test {
   PermitSpeed() {
     bench.send(0.8, 0.8);
     bench.run(1.2);

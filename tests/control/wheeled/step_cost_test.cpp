@@ -37,8 +37,7 @@ Recording record(ControlBench& bench, const std::function<PlanarTwist(std::size_
   return recording;
 }
 
-class StepCost : public testing::Test {
- protected:
+struct StepCost : testing::Test {
   StepCost() { bench_.plant.counts = 4096; }
 
   /// The ratio of one round: the median over blocks of step over kernel.

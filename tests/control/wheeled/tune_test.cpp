@@ -16,8 +16,7 @@ namespace {
 constexpr double kTuneRounding = 1e-9;
 
 /// The rigid plant has friction that the controller does not know, so that error and integral are not zero.
-class Tune : public testing::Test {
- protected:
+struct Tune : testing::Test {
   static ControlBench driving(const DriveControllerParameters& parameters = straight_ramps()) {
     ControlBench bench(make_test_robot(), parameters);
     bench.plant.viscous_friction = 0.02;

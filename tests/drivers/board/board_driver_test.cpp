@@ -14,8 +14,7 @@ namespace robot_control {
 namespace {
 
 /// The healthy board at 500 Hz, whose wheels turn at 10 rad/s.
-class BoardDriverTest : public testing::Test {
- protected:
+struct BoardDriverTest : testing::Test {
   static constexpr double kSpeed = 10;        // rad/s
   static constexpr int kWatchdogCycles = 26;  // 50 ms and one cycle at 500 Hz
 

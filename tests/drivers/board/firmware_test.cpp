@@ -63,8 +63,7 @@ TEST(BoardFrame, AnyBodyComesBackAndLongerOnesAreRefused) {
 }
 
 /// A board with two wheels and no machine.
-class BoardTest : public testing::Test {
- protected:
+struct BoardTest : testing::Test {
   BoardTest() { configure({}); }
 
   void configure(board_config config) {

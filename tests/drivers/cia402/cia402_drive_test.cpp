@@ -322,8 +322,7 @@ TEST(Cia402Drive, StatesWhatTheDriveDoesOnSilenceAndTheDeviceDoesIt) {
   }
 }
 
-class TwoAxes : public ::testing::Test {
- protected:
+struct TwoAxes : ::testing::Test {
   TwoAxes() {
     Cia402Parameters parameters = cia402_pair(6).drive;
     for (const unsigned axis : {1U, 0U}) {  // The order of the joints does not matter.

@@ -30,8 +30,7 @@ std::string section_of(const ObjectAddress& object, bool has_subs) {
   return text;
 }
 
-class DriveObjects : public ::testing::Test {
- protected:
+struct DriveObjects : ::testing::Test {
   static bool has(const std::map<std::string, std::string>& eds, const ObjectAddress& object) {
     return eds.contains(section_of(object, true) + " DataType") ||
            eds.contains(section_of(object, false) + " DataType");

@@ -83,8 +83,7 @@ class CanMachine final : public Driver {
   std::optional<CanDriver> driver_;
 };
 
-class CanDriverOn : public ::testing::TestWithParam<TestedDialect> {
- protected:
+struct CanDriverOn : ::testing::TestWithParam<TestedDialect> {
   SensorFrame cycle(const JointCommand& command = {}) {
     SensorFrame frame;
     machine_.read(frame);

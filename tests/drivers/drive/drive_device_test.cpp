@@ -133,8 +133,7 @@ void PrintTo(const Dialect& dialect, std::ostream* out) {
   *out << dialect.name;
 }
 
-class DriveAndDevice : public ::testing::TestWithParam<Dialect> {
- protected:
+struct DriveAndDevice : ::testing::TestWithParam<Dialect> {
   DriveAndDevice() { device_ = &GetParam().add(rig_, 1, 0); }
 
   DriveState state() { return rig_.drive().status().state; }

@@ -11,8 +11,7 @@ namespace robot_control {
 namespace {
 
 /// A healthy bus: a frame was received just now. The test holds the other end of the socket.
-class BusWatchTest : public ::testing::Test {
- protected:
+struct BusWatchTest : ::testing::Test {
   static constexpr std::int64_t kSecond = 1'000'000'000;  // ns
 
   BusWatchTest() {

@@ -72,8 +72,7 @@ CanTime at(std::int64_t time_ns) {
 }
 
 /// A healthy bus on one end of a socket pair; the test holds the other end.
-class CanBusTest : public ::testing::Test {
- protected:
+struct CanBusTest : ::testing::Test {
   void SetUp() override {
     int ends[2];
     ASSERT_EQ(socketpair(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0, ends), 0);

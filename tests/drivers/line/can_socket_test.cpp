@@ -28,8 +28,7 @@ std::string refusal(const std::string& address) {
 }
 
 /// Three parties on one medium: a driver, a drive and a listener.
-class CanFolder : public ::testing::Test {
- protected:
+struct CanFolder : ::testing::Test {
   std::unique_ptr<CanBus> join() { return std::make_unique<CanBus>(CanSocket::open(address_)); }
 
   /// The numbers that the party received, at a time at which it searches for others.

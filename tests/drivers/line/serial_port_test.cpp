@@ -33,8 +33,7 @@ bool comes_true(const std::function<bool()>& condition) {
   return is_true;
 }
 
-class SerialPortTest : public testing::Test {
- protected:
+struct SerialPortTest : testing::Test {
   bool passes(SerialLine& from, SerialLine& to, const std::string& text) {
     if (!from.send({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()})) return false;
     std::string got;

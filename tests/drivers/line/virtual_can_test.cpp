@@ -7,8 +7,7 @@
 namespace robot_control {
 namespace {
 
-class VirtualCanBus : public ::testing::Test {
- protected:
+struct VirtualCanBus : ::testing::Test {
   VirtualCan bus_{1.0e6};
   std::vector<std::pair<canid_t, std::int64_t>> received_;
   std::size_t first_ = bus_.join([](const can_frame&, std::int64_t) {});

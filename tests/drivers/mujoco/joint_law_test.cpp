@@ -18,8 +18,7 @@ constexpr double kRobotInertia = 0.065;  // kg·m², a wheel that moves its half
 constexpr double kEffortLimit = 3.5;     // N·m
 constexpr Brake kBrake{.effort = 3.0, .hold_effort = 3.0, .damping = 2.0, .stiffness = 300, .hold_speed = 0.3};
 
-class JointLawTest : public testing::Test {
- protected:
+struct JointLawTest : testing::Test {
   double step(const JointCommand& command, double load = 0) {
     const double effort = law_.step(command, position_, velocity_);
     velocity_ += (effort + load) / inertia_ * kStep;

@@ -19,8 +19,7 @@ constexpr double kHeight = 0.7;      // of the leg's length, from the second joi
 constexpr double kStiffness = 11.0;  // N·m/rad per kg and m of leg
 constexpr double kDamping = 0.57;    // N·m·s/rad per kg and m^1.5
 
-class LeggedPlant : public testing::TestWithParam<std::string> {
- protected:
+struct LeggedPlant : testing::TestWithParam<std::string> {
   LeggedPlant() {
     parameters_.scene = PROJECT_DIRECTORY "/urdf/scenes/flat.xml";
     parameters_.sensor_errors = ErrorLevel::kIdeal;

@@ -11,8 +11,7 @@
 namespace robot_control {
 namespace {
 
-class MujocoFaultTest : public PlantTest {
- protected:
+struct MujocoFaultTest : PlantTest {
   void SetUp() override { std::filesystem::remove("MUJOCO_LOG.TXT"); }
   void TearDown() override { EXPECT_FALSE(std::filesystem::exists("MUJOCO_LOG.TXT")); }
 

@@ -249,8 +249,7 @@ TEST_F(MujocoPlantTest, CommandsForAnotherNumberOfJointsBrake) {
   EXPECT_LT(std::abs(truth(*plant).twist_base.linear[0]), 1e-5);
 }
 
-class Repeats : public PlantTest, public testing::WithParamInterface<double> {
- protected:
+struct Repeats : PlantTest, testing::WithParamInterface<double> {
   // Everything that is read during a drive, as bytes.
   std::string record(MujocoPlant& plant) const {
     std::string bytes;

@@ -16,8 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-class RealRobot : public testing::TestWithParam<const char*> {
- protected:
+struct RealRobot : testing::TestWithParam<const char*> {
   void SetUp() override { set_down({}); }
 
   void set_down(std::optional<double> ground_friction) {
@@ -146,8 +145,7 @@ TEST_P(RealRobot, MeasuresTheForceThatMovesIt) {
   EXPECT_LT(force.worst(), 0.001);
 }
 
-class RealRobotOnIce : public RealRobot {
- protected:
+struct RealRobotOnIce : RealRobot {
   static constexpr double kFriction = 0.3;  // no robot tips
 
   void SetUp() override { set_down(kFriction); }

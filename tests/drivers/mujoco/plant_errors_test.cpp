@@ -10,8 +10,7 @@
 namespace robot_control {
 namespace {
 
-class PlantErrors : public PlantTest {
- protected:
+struct PlantErrors : PlantTest {
   PlantErrors() {
     parameters_.scene = kFlat;
     parameters_.sensor_errors = ErrorLevel::kDataSheet;

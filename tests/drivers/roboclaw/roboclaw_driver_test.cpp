@@ -14,8 +14,7 @@ namespace {
 using roboclaw::PacketCommand;
 
 /// The healthy board at 1 kHz, whose wheels turn at 10 rad/s.
-class RoboclawDriverTest : public testing::Test {
- protected:
+struct RoboclawDriverTest : testing::Test {
   static constexpr double kSpeed = 10;  // rad/s
 
   void SetUp() override {

@@ -38,8 +38,7 @@ left_wheel_joint: {node: 0}
 right_wheel_joint: {node: 1}
 )";
 
-class DriveFileTest : public ::testing::Test {
- protected:
+struct DriveFileTest : ::testing::Test {
   template <class File = DriveFile>
   const File& read(const std::string& text, double rate = 500, bool takes_speeds = false,
                    std::string_view driver = "can") {

@@ -45,8 +45,7 @@ std::vector<MachineUnderTest> drives_with_torques() {
 
 INSTANTIATE_TEST_SUITE_P(EveryDrive, DriverContract, testing::ValuesIn(drives_with_torques()), machine_name);
 
-class EveryDrive : public testing::TestWithParam<DriveUnderTest> {
- protected:
+struct EveryDrive : testing::TestWithParam<DriveUnderTest> {
   void SetUp() override {
     machine_.start();
     ASSERT_EQ(run(2), DriverState::kRunning) << machine_.warning();

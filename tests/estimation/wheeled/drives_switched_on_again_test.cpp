@@ -8,8 +8,7 @@ namespace {
 constexpr double kOtherZero = 7.0;  // rad
 
 /// Healthy case: a second of standing, then 1 m/s straight ahead. A drive without a supply has no valid sample.
-class DrivesSwitchedOnAgain : public EstimatorFixture {
- protected:
+struct DrivesSwitchedOnAgain : EstimatorFixture {
   DrivesSwitchedOnAgain() {
     stand();
     drive(1.0, 0, 2000);

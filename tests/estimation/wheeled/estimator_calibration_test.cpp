@@ -16,8 +16,7 @@ EstimatorParameters held() {
 
 /// The wheels have 0.4 % opposite radius error on a base that is 1.5 % wider than described; the drive turns either way
 /// for five minutes.
-class EstimatorCalibrationTest : public EstimatorFixture {
- protected:
+struct EstimatorCalibrationTest : EstimatorFixture {
   explicit EstimatorCalibrationTest(const EstimatorParameters& parameters = {})
       : EstimatorFixture(two_wheeler(), parameters) {
     robot_.radius_ratio = 0.004;
@@ -29,8 +28,7 @@ class EstimatorCalibrationTest : public EstimatorFixture {
   }
 };
 
-class EstimatorHeldCalibrationTest : public EstimatorCalibrationTest {
- protected:
+struct EstimatorHeldCalibrationTest : EstimatorCalibrationTest {
   EstimatorHeldCalibrationTest() : EstimatorCalibrationTest(held()) {}
 };
 

@@ -9,8 +9,7 @@ namespace robot_control {
 namespace {
 
 // Pulled with 1 m/s², these tyres turn 1 % faster than the robot moves; in curves they drift outwards.
-class CreepingTyres : public EstimatorFixture {
- protected:
+struct CreepingTyres : EstimatorFixture {
   static constexpr double kCreep = 0.01;  // s²/m
   explicit CreepingTyres(double known = kCreep, const DriveTrain& model = two_wheeler())
       : EstimatorFixture(model, {.tyre_creep = known}) {
@@ -34,14 +33,12 @@ class CreepingTyres : public EstimatorFixture {
     return worst;
   }
 };
-class CreepingTyresTakenForRigid : public CreepingTyres {
- protected:
+struct CreepingTyresTakenForRigid : CreepingTyres {
   CreepingTyresTakenForRigid() : CreepingTyres(0) {}
 };
 
 /// The IMU swings in curves: its measured force is not that of the tyres.
-class CreepingTyresUnderAFarImu : public CreepingTyres {
- protected:
+struct CreepingTyresUnderAFarImu : CreepingTyres {
   CreepingTyresUnderAFarImu() : CreepingTyres(kCreep, far()) {}
   static DriveTrain far() {
     DriveTrain model = two_wheeler();

@@ -9,8 +9,7 @@ namespace {
 constexpr double kExact = 1e-4;  // m: two readings of an encoder
 
 /// Healthy case: a second of standing, then 0.5 m/s straight ahead.
-class EstimatorFaultsTest : public EstimatorFixture {
- protected:
+struct EstimatorFaultsTest : EstimatorFixture {
   EstimatorFaultsTest() {
     stand();
     drive(0.5, 0, 1500);

@@ -21,8 +21,7 @@ double reading_of_yaw() {
 
 constexpr double kExactVariance = 1e-18;  // m², rad²: rounding
 
-class EstimatorPoseTest : public EstimatorFixture {
- protected:
+struct EstimatorPoseTest : EstimatorFixture {
   EstimatorPoseTest() { stand(); }
   void expect_truth() const {
     EXPECT_LT(position_error(), reading());

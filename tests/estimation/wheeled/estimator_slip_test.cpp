@@ -9,8 +9,7 @@ namespace {
 
 /// Stands for two seconds, drives curves in which the clock offset is found, then 0.5 m/s; the noise is that of a
 /// consumer IMU.
-class EstimatorSlipTest : public EstimatorFixture {
- protected:
+struct EstimatorSlipTest : EstimatorFixture {
   explicit EstimatorSlipTest(int curves = 20000) {
     robot_.noise = {.gyro = 1e-4, .accelerometer = 1e-3, .counts = 4096};
     stand(2000);
@@ -120,8 +119,7 @@ TEST_F(EstimatorSlipTest, LockedWheelsOfARobotThatSlidesOn) {
 }
 
 /// The robot has not turned yet: wheels and accelerometer may be a tenth of a second apart.
-class EstimatorSlipBeforeATurn : public EstimatorSlipTest {
- protected:
+struct EstimatorSlipBeforeATurn : EstimatorSlipTest {
   EstimatorSlipBeforeATurn() : EstimatorSlipTest(0) {}
 };
 
@@ -220,8 +218,7 @@ double level(double) {
 }
 
 /// Random drives with noise, always rolling; the flagged share is measured.
-class EstimatorRollingTest : public testing::Test {
- protected:
+struct EstimatorRollingTest : testing::Test {
   static constexpr unsigned kSeeds = 4;
 
   template <class Shake, class PitchRate>

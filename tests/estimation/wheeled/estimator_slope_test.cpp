@@ -12,8 +12,7 @@ constexpr double kSpeed = 0.5;
 
 /// The robot drives from level ground onto a ramp: the body pitches up about its contacts by kSlope, evenly accelerated
 /// and braked. On the ramp the way s rises by s sin(slope) and reaches s cos(slope) far.
-class EstimatorSlopeTest : public testing::TestWithParam<bool> {
- protected:
+struct EstimatorSlopeTest : testing::TestWithParam<bool> {
   EstimatorSlopeTest() {
     parameters_.planar = GetParam();
     model_.imu_in_base.position = {0.05, 0.02, 0.15};

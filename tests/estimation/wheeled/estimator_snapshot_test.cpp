@@ -10,8 +10,7 @@
 namespace robot_control {
 namespace {
 
-class EstimatorSnapshotTest : public EstimatorFixture {
- protected:
+struct EstimatorSnapshotTest : EstimatorFixture {
   EstimatorSnapshotTest() { robot_.noise = {.gyro = 2.44e-4, .accelerometer = 2e-3, .counts = 4096}; }
   /// The events are rest, drive, a wheel that spins, a gyro that is lost, and rest again.
   void event(int cycle) {

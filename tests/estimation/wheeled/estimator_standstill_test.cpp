@@ -8,8 +8,7 @@ namespace {
 
 constexpr int kWindow = 250;  // cycles, standstill_time
 
-class EstimatorStandstillTest : public EstimatorFixture {
- protected:
+struct EstimatorStandstillTest : EstimatorFixture {
   EstimatorStandstillTest() { observe(); }
   bool standing() const { return has(kStateStandstill); }
   double tolerance() const {  // m, of a wheel's travel in a window

@@ -6,8 +6,7 @@
 namespace robot_control {
 namespace {
 
-class EstimatorStartTest : public EstimatorFixture {
- protected:
+struct EstimatorStartTest : EstimatorFixture {
   /// The robot moves and no sample is received.
   void drive_unseen(double linear, double angular, int cycles) {
     for (int i = 0; i < cycles; ++i) robot_.drive(linear, angular);

@@ -15,8 +15,7 @@ constexpr double kPromisedNs = 1500;  // the median on a quiet machine, whose ke
 constexpr std::size_t kCycles = 1000;
 constexpr int kBlocks = 11;
 
-class EstimatorCost : public EstimatorFixture {
- protected:
+struct EstimatorCost : EstimatorFixture {
   EstimatorCost() {
     robot_.noise = {.gyro = 2.44e-4, .accelerometer = 2e-3, .counts = 4096};
     stand();

@@ -16,8 +16,7 @@ namespace {
 
 constexpr std::uint64_t kSecond = 1000;  // cycles
 
-class ReplayedDrive : public testing::Test {
- protected:
+struct ReplayedDrive : testing::Test {
   /// Calls `act(k)` before each step.
   void drive(
       std::uint64_t cycles, const std::function<void(std::uint64_t)>& act = [](std::uint64_t) {}) {

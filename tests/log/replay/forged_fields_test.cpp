@@ -110,8 +110,7 @@ std::set<std::string> fields_that_cannot_be_known() {
   return fields;
 }
 
-class ForgedFields : public testing::Test {
- protected:
+struct ForgedFields : testing::Test {
   static const LoggedDrive& drive() {
     static const LoggedDrive drive;
     return drive;

@@ -12,8 +12,7 @@
 namespace robot_control {
 namespace {
 
-class ReplayedProcesses : public testing::Test {
- protected:
+struct ReplayedProcesses : testing::Test {
   ReplayedProcesses() {
     robot_.nodes().log_into(folder_.string());
     robot_.nodes().start(LoopNode::kTelemetry);

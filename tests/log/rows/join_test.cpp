@@ -13,8 +13,7 @@ constexpr double kPeriod = 0.001;
 constexpr std::size_t kWindow = 8;
 
 /// Emitted rows as "run:cycle parts", a part being d, e, c or m if the node has a frame.
-class JoinTest : public ::testing::Test {
- protected:
+struct JoinTest : ::testing::Test {
   void cycle(std::uint64_t run, std::uint64_t k, const std::string& nodes = "decm") {
     for (const char node : nodes) {
       if (node == 'd') join.add(driver_row(run, k));

@@ -10,8 +10,7 @@
 namespace robot_control {
 namespace {
 
-class ALogFolder : public ::testing::Test {
- protected:
+struct ALogFolder : ::testing::Test {
   std::string path(const std::string& name) const { return folder_.path() / name; }
   void keep(const std::string& name, std::size_t bytes) const { folder_.write(name, std::string(bytes, 'x')); }
   std::vector<std::string> names() const {

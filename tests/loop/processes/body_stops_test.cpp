@@ -15,8 +15,7 @@ namespace {
 constexpr std::uint64_t kPushStart = 1000;  // cycle
 constexpr std::uint64_t kNever = ~std::uint64_t{0};
 
-class BodyStops : public testing::Test {
- protected:
+struct BodyStops : testing::Test {
   BodyStops() : parameters_(read_parameters(PROJECT_DIRECTORY "/config/robot_params.yaml")) {
     parameters_.plant.sensor_errors = ErrorLevel::kIdeal;
   }

@@ -41,8 +41,7 @@ std::vector<Fault> all_faults() {
   return faults;
 }
 
-class Faults : public ::testing::Test {
- protected:
+struct Faults : ::testing::Test {
   Faults() {
     std::ostringstream script;
     script << "cycle,linear,angular,event\n";

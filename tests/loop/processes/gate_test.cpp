@@ -28,8 +28,7 @@ Twist restless(double time) {
   return twist(now[0], now[1]);
 }
 
-class GateInTheLoop : public testing::Test {
- protected:
+struct GateInTheLoop : testing::Test {
   GateInTheLoop() : parameters_(read_parameters(PROJECT_DIRECTORY "/config/robot_params.yaml")) {}
 
   void expect_no_clamp(const Request& request, double seconds) {

@@ -22,8 +22,7 @@ constexpr std::uint64_t kCycles = 6000;
 constexpr double kLockstepPatience = 120;  // s
 
 /// Drives a curve, stops by e-stop, is reset and drives on.
-class Lockstep : public ::testing::Test {
- protected:
+struct Lockstep : ::testing::Test {
   Lockstep() : folder_(std::filesystem::temp_directory_path() / ("lockstep-" + std::to_string(getpid()))) {
     std::filesystem::create_directories(folder_);
     std::ofstream script(folder_ / "script.csv");

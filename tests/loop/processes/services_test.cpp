@@ -22,8 +22,7 @@ constexpr std::int64_t kSecond = 1'000'000'000;  // ns
 constexpr const char* kCurve = "cycle,linear,angular,event\n1,0.5,0.2,\n1000,0.5,0.2,\n2000,0.5,0.2,\n3000,0.5,0.2,\n";
 
 /// Drives a curve in every run.
-class Services : public ::testing::Test {
- protected:
+struct Services : ::testing::Test {
   Services() : folder_(std::filesystem::temp_directory_path() / ("services-" + std::to_string(getpid()))) {
     std::filesystem::create_directories(folder_);
     std::ofstream(folder_ / "script.csv") << kCurve;

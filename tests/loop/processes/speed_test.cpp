@@ -16,8 +16,7 @@ constexpr double kFourNodesShare = 20.0 / 150.0;
 constexpr std::uint64_t kTimedCycles = 10'000;
 constexpr int kRounds = 5;  // rounds until one is good: a stall in favour of another process proves nothing
 
-class Speed : public ::testing::Test {
- protected:
+struct Speed : ::testing::Test {
   template <class Measure>
   double best_share(Measure measure, double wanted) {
     double best = 0;

@@ -27,8 +27,7 @@ std::string short_message_of(const Action& action) {
   return message;
 }
 
-class ForeignText : public testing::Test {
- protected:
+struct ForeignText : testing::Test {
   std::string reading(const std::string& name, const std::string& text) {
     const std::string path = folder_.write(name, text);
     return short_message_of([&] { parse_urdf(load_description(path)); });
@@ -123,8 +122,7 @@ TEST_F(ForeignText, EntitiesAreNamed) {
   EXPECT_EQ(reading("c.urdf", "<robot name=\"r\"><!-- <!ENTITY a \"b\"> --><link name=\"a\"/></robot>"), "accepted");
 }
 
-class CyclicXacro : public ForeignText {
- protected:
+struct CyclicXacro : ForeignText {
   void SetUp() override {
     if (reading("probe.xacro", "<robot name=\"r\"><link name=\"a\"/></robot>").find("no module xacro") !=
         std::string::npos) {

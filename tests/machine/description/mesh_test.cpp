@@ -28,8 +28,7 @@ std::string nested(int depth) {
   return replaced(dae_with("<node id=\"n\">", begin + "<node id=\"n\">"), "instance_geometry", "</node>", end);
 }
 
-class Mesh : public testing::Test {
- protected:
+struct Mesh : testing::Test {
   Points read(const std::string& name, const std::string& bytes) { return read_mesh(folder_.write(name, bytes)); }
 
   std::string refusal(const std::string& name, const std::string& bytes) {

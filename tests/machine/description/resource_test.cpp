@@ -11,8 +11,7 @@ namespace {
 constexpr const char* kManifest = "<package><name>bot_description</name></package>";
 
 /// ws/src/stack/folder is the package bot_description; robots/bot.urdf refers to it.
-class Resource : public testing::Test {
- protected:
+struct Resource : testing::Test {
   Resource() {
     folder_.write("ws/src/stack/folder/package.xml", kManifest);
     mesh_ = folder_.write("ws/src/stack/folder/meshes/base.stl", "solid");

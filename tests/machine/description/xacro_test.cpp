@@ -21,8 +21,7 @@ constexpr const char* kPartsManifest =
     "<package><name>robot_control_test_parts</name><version>1.0.0</version><description>d</description>"
     "<maintainer email=\"a@b.c\">m</maintainer><license>l</license></package>";
 
-class Xacro : public testing::Test {
- protected:
+struct Xacro : testing::Test {
   Xacro() {
     folder_.write("ws/parts/package.xml", kPartsManifest);
     folder_.write("ws/parts/wheel.xacro", kWheel);

@@ -9,8 +9,7 @@
 namespace robot_control {
 namespace {
 
-class LegDynamicsOf : public testing::TestWithParam<std::string> {
- protected:
+struct LegDynamicsOf : testing::TestWithParam<std::string> {
   LegModel robot_ = legged_robot(GetParam());
 };
 

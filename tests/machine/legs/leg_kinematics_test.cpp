@@ -32,8 +32,7 @@ bool in_range(const LegKinematics& leg, const LegAngles& angles) {
   return true;
 }
 
-class LegKinematicsOf : public testing::TestWithParam<std::string> {
- protected:
+struct LegKinematicsOf : testing::TestWithParam<std::string> {
   LegModel robot_ = legged_robot(GetParam());
   std::mt19937_64 random_{31};
 };

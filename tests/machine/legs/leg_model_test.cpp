@@ -20,8 +20,7 @@ constexpr double kDigits = 1.5e-9;      // m, of the feet in FACTS.json, which h
 constexpr double kEffortDigits = 1e-5;  // N·m
 constexpr double kMassDigits = 1e-5;    // kg
 
-class LegFacts : public testing::TestWithParam<std::string> {
- protected:
+struct LegFacts : testing::TestWithParam<std::string> {
   void SetUp() override {
     if (quadrupeds().empty()) GTEST_SKIP() << kNoQuadrupeds;
     facts_ = quadruped_facts()[GetParam()];
@@ -152,8 +151,7 @@ TEST(LegModel, LiesOnItsBodyAlone) {
   }
 }
 
-class LegRefusals : public testing::Test {
- protected:
+struct LegRefusals : testing::Test {
   std::string refusal(const std::string& content, const LegParameters& legs = {}) {
     return message_of<RobotError>([&] { read_legs(robot_of(content), {}, legs); }, "accepted");
   }

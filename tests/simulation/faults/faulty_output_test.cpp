@@ -19,8 +19,7 @@ constexpr std::uint64_t kOnset = 100;
 /// No value: nothing was published.
 using Outcome = std::optional<double>;
 
-class FaultyOutputTest : public testing::Test {
- protected:
+struct FaultyOutputTest : testing::Test {
   static void distort(FaultKind kind, double& value, FaultRandom& random) {
     value = kind == FaultKind::kWrong ? -value : random.within(1000);
   }

@@ -12,8 +12,7 @@ namespace {
 
 constexpr double kCycle = 1e-3;  // s
 
-class GroundFrictionTest : public testing::Test {
- protected:
+struct GroundFrictionTest : testing::Test {
   GroundFriction law_{make_skid_steer()};
   std::array<double, 4> integral_{};
 

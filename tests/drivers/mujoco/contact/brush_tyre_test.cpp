@@ -11,8 +11,7 @@
 namespace robot_control {
 namespace {
 
-class BrushTyreTest : public PlantTest {
- protected:
+struct BrushTyreTest : PlantTest {
   std::unique_ptr<MujocoPlant> started(const MadeRobot& robot) {
     parameters_.scene = kFlat;
     parameters_.sensor_errors = ErrorLevel::kIdeal;

@@ -10,8 +10,7 @@
 namespace robot_control {
 namespace {
 
-class FeetOnGround : public PlantTest {
- protected:
+struct FeetOnGround : PlantTest {
   /// Balls of 3 cm before and behind the wheels that end `gap` m above them.
   static MadeRobot on_balls(double front, double back, double x = 0.3) {
     MadeRobot robot;

@@ -22,8 +22,7 @@ std::string ball(double radius) {
   return "<collision><geometry><sphere radius=\"" + std::to_string(radius) + "\"/></geometry></collision>";
 }
 
-class Standing : public PlantTest {
- protected:
+struct Standing : PlantTest {
   std::unique_ptr<MujocoPlant> stood(const MadeRobot& robot) {
     return started(robot.description(), kFlat, 0.001, robot.names());
   }

@@ -16,8 +16,7 @@ constexpr double kMass = 0.5;        // kg
 constexpr double kTyreRadius = 0.1;  // m
 constexpr double kLoad = 50;         // N
 
-class TyreTest : public testing::Test {
- protected:
+struct TyreTest : testing::Test {
   /// Force in x, N, on a mass with the slip velocity velocity_.
   double step(double load, double rim_speed = 0) {
     TyreInput input;

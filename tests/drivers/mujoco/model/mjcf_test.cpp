@@ -24,8 +24,7 @@ ModelPointer load_text(const std::string& name, const std::string& text) {
 }
 
 /// Two wheels, and an arm whose first joint is `kind` with `inside`.
-class MjcfTest : public testing::Test {
- protected:
+struct MjcfTest : testing::Test {
   MjcfTest() {
     install_mujoco_handlers();
     model_.bodies = bodies_;

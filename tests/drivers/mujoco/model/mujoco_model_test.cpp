@@ -10,8 +10,7 @@
 namespace robot_control {
 namespace {
 
-class MujocoModelTest : public testing::Test {
- protected:
+struct MujocoModelTest : testing::Test {
   MujocoModel compiled(const std::string& scene, double period = 0.001) const {
     MujocoPlantParameters parameters;
     parameters.scene = scene;

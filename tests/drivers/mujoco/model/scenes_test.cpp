@@ -9,8 +9,7 @@
 namespace robot_control {
 namespace {
 
-class SceneTest : public PlantTest {
- protected:
+struct SceneTest : PlantTest {
   std::unique_ptr<MujocoPlant> in(const std::string& scene) {
     parameters_.scene = scene.front() == '/' ? scene : PROJECT_DIRECTORY "/urdf/scenes/" + scene;
     parameters_.sensor_errors = ErrorLevel::kIdeal;

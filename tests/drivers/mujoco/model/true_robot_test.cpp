@@ -9,8 +9,7 @@
 namespace robot_control {
 namespace {
 
-class TrueRobotTest : public testing::Test {
- protected:
+struct TrueRobotTest : testing::Test {
   TrueRobotTest() { parameters_.sensor_errors = ErrorLevel::kDataSheet; }
 
   TrueRobot real() const { return true_robot(believed_, parameters_, kStep); }

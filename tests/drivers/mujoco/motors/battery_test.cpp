@@ -42,8 +42,7 @@ TEST(Battery, GivesHalfItsVoltageAtItsGreatestPowerAndBeyond) {
   EXPECT_NEAR(battery_under_load(kVoltage, kResistance, 1e6).voltage, half, kVoltRounding);
 }
 
-class BatteryOfThePlant : public PlantTest {
- protected:
+struct BatteryOfThePlant : PlantTest {
   BatteryOfThePlant() {
     parameters_.scene = kFlat;
     parameters_.sensor_errors = ErrorLevel::kIdeal;

@@ -58,8 +58,7 @@ TEST(BrakeOf, TakesWhatTheUserSays) {
   EXPECT_EQ(brake.hold_speed, 0.2);
 }
 
-class CheckBrake : public testing::Test {
- protected:
+struct CheckBrake : testing::Test {
   std::string refusal() const {
     return message_of<DriverError>([&] { check_brake(brake_, "left_wheel_joint", 0.005, kStep); }, "accepted");
   }

@@ -64,8 +64,7 @@ struct Arm {
   }
 };
 
-class HeldJoints : public testing::TestWithParam<Arm> {
- protected:
+struct HeldJoints : testing::TestWithParam<Arm> {
   HeldJoints() {
     parameters_.scene = kFlat;
     parameters_.sensor_errors = ErrorLevel::kIdeal;

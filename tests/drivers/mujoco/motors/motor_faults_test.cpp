@@ -17,8 +17,7 @@ namespace {
 
 constexpr double kLimit = 3.5;  // N·m, as two_wheels has it
 
-class MotorFaultsTest : public testing::Test {
- protected:
+struct MotorFaultsTest : testing::Test {
   /// Runs one cycle in which each wheel is asked for `effort`, all joints at rest.
   void step(FaultKind left, FaultKind right, double effort, JointMode mode = JointMode::kEffort) {
     InjectedFaults faults{};

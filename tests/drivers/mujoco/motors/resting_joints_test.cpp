@@ -34,8 +34,7 @@ const std::string kArm = R"(
 const std::array<std::pair<const char*, double>, 3> kRest{
     {{"lift_joint", 0.3}, {"arm_joint", 0.5}, {"finger_joint", -0.4}}};
 
-class RestingJoints : public testing::Test {
- protected:
+struct RestingJoints : testing::Test {
   RestingJoints() {
     parameters_.scene = kFlat;
     parameters_.sensor_errors = ErrorLevel::kIdeal;

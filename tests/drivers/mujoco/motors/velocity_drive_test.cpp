@@ -12,8 +12,7 @@ namespace {
 constexpr double kStep = 0.001;     // s
 constexpr double kInertia = 0.065;  // kg·m²
 
-class VelocityDriveTest : public testing::Test {
- protected:
+struct VelocityDriveTest : testing::Test {
   VelocityDriveParameters parameters{
       .loaded_inertia = kInertia,
       .lifted_inertia = 0.005,

@@ -31,8 +31,7 @@ DriveTrain skid_steer() {
   return made.model();
 }
 
-class Accelerometer : public testing::TestWithParam<std::tuple<double, double>> {
- protected:
+struct Accelerometer : testing::TestWithParam<std::tuple<double, double>> {
   /// m/s, the largest error over a second of a drive.
   static double worst(const DriveTrain& robot, double damping, double period) {
     MujocoPlantParameters parameters;

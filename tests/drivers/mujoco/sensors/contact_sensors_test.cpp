@@ -13,8 +13,7 @@
 namespace robot_control {
 namespace {
 
-class ContactSensors : public PlantTest, public testing::WithParamInterface<TyreModel> {
- protected:
+struct ContactSensors : PlantTest, testing::WithParamInterface<TyreModel> {
   ContactSensors() {
     parameters_.scene = kFlat;
     parameters_.sensor_errors = ErrorLevel::kIdeal;

@@ -31,8 +31,7 @@ double mean_square(const std::vector<double>& values) {
   return sum / static_cast<double>(values.size());
 }
 
-class VibrationTest : public testing::Test {
- protected:
+struct VibrationTest : testing::Test {
   VibrationTest() { errors_.accelerometer_slow_error = 0; }
 
   Vibration made() const {
@@ -152,8 +151,7 @@ TEST(LateSamplesTest, AreTheSameForTheSameSeed) {
   EXPECT_EQ(reported(0.01, 0.002, 1000), reported(0.01, 0.002, 1000));
 }
 
-class SlipNoiseTest : public testing::Test {
- protected:
+struct SlipNoiseTest : testing::Test {
   SlipNoiseTest() {
     made_.axles = {0.2, -0.2};
     parameters_.sensor_errors = ErrorLevel::kField;
@@ -201,8 +199,7 @@ TEST_F(SlipNoiseTest, IsOfTheFieldAndOfWheelsBehindEachOtherAlone) {
 }
 
 /// The robot of SlipNoiseTest, straight ahead on the plant.
-class FieldPlant : public SlipNoiseTest {
- protected:
+struct FieldPlant : SlipNoiseTest {
   struct Driven {
     double rims = 0;    ///< m, mean of both sides
     double ground = 0;  ///< m, ahead

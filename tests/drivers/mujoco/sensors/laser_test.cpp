@@ -16,8 +16,7 @@ namespace {
 constexpr double kLaserX = 0.05;  // m, of laser_link ahead of the base
 constexpr double kExact = 0.002;  // m: the robot leans by less than 0.1° at rest
 
-class LaserTest : public PlantTest {
- protected:
+struct LaserTest : PlantTest {
   LaserTest() {
     parameters_.sensor_errors = ErrorLevel::kIdeal;
     parameters_.laser = {.rate = 10, .rays = 4, .noise = 0, .drop_outs = 0};

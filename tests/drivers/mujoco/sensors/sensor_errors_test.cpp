@@ -52,8 +52,7 @@ double correlation_bound(std::size_t count) {
   return kDeviations / std::sqrt(static_cast<double>(count));
 }
 
-class SensorErrorsTest : public testing::Test {
- protected:
+struct SensorErrorsTest : testing::Test {
   SensorErrorsTest() {
     parameters_.seed = 7;
     parameters_.sensor_errors = ErrorLevel::kDataSheet;

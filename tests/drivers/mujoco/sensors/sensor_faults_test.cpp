@@ -30,8 +30,7 @@ Measurement healthy(std::uint64_t cycle) {
   return measurement;
 }
 
-class SensorFaultsTest : public testing::Test {
- protected:
+struct SensorFaultsTest : testing::Test {
   /// Healthy until kOnset.
   SensorFaultsTest() {
     for (std::uint64_t cycle = 0; cycle < kOnset; ++cycle) step(FaultComponent::kGyro, FaultKind::kOk, cycle);
@@ -153,8 +152,7 @@ TEST_F(SensorFaultsTest, EncodersFailEachForItself) {
 }
 
 /// Gyro and accelerometer.
-class InertialFaults : public SensorFaultsTest, public testing::WithParamInterface<FaultComponent> {
- protected:
+struct InertialFaults : SensorFaultsTest, testing::WithParamInterface<FaultComponent> {
   bool is_gyro() const { return GetParam() == FaultComponent::kGyro; }
   const Vector3& axes() const { return is_gyro() ? seen_.imu.angular_velocity : seen_.imu.linear_acceleration; }
   const Vector3& other() const { return is_gyro() ? seen_.imu.linear_acceleration : seen_.imu.angular_velocity; }
@@ -213,8 +211,7 @@ INSTANTIATE_TEST_SUITE_P(Devices, InertialFaults,
                          testing::Values(FaultComponent::kGyro, FaultComponent::kAccelerometer),
                          [](const auto& device) { return std::string(name_of(device.param)); });
 
-class BatteryFaults : public SensorFaultsTest {
- protected:
+struct BatteryFaults : SensorFaultsTest {
   void inject(FaultKind kind, std::uint64_t cycle) {
     step(FaultComponent::kBattery, kind, cycle);
     EXPECT_EQ(left().position, left_at(cycle).position);
@@ -272,8 +269,7 @@ TEST_F(BatteryFaults, SlowIsSampledEveryTenthCycle) {
   }
 }
 
-class ButtonFaults : public SensorFaultsTest {
- protected:
+struct ButtonFaults : SensorFaultsTest {
   /// Number of 500 cycles in which the button is pressed.
   int pressed(FaultKind kind) {
     int count = 0;

@@ -12,8 +12,7 @@ namespace robot_control {
 namespace {
 
 /// A gyro and an accelerometer have given their first samples: 0.1 rad/s and 1 m/s² along z.
-class ImuSamplesTest : public testing::Test {
- protected:
+struct ImuSamplesTest : testing::Test {
   ImuSamplesTest() { both(0.1, 1.0, 0); }
 
   void none(double dt = kPeriod) { step(0, {}, {}, dt); }

@@ -26,8 +26,7 @@ CoreMatrix derivative(const Step& step, const CoreVector& at) {
 }
 
 /// A core whose error state is correlated throughout, in the middle of a block.
-class CoreTransportTest : public testing::Test {
- protected:
+struct CoreTransportTest : testing::Test {
   CoreTransportTest() : core_(core_without_noise()) {
     core_.place({1.0, -2.0, 0.7});
     practise(core_, 5);

@@ -10,8 +10,7 @@ constexpr double kRounding = 1e-12;  // relative
 constexpr double kBase = PlanarCoreParams{}.wheel_base;
 
 /// A block of 0.4 m and 0.3 rad is about to end. The calibration is held, so that it does not walk.
-class CoreUpdateTest : public testing::Test {
- protected:
+struct CoreUpdateTest : testing::Test {
   CoreUpdateTest() {
     practise(core_, 3);
     core_.begin_block(0.1);

@@ -7,8 +7,7 @@
 namespace robot_control {
 namespace {
 
-class RestWatchTest : public testing::Test {
- protected:
+struct RestWatchTest : testing::Test {
   static constexpr double kStep = 0.01;  // s
   static constexpr int kWindow = 25;     // steps
 

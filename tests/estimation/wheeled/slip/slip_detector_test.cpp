@@ -39,8 +39,7 @@ TEST(SlipLineOfAFarImu, IsStraightWithoutSlip) {
 }
 
 /// Steps by which the wheels' stamps are late; negative values: early.
-class SlipOfOtherClocks : public SlipFixture, public testing::WithParamInterface<int> {
- protected:
+struct SlipOfOtherClocks : SlipFixture, testing::WithParamInterface<int> {
   SlipOfOtherClocks() {
     body_.late = GetParam();
     body_.detector.set_clock_offset(GetParam() * SlidingBody::kStep);
@@ -109,8 +108,7 @@ TEST_P(SlipOfOtherClocks, ASpinIsProvenWithinTheNextSpan) {
 
 INSTANTIATE_TEST_SUITE_P(Steps, SlipOfOtherClocks, testing::Values(-20, -7, -1, 0, 3, 14, 34));
 
-class SlipOfAFarImu : public SlipFixture {
- protected:
+struct SlipOfAFarImu : SlipFixture {
   SlipOfAFarImu() : SlipFixture({.imu_x = 0.4, .imu_y = -0.2}) {}
 };
 
@@ -119,8 +117,7 @@ TEST_F(SlipOfAFarImu, BehindARestTheLeverIsNoSlip) {
   EXPECT_EQ(drive(2, 0.3), 0);
 }
 
-class SlipDetectorTest : public SlipFixture {
- protected:
+struct SlipDetectorTest : SlipFixture {
   SlipDetectorTest() { learn(); }
 };
 
@@ -231,8 +228,7 @@ TEST_F(SlipFixture, BeginsPessimistic) {
 }
 
 /// Factor on the noise of the data sheet.
-class SlipNoise : public SlipFixture, public testing::WithParamInterface<double> {
- protected:
+struct SlipNoise : SlipFixture, testing::WithParamInterface<double> {
   SlipNoise() { body_.noise = GetParam() * SlipParams{}.accelerometer; }
 };
 

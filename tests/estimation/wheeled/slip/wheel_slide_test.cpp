@@ -6,8 +6,7 @@
 namespace robot_control {
 namespace {
 
-class WheelSlideTest : public SlipFixture {
- protected:
+struct WheelSlideTest : SlipFixture {
   WheelSlideTest() { learn(); }
 
   WheelSlide::Speeds treads() const { return {body_.speed + body_.left, body_.speed + body_.right}; }

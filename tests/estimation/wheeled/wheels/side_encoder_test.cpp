@@ -11,8 +11,7 @@ namespace {
 constexpr double kBandwidth = 20;  // Hz
 
 /// The left wheel of a robot that stands at 12.5 rad.
-class SideEncoderTest : public testing::Test {
- protected:
+struct SideEncoderTest : testing::Test {
   SideEncoderTest() {
     set_joints_valid(sensors_, kValidMotion);
     sensors_.joint_count = 2;
@@ -54,8 +53,7 @@ TEST_F(SideEncoderTest, DoesNotLookAtTheOtherSide) {
 }
 
 /// 0.1 m radius; left joints are mirrored.
-class SideEncoderOfFourWheels : public testing::Test {
- protected:
+struct SideEncoderOfFourWheels : testing::Test {
   SideEncoderOfFourWheels() {
     set_joints_valid(sensors_, kValidMotion);
     sensors_.joint_count = 4;

@@ -11,8 +11,7 @@
 namespace robot_control {
 namespace {
 
-class SpeedReadings : public testing::Test {
- protected:
+struct SpeedReadings : testing::Test {
   /// A changing speed, read every `gap` s or so, and rounded to `step` m/s.
   SpeedQuantum read(double step, double gap, double count = 1e-4) {
     SpeedQuantum quantum(count);
