@@ -42,17 +42,26 @@ struct EstimatorSlipTest : EstimatorFixture {
   }
 };
 
-TEST_F(EstimatorSlipTest, AWheelThatSpinsIsNamed) {
-  robot_.tread[1] = 1.0;
-  EXPECT_GT(flagged(1000), 900);
-  EXPECT_TRUE(names(kSlipRight | kSlipSpinning | kSlipTurn));
-  EXPECT_FALSE(names(kSlipLeft));
-  EXPECT_EQ(state_.wheeled.confidence[kRightEncoder], 0);
-  EXPECT_LT(position_error(), 3 * deviation());
-  EXPECT_LT(yaw_error(), 0.01);
-  recover();
-  EXPECT_EQ(state_.wheeled.slip, 0u);
-  EXPECT_LT(position_error(), 3 * deviation());
+TEST_F(EstimatorSlipTest, NamesWheelsThatSpinOrAreStuckAndEndsWithThem) {
+  struct Case {
+    std::array<std::optional<double>, 2> tread;
+    std::uint64_t named, not_named;
+  };
+  for (const Case& slip : {Case{{{}, 1.0}, kSlipRight | kSlipSpinning | kSlipTurn, kSlipLeft},
+                           Case{{0.0, {}}, kSlipLeft | kSlipStalled | kSlipTurn, kSlipRight},
+                           Case{{1.0, 1.0}, kSlipLeft | kSlipRight | kSlipSpinning, kSlipTurn}}) {
+    SCOPED_TRACE(slip.named);
+    robot_.tread = slip.tread;
+    EXPECT_GT(flagged(1000), 900);
+    EXPECT_TRUE(names(slip.named));
+    EXPECT_FALSE(names(slip.not_named));
+    EXPECT_EQ(state_.wheeled.confidence[kRightEncoder] == 0, slip.tread[1].has_value());
+    EXPECT_LT(position_error(), 3 * deviation());
+    EXPECT_LT(yaw_error(), 0.01);
+    recover();
+    EXPECT_EQ(state_.wheeled.slip, 0u);
+    EXPECT_LT(position_error(), 3 * deviation());
+  }
 }
 
 // The accelerometer's bias is not known, so its integral of a slide would move the path by metres.
@@ -75,27 +84,6 @@ TEST_F(EstimatorFixture, ASlideBeforeTheFirstRestIsNotCorrected) {
   drive(0.5, 0, 1000);
   stand(3000);
   EXPECT_GT(slipping(), 500);
-}
-
-TEST_F(EstimatorSlipTest, AWheelThatIsStuckIsNamed) {
-  robot_.tread[0] = 0.0;
-  EXPECT_GT(flagged(1000), 900);
-  EXPECT_TRUE(names(kSlipLeft | kSlipStalled | kSlipTurn));
-  EXPECT_FALSE(names(kSlipRight));
-  EXPECT_LT(position_error(), 3 * deviation());
-  recover();
-  EXPECT_EQ(state_.wheeled.slip, 0u);
-}
-
-TEST_F(EstimatorSlipTest, BothWheelsSpinningUnderABodyThatRollsOn) {
-  robot_.tread = {1.0, 1.0};
-  EXPECT_GT(flagged(1000), 900);
-  EXPECT_TRUE(names(kSlipLeft | kSlipRight | kSlipSpinning));
-  EXPECT_FALSE(names(kSlipTurn));
-  EXPECT_LT(position_error(), 3 * deviation());
-  recover();
-  EXPECT_EQ(state_.wheeled.slip, 0u);
-  EXPECT_LT(position_error(), 3 * deviation());
 }
 
 // Friction brakes the body with 1 m/s² for half a second, 0.125 m long.
