@@ -10,6 +10,7 @@
 
 #include "configuration/parameters.h"
 #include "support/allocation_guard.h"
+#include "support/damaged_text.h"
 #include "support/matchers.h"
 #include "support/message_of.h"
 
@@ -159,17 +160,8 @@ TEST(CommandScript, AdvancesWithoutAllocation) {
 TEST(CommandScriptFuzz, ReadsOrRefusesWhateverStandsInTheFile) {
   for (unsigned seed = 0; seed < 20000; ++seed) {
     std::mt19937 random(seed);
-    std::string text = kHealthy;
-    for (auto count = 1 + random() % 6; count > 0; --count) {
-      const std::size_t place = random() % (text.size() + 1);
-      if (random() % 2 == 0) {
-        text.erase(place, random() % 12);
-      } else {
-        text.insert(place, 1, "0,9\n-e.#n\0\xff "[random() % 12]);
-      }
-    }
     try {
-      CommandScript script = CommandScript::parse(text, "script.csv");
+      CommandScript script = CommandScript::parse(damaged(kHealthy, random), "script.csv");
       const ScriptEvents events = script.advance(~std::uint64_t{0});
       EXPECT_LE(events.twists + events.e_stops + events.resets, 2 * script.size()) << "seed " << seed;
     } catch (const ParameterError&) {
