@@ -50,14 +50,6 @@ struct BusRestartTest : testing::Test {
   ChildProcess writer_;
 };
 
-TEST_F(BusRestartTest, ASecondInstanceIsRefusedWhileTheFirstLives) {
-  EXPECT_THROW(OwnedChannel<Frames>(bus_.name(), ChannelNames::kState), BusError);
-  ChildProcess second([this] { return write(6, false); });
-  EXPECT_EQ(second.wait(), ChildProcess::kThrew);
-  EXPECT_FALSE(has_frame(6));
-  EXPECT_TRUE(channel_.locked());
-}
-
 TEST_F(BusRestartTest, AKilledWriterLeavesItsFramesAndSequenceToTheNext) {
   const std::uint32_t sequence = reader_.sequence();
   writer_.kill();
