@@ -47,7 +47,7 @@ std::uint64_t most_loads(Look look) {
   return largest;
 }
 
-TEST(BoundedReader, OfFramesTriesAsOftenAsItMay) {
+TEST(BoundedReader, TriesToReadFramesAsOftenAsItMay) {
   const LatestFrames<Frame, HostileAtomic> memory{};
   const FrameReader<Frame, HostileAtomic> reader(&memory);
   Frame frame;
@@ -60,7 +60,7 @@ TEST(BoundedReader, OfFramesTriesAsOftenAsItMay) {
             kFrameSlots * kReadTries * kCopy);
 }
 
-TEST(BoundedReader, OfAValueTriesAsOftenAsItMay) {
+TEST(BoundedReader, TriesToReadAValueAsOftenAsItMay) {
   const LatestValue<Row, HostileAtomic> latest;
   Row value;
   const std::uint64_t largest = most_loads([&] { latest.load(value); });
@@ -68,7 +68,7 @@ TEST(BoundedReader, OfAValueTriesAsOftenAsItMay) {
   EXPECT_GT(largest, 2u + 3u);
 }
 
-TEST(BoundedReader, OfARingTriesAsOftenAsItMay) {
+TEST(BoundedReader, TriesToReadARingAsOftenAsItMay) {
   const Ring<Row, HostileAtomic, 16> ring{};
   RingReader<Row, HostileAtomic, 16> reader(&ring, 0);
   Row row;

@@ -132,7 +132,7 @@ class Race {
 };
 
 // A refused writer has waited for the lock, so ten races run at a time.
-TEST(BusRace, OfManyWritersAtOnceOneWinsAndTheOthersAreRefused) {
+TEST(BusRace, LetsOneOfManyWritersWinAndRefusesTheOthers) {
   for (int round = 0; round < 5; ++round) {
     std::vector<std::unique_ptr<Race>> races;
     for (int i = 0; i < 10; ++i) races.push_back(std::make_unique<Race>());

@@ -62,16 +62,6 @@ TEST(LatestFramesTorture, TwoThreadsSeeWholeFramesInOrder) {
   writer.join();
 }
 
-TEST(LatestFramesTorture, TwoProcessesSeeWholeFramesInOrder) {
-  const AnonymousMemory<LatestFrames<TestFrame>> memory;
-  ChildProcess writer([&] {
-    const std::atomic<bool> never{false};
-    write_until(never, memory.get());
-    return 0;
-  });
-  EXPECT_GE(read_and_check(memory.get()), kFrames);
-}
-
 TEST(LatestFramesTorture, WritersKilledAnywhereLeaveWholeFrames) {
   const AnonymousMemory<LatestFrames<TestFrame>> memory;
   const FrameReader<TestFrame> reader(memory.get());

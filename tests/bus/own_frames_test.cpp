@@ -80,7 +80,7 @@ TEST_F(OwnFramesTest, AFoundFrameIsWhereItsWriterHasPutIt) {
   EXPECT_EQ(found.frame, &own_->slots[3].frame);
 }
 
-TEST_F(OwnFramesTest, BeforeTheFirstPublicationEverythingIsMissing) {
+TEST_F(OwnFramesTest, FindsNothingBeforeTheFirstPublication) {
   SmallFrame buffer;
   EXPECT_EQ(own_reader_.find_newest(buffer).lookup, Lookup::kMissing);
   EXPECT_EQ(own_reader_.find_at(1, 0, buffer).lookup, Lookup::kMissing);

@@ -82,7 +82,7 @@ TEST_F(RingTest, APositionOfAnotherObjectIsBroughtBack) {
   EXPECT_TRUE(is_row(row_, 10));
 }
 
-TEST_F(RingTest, WithNoReaderPresentTheOldestRowsAreOverwrittenAndTheirLossIsCountedByTheNextReader) {
+TEST_F(RingTest, OverwritesTheOldestRowsWithoutAReaderAndTheNextReaderCountsThem) {
   append(0, kRingRows + 7);
   EXPECT_EQ(reader_.dropped(), 0u);
   ASSERT_TRUE(reader_.read(row_));
@@ -90,7 +90,7 @@ TEST_F(RingTest, WithNoReaderPresentTheOldestRowsAreOverwrittenAndTheirLossIsCou
   EXPECT_EQ(reader_.overwritten(), 7u);
 }
 
-TEST_F(RingTest, WithAReaderPresentAFullRingDropsTheNewRowAndCountsIt) {
+TEST_F(RingTest, DropsAndCountsTheNewRowOfAFullRingWithAReader) {
   const std::atomic<std::uint64_t> read{0};
   append(0, kRingRows, &read);
   EXPECT_TRUE(writer_.full(&read));

@@ -103,7 +103,7 @@ TEST_F(ABagLog, HoldsEveryRowAndSnapshotAndItsHeader) {
   EXPECT_EQ(found.cut, "");
 }
 
-TEST_F(ABagLog, OfAKilledWriterIsReadToItsLastChunk) {
+TEST_F(ABagLog, IsReadToItsLastChunkIfItsWriterWasKilled) {
   open();
   drive_on(2500);
   const Found found = rows_of(path());
@@ -139,7 +139,7 @@ TEST_F(ABagLog, HoldsASnapshotAtAnyRate) {
   EXPECT_EQ(BagLog::before_ns(0.001), BagLog::kBeforeNs);
 }
 
-TEST_F(ABagLog, OnRequestHoldsWhatIsRequested) {
+TEST_F(ABagLog, HoldsWhatIsRequested) {
   parameters.telemetry.record = RecordMode::kRequest;
   open();
   drive_on(20'000);
@@ -223,7 +223,7 @@ TEST_F(ABagLog, KeepsTheNewestOfItsQuota) {
   EXPECT_THAT(logs->take_removed(), testing::Contains(path("run.1.bag")));
 }
 
-TEST_F(ABagLog, WhoseFileWasRemovedSaysSoCountsAndBeginsAnother) {
+TEST_F(ABagLog, SaysThatItsFileWasRemovedCountsAndBeginsAnother) {
   open();
   drive_on(1500);
   std::filesystem::remove_all(folder.path() / "log");
@@ -243,7 +243,7 @@ TEST_F(ABagLog, WhoseFileWasRemovedSaysSoCountsAndBeginsAnother) {
   EXPECT_GE(log->unwritten(), 2000u);
 }
 
-TEST_F(ABagLog, WithoutAMessageIsRemovedAtTheEndAndNotKeptAfterACrash) {
+TEST_F(ABagLog, IsRemovedAtTheEndWithoutAMessageAndNotKeptAfterACrash) {
   parameters.telemetry.record = RecordMode::kRequest;
   open();
   std::filesystem::copy_file(path(), path("killed"));  // as after SIGKILL: it is not closed

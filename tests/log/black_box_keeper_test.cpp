@@ -198,7 +198,7 @@ TEST_F(ABlackBoxKeeper, SavesAtTheNextStartWhatATelemetryLeftThatWasKilled) {
   EXPECT_EQ(rows_of("crash.3.bag"), 300u);
 }
 
-TEST_F(ABlackBoxKeeper, AfterAnOrderlyEndIsKeptOnceAndSavesAStopThatWaited) {
+TEST_F(ABlackBoxKeeper, SavesAStopThatWaitedAtAnOrderlyEnd) {
   const auto first = start();
   drive_on(*first, 500);
   loop.e_stop();
@@ -209,7 +209,7 @@ TEST_F(ABlackBoxKeeper, AfterAnOrderlyEndIsKeptOnceAndSavesAStopThatWaited) {
 }
 
 /// Its thread gets little time on a busy machine.
-TEST_F(ABlackBoxKeeper, AtItsEndSavesWhatItsThreadIsSavingWithThePriorityOfItsCaller) {
+TEST_F(ABlackBoxKeeper, SavesAtItsEndWhatItsThreadIsSavingWithThePriorityOfItsCaller) {
   const auto keeper = start();
   drive_on(*keeper, 2000);
   loop.e_stop();
@@ -257,7 +257,7 @@ TEST_F(ABlackBoxKeeper, DoesNotKeepAnEmptyRing) {
   EXPECT_THAT(names(), ElementsAre("ring"));
 }
 
-TEST_F(ABlackBoxKeeper, WithoutIncidentsSavesNone) {
+TEST_F(ABlackBoxKeeper, SavesNoneWithoutIncidents) {
   drive_on(*start(0), 100);
   const auto keeper = start(0);
   drive_on(*keeper, 100);

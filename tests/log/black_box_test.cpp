@@ -83,7 +83,7 @@ TEST_F(ABlackBox, LeavesNoBagWhereverTheCallerGivesUp) {
 }
 
 /// A bag of rows that have one field.
-TEST_F(ABlackBox, OfAnotherVersionIsRefusedWithThatVersion) {
+TEST_F(ABlackBox, IsRefusedWithItsVersionIfThatIsAnother) {
   MessageType other = trace_type();
   other.definition = "uint64 cycle\n";
   const std::vector<WrittenConnection> connections{{.topic = "trace_header", .type = trace_header_type()},

@@ -112,7 +112,7 @@ TEST_F(ADamagedBlackBox, IsReadUpToWhereABagIsCutOff) {
   EXPECT_THAT(saved.missing, HasSubstr("bags that are cut off: 1 of 17; records are missing at 1 place"));
 }
 
-TEST_F(ADamagedBlackBox, OfWhichNothingIsLeftIsRefusedByWhatIsMissing) {
+TEST_F(ADamagedBlackBox, IsRefusedByWhatIsMissingWhereNothingIsLeft) {
   for (std::size_t i = 0; i <= bags; ++i) overwrite(i, 0, std::string(kBag, 'x'));
   EXPECT_THAT([&] { save(); }, ThrowsMessage<LogError>(HasSubstr("no record that is whole: the black box is damaged")));
 }

@@ -30,7 +30,7 @@ std::string bag_with(const TemporaryFolder& folder, MessageType type, const std:
   return path;
 }
 
-TEST(ALogOfAnotherLayout, OfSnapshotsIsRefusedWithItsVersionAndTheRemedy) {
+TEST(ALogOfAnotherLayout, IsRefusedWithTheVersionOfItsSnapshotsAndTheRemedy) {
   const TemporaryFolder folder;
   MessageType other = snapshot_type();
   other.md5.front() = other.md5.front() == '0' ? '1' : '0';
@@ -44,7 +44,7 @@ TEST(ALogOfAnotherLayout, OfSnapshotsIsRefusedWithItsVersionAndTheRemedy) {
   }
 }
 
-TEST(ALogOfAnotherLayout, OfRowsIsNotOfThisVersion) {
+TEST(ALogOfAnotherLayout, HasRowsOfAnotherVersion) {
   const TemporaryFolder folder;
   MessageType other = trace_type();
   EXPECT_TRUE(TraceReader(bag_with(folder, other, "")).of_this_version());

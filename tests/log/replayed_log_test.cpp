@@ -55,12 +55,12 @@ struct AReplayedLog : testing::Test {
   std::unique_ptr<BagLog> log;
 };
 
-TEST_F(AReplayedLog, OfADriveOverASnapshot) {
+TEST_F(AReplayedLog, IsExactOverASnapshot) {
   drive_on(11'000);
   expect_replayed_whole();
 }
 
-TEST_F(AReplayedLog, WithStopsResetsTuningAndANewRun) {
+TEST_F(AReplayedLog, IsExactOverStopsResetsTuningAndANewRun) {
   drive_on(1000);
   loop.e_stop();
   drive_on(800);

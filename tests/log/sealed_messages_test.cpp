@@ -25,7 +25,7 @@ void expect_every_change_is_noticed(const std::string& message, std::size_t step
   }
 }
 
-TEST(SealedMessages, OfAHeaderShowEveryChange) {
+TEST(SealedMessages, ShowEveryChangeOfAHeader) {
   const Parameters parameters = drive_parameters();
   const ClosedLoop loop(parameters);
   LogHeader header = log_header(parameters, loop.robot());
@@ -37,7 +37,7 @@ TEST(SealedMessages, OfAHeaderShowEveryChange) {
   });
 }
 
-TEST(SealedMessages, OfASnapshotShowEveryChange) {
+TEST(SealedMessages, ShowEveryChangeOfASnapshot) {
   ClosedLoop loop(drive_parameters());
   loop.step();
   for (const LawSnapshot* snapshot : loop.snapshots()) {

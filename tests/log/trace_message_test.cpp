@@ -106,7 +106,7 @@ TEST_F(TraceMessages, HoldWholeFramesNearASnapshot) {
   EXPECT_TRUE(intact(read.monitor.permit));
 }
 
-TEST_F(TraceMessages, OfARowThatRepeatsACycleHoldTheLawAlone) {
+TEST_F(TraceMessages, HoldTheLawAloneOfARowThatRepeatsACycle) {
   loop.step();
   JoinedRow row{.run = 3, .cycle = 7};
   row.repeats = true;
@@ -121,7 +121,7 @@ TEST_F(TraceMessages, OfARowThatRepeatsACycleHoldTheLawAlone) {
   EXPECT_EQ(read.estimator.calls.law.output, row.laws.estimator->calls.law.output);
 }
 
-TEST_F(TraceMessages, ThatAreTooShortOrTooLongAreRefused) {
+TEST_F(TraceMessages, AreRefusedIfTheyAreTooShortOrTooLong) {
   each(1, [](const JoinedRow&, const JoinedRow&) {});
   const std::string whole = message;
   for (std::size_t size = 0; size < whole.size(); ++size) {
@@ -130,7 +130,7 @@ TEST_F(TraceMessages, ThatAreTooShortOrTooLongAreRefused) {
   EXPECT_THROW(decoder.decode(whole + "x", read), TraceError);
 }
 
-TEST_F(TraceMessages, OfAnotherVersionAreReadByTheNamesOfTheirFields) {
+TEST_F(TraceMessages, AreReadByTheNamesOfTheirFieldsInAnotherVersion) {
   const TraceDecoder other(
       "# an earlier version\nuint8 KIND=3\nfloat32[] of_another_version # m\nuint64 cycle\nuint32 run\n");
   std::string bytes;
@@ -146,7 +146,7 @@ TEST_F(TraceMessages, OfAnotherVersionAreReadByTheNamesOfTheirFields) {
   EXPECT_THAT(other.missing(), testing::Contains("gyro"));
 }
 
-TEST_F(TraceMessages, WithAListLongerThanItsMemberAreRefused) {
+TEST_F(TraceMessages, AreRefusedWithAListLongerThanItsMember) {
   const TraceDecoder list("float64[] joint_position\n");
   std::string bytes("\x21\0\0\0", 4);
   bytes.append(33 * 8, '\0');

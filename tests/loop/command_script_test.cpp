@@ -86,7 +86,7 @@ TEST(CommandScript, RestartsInANewRun) {
   EXPECT_EQ(script.advance(0).twist.linear[0], 0.5);
 }
 
-TEST(CommandScript, WithoutRowsNothingEverHappens) {
+TEST(CommandScript, DoesNothingWithoutRows) {
   CommandScript script;
   const ScriptEvents events = script.advance(1000);
   EXPECT_FALSE(events.has_twist);

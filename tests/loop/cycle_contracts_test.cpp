@@ -785,7 +785,7 @@ TEST_F(DriverCycleTest, StampsItsCyclesFromTheStart) {
   const TruthFrame seen = truth.newest();
   EXPECT_EQ(seen.head.cycle, 2u);
   EXPECT_EQ(seen.head.run, kRun);
-  EXPECT_EQ(truth.head.stamp_ns, 700 + 2 * kPeriodNs);
+  EXPECT_EQ(seen.head.stamp_ns, 700 + 2 * kPeriodNs);
 }
 
 TEST_F(DriverCycleTest, CountsOverrunsSlipHoldsAndResumes) {

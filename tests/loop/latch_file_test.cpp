@@ -118,7 +118,7 @@ TEST_F(LatchFileTest, ALinkToNothingIsALatchForItsDiskMayNotBeMounted) {
   EXPECT_EQ(found().causes, 0u) << "after a reset, once it is there";
 }
 
-TEST(LatchPath, OfAFolderIsAFileNamedAfterHostAndNamespace) {
+TEST(LatchPath, IsAFileNamedAfterHostAndNamespaceInAFolder) {
   EXPECT_EQ(latch_path("/var/stop", "arm", "/robot2"), "/var/stop");
   EXPECT_EQ(latch_path("/var/stops/", "arm", "/"), "/var/stops/latch.arm");
   EXPECT_EQ(latch_path("/var/stops/", "arm", "/fleet/robot2"), "/var/stops/latch.arm.fleet.robot2");

@@ -177,7 +177,7 @@ TEST_F(NodeFaults, GarbageIsBrokenUnboundedOrRandom) {
   EXPECT_GT(finite_ones, 0);
 }
 
-TEST_F(NodeFaults, OfANewRunRestart) {
+TEST_F(NodeFaults, RestartInANewRun) {
   Loop other;
   inject(FaultComponent::kController, FaultKind::kGarbage);
   loop.steps(50);
@@ -206,7 +206,7 @@ TEST_F(NodeFaults, ACorruptStateCostsTheCommandButNotTheCycle) {
 
 // The cause of the stop, and the time until it.
 
-TEST_F(NodeFaults, OfAControllerThatIsOffTheGateHoldsThreeCyclesThenBrakesAndTheMonitorLatches) {
+TEST_F(NodeFaults, TheGateHoldsThreeCyclesThenBrakesForAControllerThatIsOffAndTheMonitorLatches) {
   inject(FaultComponent::kController, FaultKind::kOff);
   EXPECT_EQ(cycles_until_brake(50), 5) << "one on time, three held";
   loop.steps(static_cast<int>(SafetyParameters{}.loss_cycles));
@@ -216,20 +216,20 @@ TEST_F(NodeFaults, OfAControllerThatIsOffTheGateHoldsThreeCyclesThenBrakesAndThe
   EXPECT_EQ(loop.newest_permit().state, SupervisorState::kStopped) << "until a reset";
 }
 
-TEST_F(NodeFaults, OfAnEstimatorThatIsOffTheGateHoldsThreeCyclesThenBrakesAndTheMonitorLatches) {
+TEST_F(NodeFaults, TheGateHoldsThreeCyclesThenBrakesForAnEstimatorThatIsOffAndTheMonitorLatches) {
   inject(FaultComponent::kEstimator, FaultKind::kOff);
   EXPECT_EQ(cycles_until_brake(50), 5) << "without a state there is no command";
   loop.steps(static_cast<int>(SafetyParameters{}.loss_cycles));
   EXPECT_NE(loop.newest_permit().causes & kCauseEstimatorLost, 0u);
 }
 
-TEST_F(NodeFaults, OfAMonitorThatIsOffThePermitExpires) {
+TEST_F(NodeFaults, ThePermitOfAMonitorThatIsOffExpires) {
   inject(FaultComponent::kMonitor, FaultKind::kOff);
   EXPECT_EQ(cycles_until_brake(50), static_cast<int>(kPermitLife) + 1);
   EXPECT_NE(loop.gate().reasons & (kGatePermitExpired | kGateNoPermit), 0u);
 }
 
-TEST_F(NodeFaults, OfAMonitorThatIsStuckThePermitExpires) {
+TEST_F(NodeFaults, ThePermitOfAMonitorThatIsStuckExpires) {
   inject(FaultComponent::kMonitor, FaultKind::kStuck);
   EXPECT_EQ(cycles_until_brake(50), static_cast<int>(kPermitLife) + 2) << "the frame of the first cycle is healthy";
   loop.steps(100);
@@ -237,14 +237,14 @@ TEST_F(NodeFaults, OfAMonitorThatIsStuckThePermitExpires) {
   EXPECT_NE(loop.gate().reasons & kGatePermitExpired, 0u) << "a fresh head does not prolong it";
 }
 
-TEST_F(NodeFaults, OfAMonitorThatIsTenCyclesLateThePermitExpires) {
+TEST_F(NodeFaults, ThePermitOfAMonitorThatIsTenCyclesLateExpires) {
   inject(FaultComponent::kMonitor, FaultKind::kDelayed);
   EXPECT_LE(cycles_until_brake(50), static_cast<int>(kPermitLife) + 2);
   loop.steps(100);
   EXPECT_NE(loop.gate().reasons & kGatePermitExpired, 0u);
 }
 
-TEST_F(NodeFaults, OfASlowMonitorThePermitExpiresAgainAndAgain) {
+TEST_F(NodeFaults, ThePermitOfASlowMonitorExpiresAgainAndAgain) {
   inject(FaultComponent::kMonitor, FaultKind::kSlow);
   int braked = 0;
   for (int i = 0; i < 100; ++i) {
@@ -256,7 +256,7 @@ TEST_F(NodeFaults, OfASlowMonitorThePermitExpiresAgainAndAgain) {
   EXPECT_NEAR(braked, 100 - 10 * (static_cast<int>(kPermitLife) - 1), static_cast<int>(kPermitLife));
 }
 
-TEST_F(NodeFaults, OfAControllerThatSendsGarbageTheMonitorLatches) {
+TEST_F(NodeFaults, TheMonitorLatchesForAControllerThatSendsGarbage) {
   inject(FaultComponent::kController, FaultKind::kGarbage);
   loop.steps(100);
   EXPECT_NE(loop.newest_permit().causes & (kCauseNotFinite | kCauseCorruptFrame), 0u);

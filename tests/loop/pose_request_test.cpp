@@ -20,7 +20,7 @@ TEST(PoseRequest, HoldsExactlyFromTheNextCycleOn) {
   EXPECT_EQ(state.base.pose_covariance[35], 0);
 }
 
-TEST(PoseRequest, OfTwoInOneCycleTheLastHolds) {
+TEST(PoseRequest, IsTheLastOfTwoInOneCycle) {
   Loop loop;
   loop.steps(10);
   loop.estimator->request_pose({1, 1, 1});

@@ -60,7 +60,7 @@ TEST_F(NightlyFullDisk, HarmsNothingAndItsLossesAreReportedAndCounted) {
   expect_reported_and_counted("No space left on device");
 }
 
-TEST_F(AFullDisk, OrALimitOnTheFileHarmsNothingIsReportedAndTheLogIsReadToItsLastWholeChunk) {
+TEST_F(AFullDisk, HarmsNothingAsALimitOnTheFileIsReportedAndTheLogIsReadToItsLastWholeChunk) {
   nodes().prepare(LoopNode::kTelemetry, [] {
     std::signal(SIGXFSZ, SIG_IGN);
     const rlimit limit{kLimit, kLimit};
@@ -72,7 +72,7 @@ TEST_F(AFullDisk, OrALimitOnTheFileHarmsNothingIsReportedAndTheLogIsReadToItsLas
   EXPECT_GT(rows, 500u);
 }
 
-TEST_F(NightlyFullDisk, OrAFolderThatIsRemovedIsReportedAndCountedToo) {
+TEST_F(NightlyFullDisk, IsReportedAndCountedAsAFolderThatIsRemoved) {
   nodes().start(LoopNode::kTelemetry);
   expect_drives_on(1500);
   std::filesystem::remove_all(folder_);
@@ -85,7 +85,7 @@ TEST_F(NightlyFullDisk, OrAFolderThatIsRemovedIsReportedAndCountedToo) {
 
 /// A file system cannot be made read-only while a log on it is open. But a read-only one may be mounted over the
 /// folder: no other process can then read what is written on.
-TEST_F(NightlyFullDisk, OrAReadOnlyOneOverTheFolderIsReportedAndCountedAndTheLogsGoOnAfterwards) {
+TEST_F(NightlyFullDisk, IsReportedAndCountedAsAReadOnlyOneAndTheLogsGoOnAfterwards) {
   if (ChildProcess([this] { return mount_small_disk(folder_) ? 0 : 1; }).wait() != 0) {
     GTEST_SKIP() << "mounting is not granted";
   }

@@ -22,7 +22,7 @@ struct AHog : Losses {
   OffTheChain off_;
 };
 
-TEST_F(AHog, AtTheControllersPriorityStarvesItAndTheRobotBrakes) {
+TEST_F(AHog, StarvesTheControllerAtItsPriorityAndTheRobotBrakes) {
   Hog hog(static_cast<int>(LoopPriority::kController), 0);
   robot_.poll();
   log().forget();

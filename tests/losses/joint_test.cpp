@@ -52,7 +52,7 @@ struct AJoint : Losses, ::testing::WithParamInterface<FailingJoint> {
   AJoint() : Losses(with_four_wheels()) {}
 };
 
-TEST_P(AJoint, ThatFailsStopsTheRobotAndIsNamed) {
+TEST_P(AJoint, StopsTheRobotAndIsNamedIfItFails) {
   const FailingJoint& failing = GetParam();
   ASSERT_EQ(nodes().robot().joints.size(), 4u);
   SpoilRequest& request = nodes().controls().spoil;

@@ -192,7 +192,7 @@ struct HogOfATrottingQuadbot : LossOfQuadbot {
   OffTheChain off_;
 };
 
-TEST_F(HogOfATrottingQuadbot, NightlyAtTheControllersPriorityStarvesItAndTheRobotLiesUpright) {
+TEST_F(HogOfATrottingQuadbot, NightlyStarvesTheControllerAtItsPriorityAndTheRobotLiesUpright) {
   repeat([&] {
     Hog hog(static_cast<int>(LoopPriority::kController), 0);
     if (!trot()) return false;

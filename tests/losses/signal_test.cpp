@@ -102,18 +102,18 @@ struct APlantStartedAgain : Losses {
   }
 };
 
-TEST_F(APlantStartedAgain, AtOnceIsLost) {
+TEST_F(APlantStartedAgain, IsLost) {
   start_again();
   expect_lost();
 }
 
-TEST_F(APlantStartedAgain, WithAnotherObjectOfItsSensorsIsLost) {
+TEST_F(APlantStartedAgain, IsLostWithAnotherObjectOfItsSensors) {
   std::filesystem::remove("/dev/shm" + bus_object_name(nodes().bus(), ChannelNames::kSensors));
   start_again();
   expect_lost();
 }
 
-TEST_F(APlantStartedAgain, BesideAMonitorThatSleptMeanwhileIsLost) {
+TEST_F(APlantStartedAgain, IsLostBesideAMonitorThatSleptMeanwhile) {
   nodes().process(LoopNode::kMonitor).send(SIGSTOP);
   const std::uint64_t before = robot_.sensors().head.run;
   start_again();

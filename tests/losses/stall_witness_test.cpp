@@ -36,7 +36,7 @@ TEST_F(Witness, SeesThatItWasStoppedAndForgetsItWhereALaterTimeIsAskedFor) {
 /// The stop is the loop's own: a node that computes without end is no stall of the machine.
 using AStop = Losses;
 
-TEST_F(AStop, WithoutAStallIsNoStall) {
+TEST_F(AStop, IsNoStallByItself) {
   nodes().process(LoopNode::kController).stop_with(SIGSTOP);
   EXPECT_TRUE(robot_.await([&] { return robot_.permit().causes != 0; })) << robot_.situation();
   EXPECT_EQ(robot_.permit().causes & ~kStallCauses, 0u) << robot_.situation();

@@ -248,7 +248,7 @@ TEST(DriveTrain, AnImuAlmostWhereTheUrdfSaysIsNotNoted) {
   EXPECT_EQ(robot.notes.size(), read_drive_train(diffbot_urdf(), {}).notes.size());
 }
 
-TEST(DriveTrain, WithoutAnImuLinkTheImuIsInTheBase) {
+TEST(DriveTrain, TheImuIsInTheBaseWithoutAnImuLink) {
   RobotDescription description = diffbot_with("<robot", "<link name=\"imu_link\">", "<link name=\"box_link\">");
   description.text = replaced(description.text, "<robot", "<child link=\"imu_link\"/>", "<child link=\"box_link\"/>");
   const DriveTrain robot = read_drive_train(description, {});

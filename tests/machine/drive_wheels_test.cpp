@@ -187,7 +187,7 @@ TEST(DriveWheels, AWheelWithoutItsCounterpartIsNotGuessed) {
   EXPECT_THAT(refusal_of(robot_of(two_wheels() + wheel("third", "-0.3 0.25 0"))), HasSubstr("2 on the left, 1 on"));
 }
 
-TEST(DriveWheels, WithoutWheelsEachReasonIsReported) {
+TEST(DriveWheels, EachReasonIsReportedWithoutWheels) {
   const std::string fixed = link("f", inertial("1") + tyre("0.1")) +
                             joint({.name = "fixed_wheel", .child = "f", .xyz = "0 0.25 0", .type = "fixed"});
   const std::string forward = link("x", inertial("1") + tyre("0.1")) +

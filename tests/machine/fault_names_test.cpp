@@ -58,7 +58,7 @@ TEST_F(FaultNames, SetTheFaultThatTheyNameAndReadBack) {
   EXPECT_EQ(names(), "none");
 }
 
-TEST_F(FaultNames, OfAGroupMeanEachOfItsJoints) {
+TEST_F(FaultNames, MeanEachJointOfAGroup) {
   EXPECT_EQ(set("left_encoder", "stuck"), "");
   EXPECT_EQ(of(FaultComponent::kEncoder, 0), FaultKind::kStuck);
   EXPECT_EQ(of(FaultComponent::kEncoder, 1), FaultKind::kStuck);
@@ -67,7 +67,7 @@ TEST_F(FaultNames, OfAGroupMeanEachOfItsJoints) {
   EXPECT_EQ(names(), "left_encoder stuck");
 }
 
-TEST_F(FaultNames, OfAJointMeanItAlone) {
+TEST_F(FaultNames, MeanAJointAlone) {
   EXPECT_EQ(set("rear_motor", "off"), "");
   EXPECT_EQ(of(FaultComponent::kMotor, 0), FaultKind::kOk);
   EXPECT_EQ(of(FaultComponent::kMotor, 1), FaultKind::kOff);
@@ -78,7 +78,7 @@ TEST_F(FaultNames, OfAJointMeanItAlone) {
   EXPECT_EQ(faults_, InjectedFaults{});
 }
 
-TEST_F(FaultNames, OfEveryComponentAndKindReadBack) {
+TEST_F(FaultNames, ReadBackForEveryComponentAndKind) {
   for (const std::string_view component : kFaultComponentNames) {
     const bool joint = component == "encoder" || component == "motor";
     const std::string word = joint ? "right_" + std::string(component) : std::string(component);
@@ -102,7 +102,7 @@ TEST_F(FaultNames, AreListedOnceEachAndAllTaken) {
   EXPECT_EQ(std::ranges::count(words, "swivel_motor"), 0);
 }
 
-TEST_F(FaultNames, OfAJointWithTheNameOfAGroupMeanTheJoint) {
+TEST_F(FaultNames, MeanTheJointThatHasTheNameOfAGroup) {
   MachineModel machine = three_wheels();
   machine.joints[4].name = "left";
   for (const char* word : {"left_encoder", "front_encoder", "rear_encoder"}) {

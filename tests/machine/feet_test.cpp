@@ -33,7 +33,7 @@ double end_of(const DriveTrain& robot, const std::string& link) {
   return end;
 }
 
-TEST(Feet, WithinAMillimetreAreLevelledWithANote) {
+TEST(Feet, AreLevelledWithANoteWithinAMillimetre) {
   for (unsigned seed = 0; seed < 40; ++seed) {
     SCOPED_TRACE(seed);
     Random random(seed);
@@ -101,7 +101,7 @@ TEST(Feet, AThinBoxOnTheFootprintAtFloorHeightIsNoPart) {
 }
 
 // The kobuki's is an example: it has nothing but the chassis there.
-TEST(Feet, OfAFootprintThatCarriesTheRobotStay) {
+TEST(Feet, StayIfTheyAreAFootprintThatCarriesTheRobot) {
   const std::string skid = collision("<sphere radius=\"0.01\"/>", "xyz=\"0.2 0 0.01\"");
   const std::string text = two_wheels() + link("base_footprint", skid) +
                            joint({.name = "up",

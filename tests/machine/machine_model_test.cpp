@@ -73,7 +73,7 @@ TEST(AMachineOfAnyKind, TakesTheValuesOfTheUser) {
   EXPECT_EQ(overridden("robot/imu_position"), 1);
 }
 
-TEST(AMachineOfAnyKind, WithoutDriveWheelsIsRefusedByTheWheeledKindAlone) {
+TEST(AMachineOfAnyKind, IsRefusedByTheWheeledKindAloneWithoutDriveWheels) {
   EXPECT_EQ(refusal_of_machine(small_quadruped()), "accepted");
   const std::string refusal = refusal_of(robot_of(small_quadruped()));
   EXPECT_NE(refusal.find("no drive wheels found: front_right_hip_joint: its axis is 90° off the lateral (y) axis"),
@@ -82,7 +82,7 @@ TEST(AMachineOfAnyKind, WithoutDriveWheelsIsRefusedByTheWheeledKindAlone) {
   EXPECT_NE(refusal.find("front_right_calf_joint: it turns only from -2.7 to -0.9 rad"), std::string::npos) << refusal;
 }
 
-TEST(AMachineOfAnyKind, OnWheelsIsTheMachineOfItsDriveTrain) {
+TEST(AMachineOfAnyKind, IsTheMachineOfItsDriveTrainOnWheels) {
   const RobotDescription robot = robot_of(two_wheels());
   const MachineModel machine = read_machine(robot, {});
   const DriveTrain train = read_drive_train(robot, {});

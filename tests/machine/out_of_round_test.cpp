@@ -54,7 +54,7 @@ RobotDescription with_meshes(const TemporaryFolder& folder, double radius) {
   return {robot_of(text).text, (folder.path() / ("r" + metres(radius) + ".urdf")).string()};
 }
 
-TEST(OutOfRound, ByAMillimetreAWheelIsAWheelFoundOrNamed) {
+TEST(OutOfRound, IsAWheelFoundOrNamedByAMillimetre) {
   DriveTrainParameters named;
   named.left_wheel_joints = {"left"};
   named.right_wheel_joints = {"right"};

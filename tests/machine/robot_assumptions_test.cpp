@@ -101,7 +101,7 @@ TEST(RobotAssumptions, APossibleInertiaStaysBitForBit) {
   EXPECT_EQ(possible_inertia(given, 3), given);
 }
 
-TEST(RobotAssumptions, WhateverIsGivenTheRepairedInertiaIsOneOfABody) {
+TEST(RobotAssumptions, TheRepairedInertiaIsOneOfABodyWhateverIsGiven) {
   for (unsigned seed = 0; seed < 200; ++seed) {
     std::srand(seed);
     Eigen::Matrix3d given = Eigen::Matrix3d::Random();
@@ -159,7 +159,7 @@ TEST(RobotAssumptions, AWheelWithoutInertialTakesItsMassFromTheBase) {
   EXPECT_THAT(assumed(robot), HasSubstr("taken from \"base_link\""));
 }
 
-TEST(RobotAssumptions, WithoutAnyCollisionTheVisualShapesCount) {
+TEST(RobotAssumptions, TheVisualShapesCountWithoutAnyCollision) {
   std::string text = robot_of(two_wheels()).text;
   for (std::size_t at = text.find("collision"); at != std::string::npos; at = text.find("collision")) {
     text.replace(at, 9, "visual");
@@ -245,7 +245,7 @@ TEST(RobotAssumptions, TheImuIsFoundByAWordOfItsName) {
   EXPECT_THAT(refusal_of(robot_of(two_wheels()), parameters), HasSubstr("no link \"nowhere\""));
 }
 
-TEST(NegativeNumbers, OfAJointAreTakenAsNotGivenAndNoted) {
+TEST(NegativeNumbers, AreTakenAsNotGivenAndNoted) {
   for (const std::string rest : {"<limit effort=\"-5\" velocity=\"9\"/>", "<limit effort=\"5\" velocity=\"-9\"/>",
                                  "<dynamics damping=\"-5\"/>", "<dynamics friction=\"-5\"/>"}) {
     const std::string text = base() + wheel("left", "0 0.25 0", "0.1", rest) + wheel("right", "0 -0.25 0");

@@ -28,7 +28,7 @@ DriveTrain skid_steer() {
 /// A quarter of 20 kg at friction 1 is 49 N, of which the rolling direction takes 0.16/√(0.16² + 0.2²).
 constexpr double kTorque = 0.1 * 5 * 9.81 * 0.6247;
 
-TEST(Scrub, OnTheSpotIsCoulombFrictionOfTheTreads) {
+TEST(Scrub, IsCoulombFrictionOfTheTreadsOnTheSpot) {
   const Scrub scrub(skid_steer());
   for (const double angular : {0.5, 2.0}) {
     const auto efforts = scrub.efforts(0, angular);

@@ -76,7 +76,7 @@ TEST(HolonomicDrive, RollersOnTheWheelsAreRefusedWithTheReason) {
   }
 }
 
-TEST(DriveWheel, ThatHangsOnAnotherOneIsRefused) {
+TEST(DriveWheel, IsRefusedIfItHangsOnAnotherOne) {
   const std::string text = base() + wheel("left", "0 0.25 0") + link("right_link", inertial("1") + tyre("0.1")) +
                            joint({.name = "right", .child = "right_link", .xyz = "0 -0.5 0", .parent = "left_link"});
   DriveTrainParameters named;
@@ -247,7 +247,7 @@ TEST(SteeredWheels, AreRefusedWithTheReason) {
   }
 }
 
-TEST(SteeredWheels, BesideWheelsThatAreNamedAreNoted) {
+TEST(SteeredWheels, AreNotedBesideWheelsThatAreNamed) {
   DriveTrainParameters named;
   named.left_wheel_joints = {"left"};
   named.right_wheel_joints = {"right"};

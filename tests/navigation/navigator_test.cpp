@@ -152,7 +152,7 @@ TEST_F(NavigatorTest, AGoalWithoutALaserIsRefusedAfterTheStartPatience) {
   EXPECT_EQ(paths_, 0);
 }
 
-TEST_F(NavigatorTest, WhileTheLaserIsSilentNothingIsDriven) {
+TEST_F(NavigatorTest, DrivesNothingWhileTheLaserIsSilent) {
   navigator_.begin({4.7, 1.6, 0}, now_);
   run(1);
   problem_ = "scan is silent";

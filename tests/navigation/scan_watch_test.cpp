@@ -65,7 +65,7 @@ TEST_F(ScanWatchTest, ASecondPublisherAndTimeThatGoesBackAreRefused) {
   EXPECT_EQ(watch_.receive(healthy(), "rear", 12, 12, 0), "");
 }
 
-TEST_F(ScanWatchTest, AfterOneWrongStampOrAClockThatWasSetBackTheLaserIsTakenAgain) {
+TEST_F(ScanWatchTest, TakesTheLaserAgainAfterOneWrongStampOrAClockThatWasSetBack) {
   EXPECT_EQ(watch_.receive(healthy(), "laser", 3610, 10, 0), "");
   EXPECT_THAT(watch_.receive(healthy(), "laser", 10.1, 10.1, 0), HasSubstr("go back by 3599.900 s"));
   EXPECT_EQ(watch_.receive(healthy(), "laser", 11.1, 11.1, 0), "");

@@ -67,12 +67,12 @@ TEST_F(CalibrationFile, ComesBackToTheLastBit) {
   EXPECT_EQ(back.gyro_bias_deviation, learned_.gyro_bias_deviation);
 }
 
-TEST_F(CalibrationFile, ThatIsNotThereYetIsNone) {
+TEST_F(CalibrationFile, IsNoneIfItIsNotThereYet) {
   EXPECT_FALSE(read());
 }
 
 // A robot keeps it on another partition.
-TEST_F(CalibrationFile, BehindALinkIsKeptWhereTheLinkLeadsTo) {
+TEST_F(CalibrationFile, IsKeptWhereALinkLeadsTo) {
   std::filesystem::create_symlink("elsewhere.yaml", path());
   EXPECT_FALSE(read());
   write();
@@ -81,7 +81,7 @@ TEST_F(CalibrationFile, BehindALinkIsKeptWhereTheLinkLeadsTo) {
   EXPECT_TRUE(read());
 }
 
-TEST_F(CalibrationFile, ThatIsNoRegularFileIsRefused) {
+TEST_F(CalibrationFile, IsRefusedIfItIsNoRegularFile) {
   std::filesystem::create_symlink("/dev/zero", path());
   EXPECT_THAT(refusal(), AllOf(HasSubstr("1 problem"), HasSubstr("is a device; only a regular file is read")));
 }
@@ -94,7 +94,7 @@ TEST_F(CalibrationFile, LeavesNothingBesideItself) {
   EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder_.path()), {}), 1);
 }
 
-TEST_F(CalibrationFile, OfAnotherRobotIsRefusedWithAllThatDiffers) {
+TEST_F(CalibrationFile, IsRefusedWithAllThatDiffersOfAnotherRobot) {
   write();
   robot_.name = "other";
   robot_.wheels[1].radius = 0.12;
@@ -107,13 +107,13 @@ TEST_F(CalibrationFile, OfAnotherRobotIsRefusedWithAllThatDiffers) {
 }
 
 // A radius_ratio that was measured and set again is intended: an old file must not override it silently.
-TEST_F(CalibrationFile, OfOtherInitialValuesIsRefused) {
+TEST_F(CalibrationFile, IsRefusedWithOtherInitialValues) {
   write();
   parameters_.calibration.radius_ratio = 1.004;
   EXPECT_THAT(refusal(), AllOf(HasSubstr("calibration.initial_radius_ratio = 1:"), HasSubstr("1.004 holds here")));
 }
 
-TEST_F(CalibrationFile, BeyondTheBoundsIsRefused) {
+TEST_F(CalibrationFile, IsRefusedBeyondTheBounds) {
   const auto with = [&](const std::string& old, const std::string& by) {
     write();
     replace(old, by);
@@ -128,7 +128,7 @@ TEST_F(CalibrationFile, BeyondTheBoundsIsRefused) {
   EXPECT_THAT(with("gyro_bias: [0.001,", "gyro_bias: [1.1,"), HasSubstr("each of -1 … 1 rad/s"));
 }
 
-TEST_F(CalibrationFile, ThatIsBrokenIsRefusedWhereItIs) {
+TEST_F(CalibrationFile, IsRefusedWhereItIsBroken) {
   const auto with = [&](const std::string& old, const std::string& by) {
     write();
     replace(old, by);
@@ -157,7 +157,7 @@ TEST_F(CalibrationFile, CutAnywhereIsRefusedOrWhole) {
   }
 }
 
-TEST_F(CalibrationFile, InAFolderThatIsNotThereIsRefusedAtStart) {
+TEST_F(CalibrationFile, IsRefusedAtStartInAFolderThatIsNotThere) {
   const std::string nowhere = folder_.path() / "none" / "learned.yaml";
   EXPECT_THROW(read_calibration(nowhere, robot_, parameters_), ParameterError);
   EXPECT_THROW(write_calibration(nowhere, learned_, robot_, parameters_), std::system_error);

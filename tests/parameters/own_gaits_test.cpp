@@ -75,7 +75,7 @@ std::string gait_of(const std::string& phases, double period, double alone) {
          ", phases: " + phases + ", lift: 0.05}";
 }
 
-TEST_F(OwnGaitsTest, ThatTipOverAreRefused) {
+TEST_F(OwnGaitsTest, AreRefusedIfTheyTipOver) {
   const std::string pace = "[0.5, 0, 0.5, 0]", bound = "[0, 0, 0.5, 0.5]", trot = "[0.5, 0, 0, 0.5]";
   struct Case {
     std::string phases;

@@ -407,7 +407,7 @@ TEST_F(ReadParameters, EscapesWhatATerminalWouldInterpret) {
   EXPECT_THAT(file.refusal(), Not(HasSubstr("\x1b")));
 }
 
-TEST(Listing, OfThousandsOfProblemsFitsAMessageAndCountsTheRest) {
+TEST(Listing, FitsThousandsOfProblemsIntoAMessageAndCountsTheRest) {
   const std::string text = listing("my.yaml", std::vector<std::string>(3000, "robot.ratee = 500: unknown key"));
   EXPECT_LT(text.size(), 2000u);
   EXPECT_THAT(text, AllOf(StartsWith("my.yaml: 3000 problems"), testing::ContainsRegex("and 29[0-9]+ more$")));

@@ -17,7 +17,7 @@ std::string refusal_of(const LegModel& robot) {
   }
 }
 
-TEST(Quadruped, AtARateAtWhichItFallsIsRefused) {
+TEST(Quadruped, IsRefusedAtARateAtWhichItFalls) {
   Parameters parameters = QuadrupedLoop::parameters(0, ErrorLevel::kIdeal);
   const auto refusal_at = [&](double rate) {
     parameters.loop.rate = rate;
@@ -27,13 +27,13 @@ TEST(Quadruped, AtARateAtWhichItFallsIsRefused) {
   EXPECT_THAT(refusal_at(99), HasSubstr("robot.rate = 99 Hz: a robot on legs falls below 100 Hz"));
 }
 
-TEST(Quadruped, OfLegsThatDoNotReachTheGroundIsRefused) {
+TEST(Quadruped, IsRefusedIfItsLegsDoNotReachTheGround) {
   LegModel robot = legged_robot("quadbot");
   robot.legs[0].foot_radius = -10;
   EXPECT_THAT(refusal_of(robot), HasSubstr("does not reach the ground while the robot stands 0.3 m above"));
 }
 
-TEST(Quadruped, OfAKneeThatDoesNotBearATrotIsRefused) {
+TEST(Quadruped, IsRefusedIfItsKneeDoesNotBearATrot) {
   LegModel robot = legged_robot("quadbot");
   const double needs = 12.7 * 9.81 / 2 * 0.213 * std::sin(std::acos(2 * 0.85 * 0.85 - 1)) / (2 * 0.85);  // N·m
   robot.joints[8].effort_limit = needs / 0.64;

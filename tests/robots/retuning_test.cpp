@@ -80,7 +80,7 @@ TEST_F(RetuningTest, RefusesTheWholeSetWithEveryReason) {
   EXPECT_EQ(sentence(retuning.set("{max_linear_speed: 0.9}")), "set 1: max_linear_speed from 1 to 0.9");
 }
 
-TEST_F(RetuningTest, WhateverTextComesIsTakenOrRefusedAsAWhole) {
+TEST_F(RetuningTest, TakesOrRefusesAnyTextAsAWhole) {
   constexpr std::string_view kSigns = ":#-[]{}\"'\n \t,!&*|>%@?.~é";
   std::uint64_t taken = 0;
   for (unsigned seed = 0; seed < 2000; ++seed) {

@@ -36,7 +36,7 @@ TEST(SlowLoop, CorrectsAndBrakesInAnInverseProportionToTheRate) {
   EXPECT_NEAR(brake_time(robot, 0.05), straight_inertia(robot, robot.wheels[0]) / damping, 1e-12);
 }
 
-TEST(SlowLoop, OfADriverIsNotedWhereTorquesBrake) {
+TEST(SlowLoop, IsNotedOfADriverWhereTorquesBrake) {
   Parameters parameters = at(20);
   EXPECT_THAT(wheeled_rate_notes(parameters, diffbot(), Role::kDriver), IsEmpty()) << "the simulator brakes by itself";
   parameters.drives = "odrive.yaml";

@@ -194,7 +194,7 @@ TEST(CrashReport, AReaderThatHasStoppedDoesNotKeepItAlive) {
   EXPECT_THAT(death.words, Not(HasSubstr("some_node")));
 }
 
-TEST(CrashReport, WithoutAStderrTheProcessEndsByTheSameSignal) {
+TEST(CrashReport, EndsTheProcessByTheSameSignalWithoutAStderr) {
   const Death death = death_of([] {
     close(STDERR_FILENO);
     write_nowhere();

@@ -85,7 +85,7 @@ TEST_F(PeriodicTest, TheDeadlineIsStartPlusCyclesPlusSlip) {
   }
 }
 
-TEST_F(PeriodicTest, OnHardwareTheGridStaysAndTheCycleJumps) {
+TEST_F(PeriodicTest, TheGridStaysOnHardwareAndTheCycleJumps) {
   Periodic hardware(kStart, kPeriod, WhenLate::kSkip);
   EXPECT_EQ(hardware.begin(kStart + 7 * kPeriod + 300), 7);
   EXPECT_EQ(hardware.missed(), 7);

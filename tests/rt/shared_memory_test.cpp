@@ -37,7 +37,7 @@ TEST_F(SharedMemoryTest, IsThereOnlyOnce) {
   EXPECT_FALSE(SharedMemory::create(name_));
 }
 
-TEST_F(SharedMemoryTest, OfNoSuchNameIsEmpty) {
+TEST_F(SharedMemoryTest, IsEmptyIfThereIsNoSuchName) {
   EXPECT_FALSE(SharedMemory::open(name_ + ".no", Access::kReadOnly));
 }
 
@@ -56,7 +56,7 @@ TEST_F(SharedMemoryTest, OpenToOthersIsNotPrivate) {
   EXPECT_FALSE(object_.is_private());
 }
 
-TEST_F(SharedMemoryTest, OfAnotherUserIsNotPrivate) {
+TEST_F(SharedMemoryTest, IsNotPrivateIfItIsOfAnotherUser) {
   if (geteuid() != 0) GTEST_SKIP() << "only root can give an object away";
   ASSERT_EQ(chown(("/dev/shm" + name_).c_str(), 65534, 65534), 0);
   EXPECT_FALSE(object_.is_private());

@@ -77,7 +77,7 @@ TYPED_TEST(FrameTest, NoticesTwoWordsThatChangedPlaces) {
   EXPECT_FALSE(intact(swapped));
 }
 
-TYPED_TEST(FrameTest, OfZeroesIsNotIntact) {
+TYPED_TEST(FrameTest, IsNotIntactOfZeroes) {
   TypeParam zero = this->frame_;
   std::memset(static_cast<void*>(&zero), 0, sizeof zero);
   EXPECT_FALSE(intact(zero));

@@ -56,7 +56,7 @@ TEST(DurationHistogram, QuantilesOfRandomLatenciesAreThoseOfTheSortedSamplesWith
   }
 }
 
-TEST(DurationHistogram, WithoutASampleAllFiguresAreZero) {
+TEST(DurationHistogram, HasFiguresOfZeroWithoutASample) {
   const DurationFigures figures = figures_of({});
   EXPECT_EQ(figures.samples, 0u);
   EXPECT_EQ(figures.max, 0);

@@ -92,7 +92,7 @@ TEST(CommandReasons, AreEachRaisedByWhatTheySay) {
   }
 }
 
-TEST(CommandReasons, OfAnIgnoredPartNameItAndTheOthersAreExecuted) {
+TEST(CommandReasons, NameAnIgnoredPartAndTheOthersAreExecuted) {
   ControlBench bench = driving();
   const double before = bench.plant.twist.linear;
   bench.request.content.twist.linear[1] = 0.2;
@@ -104,7 +104,7 @@ TEST(CommandReasons, OfAnIgnoredPartNameItAndTheOthersAreExecuted) {
   EXPECT_EQ(bench.command.requests_refused, 0u);
 }
 
-TEST(CommandReasons, OfOneSenderTooManyRampWithTheEmergencyDeceleration) {
+TEST(CommandReasons, RampWithTheEmergencyDecelerationForOneSenderTooMany) {
   DriveControllerParameters parameters = straight_ramps();
   parameters.max_linear_emergency_deceleration = 2;
   ControlBench bench(make_test_robot(), parameters);

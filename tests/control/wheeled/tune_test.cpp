@@ -48,7 +48,7 @@ struct Tune : testing::Test {
   DriveControllerParameters given = straight_ramps();
 };
 
-TEST_F(Tune, ToWhatHoldsAlreadyChangesNoBit) {
+TEST_F(Tune, ChangesNoBitByWhatHoldsAlready) {
   ControlBench tuned = driving();
   ControlBench left = driving();
   for (int k = 0; k < 1000; ++k) {
@@ -92,7 +92,7 @@ TEST_F(Tune, LeavesTheControllerThatAStartWithTheseValuesMakes) {
   EXPECT_NE(tuned.command.reasons & kReasonTimedOut, 0u);
 }
 
-TEST_F(Tune, OfGainsLetsTheTorqueGoOn) {
+TEST_F(Tune, LetsTheTorqueGoOnUnderOtherGains) {
   ControlBench tuned = driving();
   ControlBench left = driving();
   CommandFrame before_last;
@@ -118,7 +118,7 @@ TEST_F(Tune, OfGainsLetsTheTorqueGoOn) {
 }
 
 // A load that nothing plans causes a large error under small gains; its torque passes from them to the hand-over.
-TEST_F(Tune, OfGainsUnderALargeErrorLetsTrackingGoOn) {
+TEST_F(Tune, LetsTrackingGoOnUnderOtherGainsAndALargeError) {
   given.pid_kp = 0.7;
   given.pid_ki = 0.3;
   ControlBench bench(make_test_robot(), given);
@@ -135,7 +135,7 @@ TEST_F(Tune, OfGainsUnderALargeErrorLetsTrackingGoOn) {
   EXPECT_LT(worst, 0.3) << "rad/s of 5; taken for a planned torque, the hand-over makes 1.5 of them";
 }
 
-TEST_F(Tune, OfGainsInAStallLeavesTheIntegratorAlone) {
+TEST_F(Tune, LeavesTheIntegratorAloneInAStall) {
   constexpr double kLimit = 5, kError = 8;
   const WheelLoopGains before{.kp = 2, .ki = 0}, after{.kp = 1, .ki = 0};
   WheelLoop loop(before, 20, kLimit, 1e-3);
@@ -150,7 +150,7 @@ TEST_F(Tune, OfGainsInAStallLeavesTheIntegratorAlone) {
   EXPECT_EQ(loop.integral(), 0) << "what the limit cut off does not wind up";
 }
 
-TEST_F(Tune, BeforeAHandOverLeavesItTheTorqueThatTheBrakeHeld) {
+TEST_F(Tune, LeavesAHandOverTheTorqueThatTheBrakeHeld) {
   WheelLoop loop({.kp = 2, .ki = 20, .kd = 0.001}, 20, 5, 1e-3);
   for (int k = 0; k < 5; ++k) loop.measure({.position = 1e-4 * k * k}, 1, false);
   loop.tune({.kp = 1, .ki = 10, .kd = 0.01}, 20, {});
@@ -160,7 +160,7 @@ TEST_F(Tune, BeforeAHandOverLeavesItTheTorqueThatTheBrakeHeld) {
   EXPECT_NEAR(loop.step({.velocity = loop.velocity()}, 1), 1.5, kTuneRounding);
 }
 
-TEST_F(Tune, OfTheMassLetsTorqueAndTrackingGoOn) {
+TEST_F(Tune, LetsTorqueAndTrackingGoOnUnderAnotherMass) {
   ControlBench tuned = driving();
   ControlBench left = driving();
   given.feed_forward.mass = 14;
@@ -177,7 +177,7 @@ TEST_F(Tune, OfTheMassLetsTorqueAndTrackingGoOn) {
   }
 }
 
-TEST_F(Tune, OfFeedForwardLeavesTheIntegratorThePartForTheSpeedAlone) {
+TEST_F(Tune, LeavesTheIntegratorThePartForTheSpeedAlone) {
   WheelLoop loop({.kp = 2, .ki = 0.1}, 20, 5, 1e-3);
   loop.measure({}, 1, false);
   loop.step({.feed_forward = 1.5}, 1);
@@ -193,7 +193,7 @@ TEST_F(Tune, OfFeedForwardLeavesTheIntegratorThePartForTheSpeedAlone) {
   EXPECT_NEAR(loop.integral(), 0.3, kTuneRounding);
 }
 
-TEST_F(Tune, InMidRampLeavesNothingToASlowIntegrator) {
+TEST_F(Tune, LeavesNothingToASlowIntegratorInMidRamp) {
   given.pid_kp = 0.7;
   given.pid_ki = 0.3;  // 15 s of kp/ki and more
   for (const double times : {1.0 / 3, 3.0}) {
@@ -213,7 +213,7 @@ TEST_F(Tune, InMidRampLeavesNothingToASlowIntegrator) {
   }
 }
 
-TEST_F(Tune, OfTheBandwidthKeepsWhatIsTracked) {
+TEST_F(Tune, KeepsWhatIsTrackedUnderAnotherBandwidth) {
   given.feed_forward.wheel_damping = 1.0;  // then model_inertia follows from the bandwidth (wheel_loop_gains.h)
   given.pid_kp = 1.0;
   given.pid_ki = 5.0;
@@ -262,7 +262,7 @@ TEST_F(Tune, BringsNoCommandBackThatTimedOut) {
   EXPECT_EQ(bench.command.twist_limited.linear[0], 0.0);
 }
 
-TEST_F(Tune, WhileBrakedSpoilsNoHandOver) {
+TEST_F(Tune, SpoilsNoHandOverWhileBraked) {
   ControlBench bench;
   bench.plant.slope = 0.05;
   bench.run(0.4);
@@ -277,7 +277,7 @@ TEST_F(Tune, WhileBrakedSpoilsNoHandOver) {
   EXPECT_NEAR(bench.command.joints[0].effort, load, 0.01 * load) << "a mean, whose first sample was 0";
 }
 
-TEST_F(Tune, WhileBrakedAtSpeedChangesNothingThatTheIntegratorsKnow) {
+TEST_F(Tune, ChangesNothingThatTheIntegratorsKnowWhileBrakedAtSpeed) {
   ControlBench tuned = driving();
   ControlBench left = driving();
   given.feed_forward.wheel_damping = 0.5;
@@ -326,7 +326,7 @@ struct WatchedAxis {
   }
 };
 
-TEST_F(Tune, AtRandomWhileDrivingNeverExceedsTheOldOrTheNewLimits) {
+TEST_F(Tune, NeverExceedsTheOldOrTheNewLimitsAtRandom) {
   for (unsigned seed = 0; seed < 40; ++seed) {
     std::mt19937 random(seed);
     const auto draw = [&](double low, double high) { return std::uniform_real_distribution(low, high)(random); };

@@ -98,7 +98,7 @@ TEST_F(BoardDriverTest, AHostThatEndsLeavesTheBoardBrakedAfterItsWatchdog) {
 }
 
 /// At 100 Hz the watchdog of 50 ms expires before 12 reports are missing.
-TEST(BoardAt100Hz, ThatBrakedByItselfIsAFaultWithThisCauseAlsoIfItsFirstReportIsLost) {
+TEST(BoardAt100Hz, NamesABrakeByItselfAlsoIfItsFirstReportIsLost) {
   BoardMachine machine(100);
   machine.start();
   SensorFrame frame;
@@ -119,7 +119,7 @@ TEST(BoardAt100Hz, ThatBrakedByItselfIsAFaultWithThisCauseAlsoIfItsFirstReportIs
 }
 
 /// At 30 Hz a board has restarted before 12 reports are missing.
-TEST(BoardAt30Hz, ThatRestartedIsNotNamedByTheBrakeOfItsStart) {
+TEST(BoardAt30Hz, NamesARestartAndNotTheBrakeOfItsStart) {
   BoardMachine machine(30);
   machine.start();
   const JointCommand command{.mode = JointMode::kEffort, .effort = 0};
@@ -295,7 +295,7 @@ TEST(BoardFuzz, NoStreamOfBytesIsAReportUnlessItIsWhole) {
   expect_no_motion(20'000);
 }
 
-TEST(BoardFuzz, NightlyNorIsAMillion) {
+TEST(BoardFuzz, NightlyNoneOfAMillionStreamsIsAReport) {
   expect_no_motion(1'000'000);
 }
 

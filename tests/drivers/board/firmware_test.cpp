@@ -229,7 +229,7 @@ TEST_F(BoardTest, NoStreamOfBytesMovesAWheelUnlessItsOrderIsWhole) {
   expect_no_motion(20'000);
 }
 
-TEST_F(BoardTest, NightlyNorAMillion) {
+TEST_F(BoardTest, NightlyNoneOfAMillionStreamsMovesAWheel) {
   expect_no_motion(1'000'000);
 }
 

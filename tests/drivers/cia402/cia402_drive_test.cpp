@@ -338,7 +338,7 @@ struct TwoAxes : ::testing::Test {
   Cia402Device* device_ = nullptr;
 };
 
-TEST_F(TwoAxes, OfOneNodeAreDrivenApart) {
+TEST_F(TwoAxes, AreDrivenApart) {
   ASSERT_TRUE(rig_.runs());
   rig_.commands = {{.enabled = true, .torque = 1}, {.enabled = true, .torque = -2}};
   rig_.cycle();

@@ -123,7 +123,7 @@ TEST(CanLoad, TheRefusalNamesTheRateThatFits) {
   EXPECT_GT(bus_load(odrive_plan(4), 756, 1e6), kMaxBusLoad);
 }
 
-TEST(CanLoad, WhereNoRateFitsTheRefusalNamesTheBitRate) {
+TEST(CanLoad, NamesTheBitRateWhereNoRateFits) {
   const auto problem = bus_load_problem(odrive_plan(8), 1000, 125e3, 100);
   ASSERT_TRUE(problem);
   EXPECT_THAT(*problem, HasSubstr("no robot.rate fits; set a bit rate of at least 279 kbit/s"));

@@ -83,7 +83,7 @@ TEST_F(CanFolder, APartyThatLeavesHarmsNoOther) {
   EXPECT_EQ(driver_->counts().errors, 0u);
 }
 
-TEST_F(CanFolder, WithoutAnotherPartyFramesAreRefusedAsWithoutAcknowledgement) {
+TEST_F(CanFolder, RefusesFramesWithoutAnotherPartyAsWithoutAcknowledgement) {
   drive_.reset();
   listener_.reset();
   EXPECT_EQ(send(*driver_, {1, 2}), 0u);

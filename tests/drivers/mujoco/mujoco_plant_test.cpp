@@ -218,7 +218,7 @@ class HardStop : public PlantTest, public testing::WithParamInterface<double> {}
 
 // v²/(2a), a half of what lifts the rear, 9.81 · 0.0602 / 0.0890 / 2 = 3.32 m/s²: 0.151 m; the soft landing adds some
 // mm.
-TEST_P(HardStop, FromOneMetrePerSecondStopsWithoutTipping) {
+TEST_P(HardStop, StopsFromOneMetrePerSecondWithoutTipping) {
   auto plant = started();
   speed_up(*plant, GetParam() / kRadius, GetParam() / kRadius);
   const double start = truth(*plant).pose_world.position[0];
@@ -234,7 +234,7 @@ TEST_P(HardStop, FromOneMetrePerSecondStopsWithoutTipping) {
 
 INSTANTIATE_TEST_SUITE_P(MujocoPlantTest, HardStop, testing::Values(1.0, -1.0));
 
-TEST_F(MujocoPlantTest, AfterStopOnlyTheBrakesAct) {
+TEST_F(MujocoPlantTest, LetsOnlyTheBrakesActAfterStop) {
   auto plant = started();
   speed_up(*plant, 5, 5);
   plant->stop();

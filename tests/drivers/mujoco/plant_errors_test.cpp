@@ -76,7 +76,7 @@ TEST_F(PlantErrors, AreThoseOfTheCycleHoweverOftenItIsRead) {
   EXPECT_TRUE(same_bits(once, sensors(*plant)));
 }
 
-TEST_F(PlantErrors, OfSensorsMakeThemLate) {
+TEST_F(PlantErrors, MakeSensorsLate) {
   parameters_.sensor_delay = 7;
   parameters_.encoder_resolution = 0;
   auto plant = erring();
@@ -88,7 +88,7 @@ TEST_F(PlantErrors, OfSensorsMakeThemLate) {
   }
 }
 
-TEST_F(PlantErrors, OfActuatorsMakeThemLate) {
+TEST_F(PlantErrors, MakeActuatorsLate) {
   parameters_.actuator_delay = 5;
   auto plant = erring();
   for (int k = 0; k < 20; ++k) {
@@ -106,7 +106,7 @@ TEST_F(PlantErrors, DoNotKeepAStopFromTheBrakes) {
   EXPECT_LT(truth(*plant).joints[0].effort, 0);
 }
 
-TEST_F(PlantErrors, OfMotorsEndTheirTorqueAtTheNoLoadSpeed) {
+TEST_F(PlantErrors, EndTheTorqueOfMotorsAtTheNoLoadSpeed) {
   parameters_.no_load_speed = 60;
   parameters_.gear_ratio = 10;
   auto plant = erring();
@@ -186,7 +186,7 @@ TEST_F(PlantErrors, ReachBatteryAndButton) {
   EXPECT_EQ(cycle(*plant, brakes_).digital_inputs, 0u);
 }
 
-TEST_F(PlantErrors, OfABatteryThatIsNotThereAreNone) {
+TEST_F(PlantErrors, AreNoneOfABatteryThatIsNotThere) {
   auto plant = erring();
   inject(*plant, FaultComponent::kBattery, FaultKind::kOff);
   const SensorFrame frame = cycle(*plant, brakes_);

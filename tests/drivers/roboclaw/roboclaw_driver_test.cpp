@@ -205,7 +205,7 @@ TEST_F(RoboclawDriverTest, ABoardWithoutGainsIsRefusedBeforeAnythingMoves) {
 }
 
 /// 5 % of the messages are lost, 1 % are damaged, and all are up to 3 ms late.
-TEST(RoboclawLosses, OnADisturbedLineNothingStopsAndNoWrongValueIsAccepted) {
+TEST(RoboclawLosses, StopNothingOnADisturbedLineAndBringNoWrongValue) {
   for (const double rate : {100.0, 250.0, 1000.0}) {
     RoboclawMachine machine(rate);
     machine.start();
@@ -301,7 +301,7 @@ TEST(RoboclawFuzz, MutatedAnswersMoveNothing) {
   expect_no_motion_of_the_roboclaw(20'000);
 }
 
-TEST(RoboclawFuzz, NightlyNorDoAMillion) {
+TEST(RoboclawFuzz, NightlyAMillionMutatedAnswersMoveNothing) {
   expect_no_motion_of_the_roboclaw(1'000'000);
 }
 

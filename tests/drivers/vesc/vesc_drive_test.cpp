@@ -81,7 +81,7 @@ TEST(VescDrive, TheEffortHasTheSignOfTheTorqueAlsoWhereItBrakes) {
   }
 }
 
-TEST(VescDrive, WithoutATorqueConstantItTakesSpeedsAndMeasuresNoTorque) {
+TEST(VescDrive, TakesSpeedsAndMeasuresNoTorqueWithoutATorqueConstant) {
   VescPair pair = vesc_pair(2);
   pair.drive.drive.takes_speeds = true;
   pair.drive.torque_constant = 0;

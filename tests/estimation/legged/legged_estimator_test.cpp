@@ -54,7 +54,7 @@ TEST(LeggedEstimator, LearnsTheGyrosBiasAtRest) {
 }
 
 // Joints that are not valid keep their last angles, at which the feet would seem to hold the robot where it is.
-TEST(LeggedEstimator, WithoutTheJointsTheDeviationsGrow) {
+TEST(LeggedEstimator, LetsTheDeviationsGrowWithoutTheJoints) {
   Standing robot;
   robot.run(1);
   const double place = robot.out.base.pose_covariance[0];

@@ -46,7 +46,7 @@ TEST_F(EstimatorFaultsTest, EncodersMissingForLongAreNoValidState) {
 
 // Nothing shows the speed, so the pose stays and the twist is zero. The deviation of the speed is the last one, and
 // that of the position grows by it.
-TEST_F(EstimatorFaultsTest, WithoutAnEncoderTwistAndPoseAgreeAndTheirDeviationsGrow) {
+TEST_F(EstimatorFaultsTest, TwistAndPoseAgreeWithoutAnEncoderAndTheirDeviationsGrow) {
   set_joints_valid(robot_.frame(), 0);
   drive(0.5, 0, 10);
   const StateFrame lost = state_;
@@ -66,7 +66,7 @@ TEST_F(EstimatorFaultsTest, WithoutAnEncoderTwistAndPoseAgreeAndTheirDeviationsG
 }
 
 // The other wheel shows nothing of a side that is lost, unless the gyro shows the turn.
-TEST_F(EstimatorFaultsTest, WithoutOneEncoderAndTheGyroTwistAndPoseAgree) {
+TEST_F(EstimatorFaultsTest, TwistAndPoseAgreeWithoutOneEncoderAndTheGyro) {
   lose(kValidGyro);
   for (int i = 0; i < 300; ++i) broken([](SensorFrame& frame) { frame.joints[0].position = kNaN; });
   const double begin_yaw = yaw();
@@ -152,7 +152,7 @@ TEST_F(EstimatorFaultsTest, OneEncoderWithoutGyroIsNoValidState) {
   EXPECT_TRUE(all_finite(state_));
 }
 
-TEST_F(EstimatorFaultsTest, WithoutGyroTheWheelsTurnAlone) {
+TEST_F(EstimatorFaultsTest, TheWheelsTurnAloneWithoutGyro) {
   lose(kValidGyro);
   for (int i = 0; i < 5000; ++i) {
     robot_.drive(0.5, 0.2);
@@ -191,7 +191,7 @@ TEST_F(EstimatorFaultsTest, ABadAccelerometerSampleIsHeldOver) {
   EXPECT_LT(position_error(), kExact);
 }
 
-TEST_F(EstimatorFaultsTest, WithoutAccelerometerWheelsAndGyroCarryOn) {
+TEST_F(EstimatorFaultsTest, WheelsAndGyroCarryOnWithoutAccelerometer) {
   lose(kValidAccelerometer);
   drive(0.5, 0.2, 5000);
   EXPECT_TRUE(has(kStateNoAccelerometer));
@@ -201,7 +201,7 @@ TEST_F(EstimatorFaultsTest, WithoutAccelerometerWheelsAndGyroCarryOn) {
   EXPECT_LT(yaw_error(), 1e-3);
 }
 
-TEST_F(EstimatorFaultsTest, WithWheelsAloneItIsTheirOdometry) {
+TEST_F(EstimatorFaultsTest, IsTheOdometryOfTheWheelsWithThemAlone) {
   lose(kValidAccelerometer | kValidGyro);
   drive(0.5, 0.2, 5000);
   EXPECT_TRUE(has(kStateValid));

@@ -59,7 +59,7 @@ TEST_F(EstimatorStartTest, AHoleInAllSamplesIsTurnedByTheWheels) {
   EXPECT_NEAR(speed(), 0.3, 0.005);
 }
 
-TEST_F(EstimatorStartTest, WithoutEncodersItIsNotAtRest) {
+TEST_F(EstimatorStartTest, IsNotAtRestWithoutEncoders) {
   stand();
   const Vector3 learned = state_.base.gyro_bias;
   for (int i = 0; i < 3000; ++i) {

@@ -28,7 +28,7 @@ TEST(ACompressedChunk, NeverInflatesBeyondWhatItSays) {
   EXPECT_THAT(said_of(stream, 0), HasSubstr("inflates to more than the 0 bytes"));
 }
 
-TEST(ACompressedChunk, ThatIsBrokenIsRefused) {
+TEST(ACompressedChunk, IsRefusedIfItIsBroken) {
   const std::string content = "some content, some content, some content, some content";
   const auto size = static_cast<std::uint32_t>(content.size());
   const std::string stream = packed(content);
@@ -44,7 +44,7 @@ TEST(ACompressedChunk, ThatIsBrokenIsRefused) {
   }
 }
 
-TEST(AChunk, ThatWouldInflateWithoutBoundsIsRefusedBeforeIt) {
+TEST(AChunk, IsRefusedBeforeItInflatesWithoutBounds) {
   EXPECT_THAT(refusal(make_bag(1, 10, {.size_of_chunk = kMaxChunk}).bytes), HasSubstr("field size: 26843"));
 }
 

@@ -54,7 +54,7 @@ struct ReplayedDrive : testing::Test {
   Recording recording;
 };
 
-TEST_F(ReplayedDrive, WithEveryFaultOfEveryComponent) {
+TEST_F(ReplayedDrive, IsExactWithEveryFaultOfEveryComponent) {
   for (const std::string component : {"left_encoder", "gyro", "accelerometer", "controller", "estimator", "monitor"}) {
     for (const std::string kind : {"off", "stuck", "garbage", "wrong", "slow", "delayed", "intermittent"}) {
       SCOPED_TRACE(component + " " + kind);
@@ -69,7 +69,7 @@ TEST_F(ReplayedDrive, WithEveryFaultOfEveryComponent) {
   }
 }
 
-TEST_F(ReplayedDrive, OfWheelsThatTakeSpeedsAndMeasureNoTorque) {
+TEST_F(ReplayedDrive, IsExactForWheelsThatTakeSpeedsAndMeasureNoTorque) {
   parameters.robot.wheel_command = WheelCommand::kVelocity;
   parameters.plant.drive = SimulatedDrive::kVelocity;
   loop = ClosedLoop(parameters);

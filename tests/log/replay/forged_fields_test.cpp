@@ -143,7 +143,7 @@ class EditsOfForgedFields : public ForgedFields, public testing::WithParamInterf
 INSTANTIATE_TEST_SUITE_P(EveryDay, EditsOfForgedFields, testing::Values(1));
 INSTANTIATE_TEST_SUITE_P(Nightly, EditsOfForgedFields, testing::Values(5));
 
-TEST_P(EditsOfForgedFields, OfEveryNameAreNoticed) {
+TEST_P(EditsOfForgedFields, AreNoticedForEveryName) {
   for (std::size_t field = 0; field < places_.size(); ++field) {
     const std::string& name = trace_fields()[field].name;
     ASSERT_FALSE(places_[field].empty()) << name << " has no element in this drive";
@@ -151,7 +151,7 @@ TEST_P(EditsOfForgedFields, OfEveryNameAreNoticed) {
   }
 }
 
-TEST_P(EditsOfForgedFields, WithARenewedChecksumAreNoticedOrListedInTheDocumentation) {
+TEST_P(EditsOfForgedFields, AreNoticedOrDocumentedWithARenewedChecksum) {
   constexpr int kTries = 1000;  // few rows have neither a usable command nor permit
   std::set<std::string> listed = fields_that_cannot_be_known();
   EXPECT_FALSE(listed.empty());

@@ -177,7 +177,7 @@ TEST(ReplayedNodes, AreComputedAgainBitForBitWhateverHappens) {
   }
 }
 
-TEST(ReplayedNodes, WithTheSameParametersKeepTheirPoseOverRestarts) {
+TEST(ReplayedNodes, KeepTheirPoseOverRestartsWithTheSameParameters) {
   constexpr unsigned kSeeds = 5;
   constexpr int kCycles = 2000;
   for (unsigned seed = 1; seed <= kSeeds; ++seed) {

@@ -50,7 +50,7 @@ struct ReplayedProcesses : testing::Test {
 };
 
 /// The log that telemetry writes, up to the chunk that was on the disk when telemetry was killed.
-TEST_F(ReplayedProcesses, OnADriveInWhichEveryNodeIsLostAndStartedAgain) {
+TEST_F(ReplayedProcesses, AreExactOnADriveInWhichEveryNodeIsLostAndStartedAgain) {
   robot_.drive_at_full_speed();
   lose(LoopNode::kController, SIGSTOP);
   lose(LoopNode::kEstimator, SIGKILL);

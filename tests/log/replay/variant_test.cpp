@@ -55,7 +55,7 @@ TEST_F(VariedDrive, IsTheSameWithTheSameParameters) {
   EXPECT_EQ(permits, 2000);
 }
 
-TEST_F(VariedDrive, WithALowerLimitPlansASlowerDriveWhileTheLogIsComputedAgainExactly) {
+TEST_F(VariedDrive, PlansASlowerDriveWithALowerLimitWhileTheLogIsComputedAgainExactly) {
   constexpr double kLimit = 0.3;  // m/s
   drive(0.5);
   Parameters slow = parameters;
@@ -71,7 +71,7 @@ TEST_F(VariedDrive, WithALowerLimitPlansASlowerDriveWhileTheLogIsComputedAgainEx
   EXPECT_NEAR(fastest, kLimit, 1e-9);
 }
 
-TEST_F(VariedDrive, WithANoisierGyroIsLessSureOfItsPath) {
+TEST_F(VariedDrive, IsLessSureOfItsPathWithANoisierGyro) {
   drive(0.5);
   Parameters other = parameters;
   other.estimator.gyro_noise *= 3;

@@ -69,7 +69,7 @@ TEST_F(ALogFolder, RemovesTheOldestRunsFirstAndNoMoreThanItMust) {
   EXPECT_FALSE(folder.make_room(1001)) << "the running log fills it alone";
 }
 
-TEST_F(ALogFolder, WithoutAQuotaRemovesNothing) {
+TEST_F(ALogFolder, RemovesNothingWithoutAQuota) {
   keep("run.1.bag", 1000);
   EXPECT_TRUE(LogFolder(folder_.path(), 0).make_room(std::int64_t{1} << 40U));
   EXPECT_THAT(names(), ElementsAre("run.1.bag"));

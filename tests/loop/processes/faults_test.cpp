@@ -67,7 +67,7 @@ struct Faults : ::testing::Test {
   DriveTrain robot_;
 };
 
-TEST_F(Faults, OfFourProcessesGiveTheNumbersOfTheClosedLoop) {
+TEST_F(Faults, GiveTheNumbersOfTheClosedLoopInFourProcesses) {
   FourNodes(parameters_, robot_, true).run(kTimeout, [&](DriverProcess& driver) {
     SimulationServices& services = *driver.services();
     services.set_pause(true);

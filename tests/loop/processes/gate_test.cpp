@@ -69,7 +69,7 @@ TEST_F(GateInTheLoop, DoesNotTakeACoarseEncoderForATooFastWheel) {
 }
 
 // At the wheels' speed limit the gate would take away the torque that the load uphill needs.
-TEST_F(GateInTheLoop, AtTheSpeedLimitTheControllerKeepsOutOfTheTaper) {
+TEST_F(GateInTheLoop, IsNotTaperingAtTheSpeedLimitOfTheController) {
   static_assert(kUsableWheelSpeed == kTaperStart);
   parameters_.plant.slope = 0.0873;
   parameters_.robot.wheel_velocity_limit = 8;

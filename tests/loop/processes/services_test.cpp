@@ -62,7 +62,7 @@ void step_from_the_beginning(SimulationServices& services, std::uint64_t cycles)
   ASSERT_TRUE(answer.success) << answer.message;
 }
 
-TEST_F(Services, InLockstepStepsAndResetsGiveTheNumbersOfTheClosedLoop) {
+TEST_F(Services, StepsAndResetsInLockstepGiveTheNumbersOfTheClosedLoop) {
   constexpr std::uint64_t kFirst = 1500;  // cycles: at 0.5 m/s
   constexpr std::uint64_t kSecondRun = 700;
   const LogTable four = four_processes(ClockMode::kLockstep, [](DriverProcess& driver) {
@@ -93,7 +93,7 @@ TEST_F(Services, InLockstepStepsAndResetsGiveTheNumbersOfTheClosedLoop) {
 }
 
 /// Motion begins again from rest: nothing of the first run's 0.5 m/s is left in pose, command or torque.
-TEST_F(Services, OnTheWallClockAResetAtSpeedIsFollowedWithoutAJump) {
+TEST_F(Services, AResetAtSpeedOnTheWallClockIsFollowedWithoutAJump) {
   constexpr double kEffortStep = 1;  // N·m; max_linear_acceleration takes 0.65 from one cycle to the next
   const LogTable rows = four_processes(ClockMode::kWall, [](DriverProcess& driver) {
     sleep_ns(3 * kSecond / 2);
@@ -124,7 +124,7 @@ SensorFrame newest(DriverProcess& driver) {
   return sensors;
 }
 
-TEST_F(Services, OnTheWallClockAPauseStopsTimeAndIsNeitherCaughtUpNorSlip) {
+TEST_F(Services, APauseOnTheWallClockStopsTimeAndIsNeitherCaughtUpNorSlip) {
   constexpr std::int64_t kPause = kSecond / 2;
   constexpr std::uint64_t kPeriod = 1'000'000;   // ns
   constexpr std::int64_t kStall = kSecond / 20;  // what a busy machine may take off a thread of this test

@@ -148,7 +148,7 @@ TEST_F(CyclicXacro, IncludesInACircleAreNamed) {
   }
 }
 
-TEST_F(CyclicXacro, OrForeignFilesThatItIncludesAreNamed) {
+TEST_F(CyclicXacro, NamesForeignFilesThatItIncludes) {
   folder_.write("wide.xacro", utf16("<robot name=\"r\"><link name=\"a\"/></robot>", false, true));
   folder_.write("pointer.xacro", kPointer);
   for (const std::string name : {"wide", "pointer"}) {

@@ -3,6 +3,7 @@
 #include <sys/stat.h>
 
 #include "support/matchers.h"
+#include "support/message_of.h"
 #include "support/temporary_folder.h"
 
 namespace robot_control {
@@ -21,11 +22,7 @@ struct Resource : testing::Test {
   std::filesystem::path resolved(const std::string& uri) { return resolve_resource(uri, urdf_).lexically_normal(); }
 
   std::string refusal(const std::string& uri) {
-    try {
-      return resolve_resource(uri, urdf_);
-    } catch (const RobotError& error) {
-      return error.what();
-    }
+    return message_of<RobotError>([&] { resolve_resource(uri, urdf_); });
   }
 
   TemporaryFolder folder_;

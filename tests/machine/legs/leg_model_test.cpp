@@ -101,7 +101,7 @@ std::vector<std::string> real_ones() {
 
 INSTANTIATE_TEST_SUITE_P(Robots, LegFacts, testing::ValuesIn(real_ones()), robot_name);
 
-TEST(LegModel, OfAnymalBendsItsKneesTowardsTheMiddleWhereTheRangesLeaveBothSides) {
+TEST(LegModel, BendsTheKneesOfAnymalTowardsTheMiddleWhereTheRangesLeaveBothSides) {
   if (quadrupeds().empty()) GTEST_SKIP() << kNoQuadrupeds;
   const LegModel derived = legged_robot("anymal_c");
   const LegModel outwards = legged_robot("anymal_c", {.knee_bend = KneeBend::kOutwards});
@@ -112,7 +112,7 @@ TEST(LegModel, OfAnymalBendsItsKneesTowardsTheMiddleWhereTheRangesLeaveBothSides
   }
 }
 
-TEST(LegModel, OfOneSidedKneesBendsThemAsTheirRangesDo) {
+TEST(LegModel, BendsOneSidedKneesAsTheirRangesDo) {
   const LegModel robot = legged_robot("quadbot");
   for (const Leg& leg : robot.legs) EXPECT_EQ(leg.kinematics.geometry().bend, -1);
 }

@@ -20,7 +20,7 @@ TEST(DelayLine, GivesWhatWentInSoManyStepsAgo) {
   }
 }
 
-TEST(DelayLine, OfNoDelayChangesNothing) {
+TEST(DelayLine, ChangesNothingWithoutADelay) {
   DelayLine<int, 5> line(0);
   line.fill(-1);
   int value = 7;

@@ -49,24 +49,24 @@ TEST_F(FaultyOutputTest, IsTheHealthyOneAgainAfterOk) {
   }
 }
 
-TEST_F(FaultyOutputTest, OfOffIsNothing) {
+TEST_F(FaultyOutputTest, IsNothingIfOff) {
   for (const Outcome& outcome : run(FaultKind::kOff, 50)) EXPECT_EQ(outcome, Outcome());
 }
 
-TEST_F(FaultyOutputTest, OfAnUnknownKindIsNothing) {
+TEST_F(FaultyOutputTest, IsNothingOfAnUnknownKind) {
   for (const Outcome& outcome : run(static_cast<FaultKind>(99), 50)) EXPECT_EQ(outcome, Outcome());
 }
 
-TEST_F(FaultyOutputTest, OfStuckIsTheFirstOneForEver) {
+TEST_F(FaultyOutputTest, IsTheFirstOneForEverIfStuck) {
   for (const Outcome& outcome : run(FaultKind::kStuck, 500)) EXPECT_EQ(outcome, Outcome(kOnset));
 }
 
-TEST_F(FaultyOutputTest, OfWrongIsWhatTheComponentCallsWrong) {
+TEST_F(FaultyOutputTest, IsWhatTheComponentCallsWrongIfWrong) {
   const auto outcomes = run(FaultKind::kWrong, 50);
   for (std::size_t i = 0; i < outcomes.size(); ++i) EXPECT_EQ(outcomes[i], Outcome(-static_cast<double>(kOnset + i)));
 }
 
-TEST_F(FaultyOutputTest, OfGarbageIsRandom) {
+TEST_F(FaultyOutputTest, IsRandomIfGarbage) {
   const auto outcomes = run(FaultKind::kGarbage, 1000);
   double sum = 0;
   for (const Outcome& outcome : outcomes) {
@@ -78,7 +78,7 @@ TEST_F(FaultyOutputTest, OfGarbageIsRandom) {
   EXPECT_LT(std::abs(sum / 1000), 92);
 }
 
-TEST_F(FaultyOutputTest, OfSlowIsNewEveryTenthCycle) {
+TEST_F(FaultyOutputTest, IsNewEveryTenthCycleIfSlow) {
   const auto outcomes = run(FaultKind::kSlow, 35);
   for (std::size_t i = 0; i < outcomes.size(); ++i) {
     EXPECT_EQ(outcomes[i], i % kFaultCycles == 0 ? Outcome(kOnset + i) : Outcome()) << i;
@@ -86,12 +86,12 @@ TEST_F(FaultyOutputTest, OfSlowIsNewEveryTenthCycle) {
   EXPECT_EQ(value_, kOnset + 30.0) << "a reader that samples a register finds the last one";
 }
 
-TEST_F(FaultyOutputTest, OfSlowIsNewAlsoWhenTheTenthCycleIsSkipped) {
+TEST_F(FaultyOutputTest, IsNewAlsoWhenTheTenthCycleIsSkippedIfSlow) {
   run(FaultKind::kSlow, 5);
   EXPECT_EQ(step(FaultKind::kSlow, kOnset + 13), Outcome(kOnset + 13));
 }
 
-TEST_F(FaultyOutputTest, OfDelayedIsTenCyclesOld) {
+TEST_F(FaultyOutputTest, IsTenCyclesOldIfDelayed) {
   const auto outcomes = run(FaultKind::kDelayed, 40);
   for (std::size_t i = 0; i < outcomes.size(); ++i) {
     const std::uint64_t expected = i < kFaultCycles ? kOnset : kOnset + i - kFaultCycles;
@@ -99,7 +99,7 @@ TEST_F(FaultyOutputTest, OfDelayedIsTenCyclesOld) {
   }
 }
 
-TEST_F(FaultyOutputTest, OfIntermittentIsOffAndOnInSpellsOfTenCycles) {
+TEST_F(FaultyOutputTest, IsOffAndOnInSpellsOfTenCyclesIfIntermittent) {
   constexpr std::uint64_t kCycles = 100000;
   const auto outcomes = run(FaultKind::kIntermittent, kCycles);
   double off = 0, changes = 0;

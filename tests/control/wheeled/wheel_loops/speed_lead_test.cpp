@@ -45,11 +45,11 @@ TEST(SpeedLead, ADriveThatIsFasterDoesNotOvershoot) {
   EXPECT_LT(overshoot(kResponse, 1.5), 2 * kPeriods);
 }
 
-TEST(SpeedLead, WithoutATimeTheOrderIsThePlan) {
+TEST(SpeedLead, OrdersThePlanWithoutATime) {
   EXPECT_TRUE(std::signbit(SpeedLead(0, kLeadPeriod).step(-0.0, 10, 1)));
 }
 
-TEST(SpeedLead, AfterTheRampItIsExactlyZeroInTime) {
+TEST(SpeedLead, IsExactlyZeroInTimeAfterTheRamp) {
   SpeedLead lead(kResponse, kLeadPeriod);
   for (int i = 0; i < 500; ++i) lead.step(0, kRamp, 1);
   double last = 1;

@@ -179,7 +179,7 @@ TEST(TrackingLoop, LearnsTheCountsOfItsEncoder) {
   EXPECT_EQ(loop.quantum(), 0) << "exact";
 }
 
-TEST(TrackingLoop, OfAWheelThatStandsTakesTheEncoderOfAnother) {
+TEST(TrackingLoop, TakesTheEncoderOfAnotherWheelAtAStand) {
   TrackingLoop turning(kBandwidth, 1e-3), standing(kBandwidth, 1e-3);
   standing.assume_encoder_of(turning);
   EXPECT_NEAR(standing.quantum(), 2 * std::numbers::pi / 45, 1e-15) << "none has shown a count";

@@ -207,7 +207,7 @@ TEST(WheelLoop, DoesNotAllocate) {
   EXPECT_EQ(guard.count(), 0u);
 }
 
-TEST(WheelLoop, WithoutAnIntegratorForgetsWhatItCarried) {
+TEST(WheelLoop, ForgetsWhatItCarriedWithoutAnIntegrator) {
   WheelLoop loop = seeded(0, {.ki = 0});
   loop.preload_integrator(1.3);
   EXPECT_NEAR(loop.step({}, 1), 1.3, 0.02) << "no jump";

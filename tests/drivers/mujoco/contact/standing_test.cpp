@@ -29,7 +29,7 @@ struct Standing : PlantTest {
 };
 
 // The bumper hangs 2 cm below the wheels.
-TEST_F(Standing, OnItsBodyWithTheWheelsInTheAirIsRefused) {
+TEST_F(Standing, IsRefusedOnItsBodyWithTheWheelsInTheAir) {
   MadeRobot robot;
   robot.more = part("bumper", "<collision><geometry><box size=\"0.6 0.6 0.04\"/></geometry></collision>", "base_link",
                     "type=\"fixed\"><origin xyz=\"0 0 -0.1\"/>");
@@ -64,7 +64,7 @@ TEST_F(Standing, LeaningBackIsInTheTruthAndTheGroundStaysLevel) {
 }
 
 // A pendulum without friction never comes to rest; the robot below it does.
-TEST_F(Standing, WhileSomethingOnItSwings) {
+TEST_F(Standing, IsAllowedWhileSomethingOnItSwings) {
   MadeRobot robot;
   robot.axles = {0.2, -0.2};
   robot.more = part("pendulum", "", "base_link",
@@ -75,7 +75,7 @@ TEST_F(Standing, WhileSomethingOnItSwings) {
 // Half of the weight is on a rear ball 0.4 m behind the wheels, which turns about its own axle alone. If it gripped, μ
 // · 60 N · 0.4 m would outweigh the wheels' 2 · μ · 30 N · 0.25 m. The robot must still turn at 2 r q̇/b, except for
 // the creep of the tyres: less than 1 %.
-TEST_F(Standing, OnABallWithoutASwivelTurns) {
+TEST_F(Standing, TurnsOnABallWithoutASwivel) {
   MadeRobot robot;
   robot.body_x = -0.24;
   robot.more =

@@ -48,7 +48,7 @@ TEST_F(TyreTest, HasTheNumbersThatWereMeasured) {
   EXPECT_NEAR(tyre_.stiffness * tyre_.twist_lever * tyre_.twist_lever, 20, 1e-9);
 }
 
-TEST_F(TyreTest, OfAHeavyRobotOnALightWheelRelaxesOverALongerWay) {
+TEST_F(TyreTest, RelaxesOverALongerWayUnderAHeavyRobotOnALightWheel) {
   const TyreParameters heavy = tyre_parameters(kMass, kTyreRadius, 5000, kStep);
   EXPECT_NEAR(heavy.stiffness * heavy.relaxation_length, 20 * 5000, 1e-6);
 }
@@ -112,7 +112,7 @@ TEST_F(TyreTest, TurnSlipIsBoundedByTheGripToo) {
   EXPECT_NEAR(torque, -kLoad * 0.01 * kTyreRadius, 1e-12);
 }
 
-TEST_F(TyreTest, WithoutNormalForceThereIsNone) {
+TEST_F(TyreTest, HasNoForceWithoutANormalForce) {
   grip_ = 0;
   velocity_ = 1;
   steps(100, 0);

@@ -32,7 +32,7 @@ TEST(Battery, IsChargedByMotorsThatBrake) {
   EXPECT_GT(battery_under_load(kVoltage, kResistance, -100).voltage, kVoltage);
 }
 
-TEST(Battery, WithoutResistanceKeepsItsVoltage) {
+TEST(Battery, KeepsItsVoltageWithoutResistance) {
   EXPECT_NEAR(battery_under_load(kVoltage, 0, 1000).voltage, kVoltage, kVoltRounding);
 }
 
@@ -84,7 +84,7 @@ TEST_F(BatteryOfThePlant, FeedsTheMechanicalPowerOfTheWheels) {
   EXPECT_GT(truth(*plant).joints[0].velocity, 5);
 }
 
-TEST_F(BatteryOfThePlant, WithMoreResistanceThanItsVoltageBearsIsRefused) {
+TEST_F(BatteryOfThePlant, IsRefusedWithMoreResistanceThanItsVoltageBears) {
   parameters_.battery_resistance = 25;
   const std::string message = message_of<DriverError>([&] { fed(); });
   EXPECT_NE(message.find("battery_resistance is 25 ohm"), std::string::npos) << message;

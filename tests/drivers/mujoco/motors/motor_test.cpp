@@ -47,7 +47,7 @@ TEST(MotorTest, IsSlowerBehindAGreaterGear) {
   EXPECT_NEAR(Motor(kStall, kNoLoad, 20).limited(10, 5), kStall / 2, kTorqueRounding);
 }
 
-TEST(MotorTest, WithoutANoLoadSpeedIsLimitedOnlyByItsStallTorque) {
+TEST(MotorTest, IsLimitedOnlyByItsStallTorqueWithoutANoLoadSpeed) {
   const Motor motor{kStall, 0, kGear};
   EXPECT_EQ(motor.limited(10, 1000), kStall);
   EXPECT_EQ(motor.limited(-10, -1000), -kStall);

@@ -238,14 +238,14 @@ TEST_F(SensorErrorsTest, ScaleTheTrueRateAndNothingElse) {
   EXPECT_EQ(measurement.imu.linear_acceleration, (Vector3{1, -2, 3}));
 }
 
-TEST_F(SensorErrorsTest, OfOneDeviceDoNotDependOnTheOther) {
+TEST_F(SensorErrorsTest, DoNotDependOnTheOtherDevice) {
   const Record both = record(1000);
   parameters_.gyro_noise = parameters_.gyro_bias = parameters_.gyro_bias_walk = 0;
   parameters_.encoder_resolution = 0;
   EXPECT_EQ(record(1000).accelerometer, both.accelerometer);
 }
 
-TEST_F(SensorErrorsTest, OfOneKindDoNotDependOnTheOthers) {
+TEST_F(SensorErrorsTest, DoNotDependOnErrorsOfOtherKinds) {
   white_only();
   const Record white = record(1000);
   parameters_.gyro_bias = MujocoPlantParameters{}.gyro_bias;
@@ -327,7 +327,7 @@ TEST_F(SensorErrorsTest, LeaveJointsWithoutAnActuatorAlone) {
   EXPECT_EQ(measurement.joints[kSwivel].velocity, 0.7654321);
 }
 
-TEST_F(SensorErrorsTest, OfNoResolutionAreNone) {
+TEST_F(SensorErrorsTest, AreNoneOfNoResolution) {
   parameters_.encoder_resolution = 0;
   SensorErrors encoder = errors();
   Measurement measurement;

@@ -68,7 +68,7 @@ struct SensorFaultsTest : testing::Test {
   std::uint64_t lost_ = 0;
 };
 
-TEST_F(SensorFaultsTest, WithoutAFaultNothingChanges) {
+TEST_F(SensorFaultsTest, ChangeNothingWithoutAFault) {
   step(FaultComponent::kEncoder, FaultKind::kOk, kOnset);
   EXPECT_EQ(left().position, left_at(kOnset).position);
   EXPECT_EQ(left().velocity, left_at(kOnset).velocity);

@@ -106,7 +106,7 @@ TEST(TiltTest, RestsInTwoHeadingsSeparateBiasFromTilt) {
 }
 
 // The robot leaves a slope of 0.1 rad and comes back to it turned by 180°: gravity turns, the bias does not.
-TEST(TiltTest, OnASlopeTooTheTwoAreSeparated) {
+TEST(TiltTest, SeparatesTheTwoOnASlopeToo) {
   Tilt tilt;
   Vector3 uphill = gravity(-0.1);
   Vector3 downhill = gravity(0.1);

@@ -82,7 +82,7 @@ TEST_P(SlipOfOtherClocks, AnOffsetThatIsLearnedIsNoSlip) {
 }
 
 // A slide ends while the robot brakes: earlier samples of the IMU are compared with later ones of the wheels.
-TEST_P(SlipOfOtherClocks, BehindASlideTheLineIsStraight) {
+TEST_P(SlipOfOtherClocks, TheLineIsStraightBehindASlide) {
   body_.noise = 0;
   drive(1, 1.0);
   for (int i = 0; i < 60; ++i) body_.step(-1.0);
@@ -113,7 +113,7 @@ struct SlipOfAFarImu : SlipFixture {
 };
 
 // E continues the line of rest: the lever of the IMU does not step it.
-TEST_F(SlipOfAFarImu, BehindARestTheLeverIsNoSlip) {
+TEST_F(SlipOfAFarImu, TheLeverIsNoSlipBehindARest) {
   EXPECT_EQ(drive(2, 0.3), 0);
 }
 
@@ -233,7 +233,7 @@ struct SlipNoise : SlipFixture, testing::WithParamInterface<double> {
 };
 
 // A level that is low by chance would prove slip once in two hours at the largest factor.
-TEST_P(SlipNoise, OfTheAccelerometerIsNoSlip) {
+TEST_P(SlipNoise, IsNoSlip) {
   double proven = drive(0.5, 1.0);
   proven += drive(7200);
   EXPECT_EQ(proven, 0);
