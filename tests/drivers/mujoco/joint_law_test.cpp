@@ -53,14 +53,6 @@ TEST_F(JointLawTest, ClampsToTheEffortLimitBothWays) {
   EXPECT_EQ(law_.step(command, 0, 0), -kEffortLimit);
 }
 
-TEST_F(JointLawTest, BrakesWithItsBoundWhileFast) {
-  velocity_ = 10;
-  EXPECT_EQ(step({}), -kBrake.effort);
-  velocity_ = -10;
-  law_.reset();
-  EXPECT_EQ(step({}), kBrake.effort);
-}
-
 TEST_F(JointLawTest, ABrakeIsNeverStrongerThanTheJoint) {
   JointLaw weak(kBrake, 1.0);
   EXPECT_EQ(weak.step({}, 0, 10), -1.0);
@@ -96,17 +88,6 @@ TEST_F(JointLawTest, StopsAndHoldsAFreeWheelAndAHeavyOne) {
   }
 }
 
-TEST_F(JointLawTest, HoldingBeginsWithTheTorqueThatSlowingEndedWith) {
-  velocity_ = 10;
-  double before = 0;
-  double effort = 0;
-  while (!law_.holding()) {
-    before = effort;
-    effort = step({});
-  }
-  EXPECT_NEAR(effort, before, 1e-12);
-}
-
 // A drive that holds a load hands over to the brake: the torque stays, and so does the wheel.
 TEST_F(JointLawTest, TakesOverALoadFromTheDriveWithoutSag) {
   constexpr double kLoad = -0.5;  // N·m
@@ -126,43 +107,6 @@ TEST_F(JointLawTest, AWheelThatSlidesDownASlopeIsCaughtAndHeld) {
   EXPECT_TRUE(law_.holding());
   EXPECT_NEAR(velocity_, 0, 1e-9);
   EXPECT_NEAR(law_.step({}, position_, velocity_), -kLoad, 1e-6);
-}
-
-TEST_F(JointLawTest, HoldsWithMoreThanItSlowsWith) {
-  Brake gentle = kBrake;
-  gentle.effort = 1.0;
-  law_ = JointLaw(gentle, kEffortLimit);
-  velocity_ = 5;
-  EXPECT_EQ(step({}), -1.0);
-  brake(3);
-  EXPECT_TRUE(law_.holding());
-  brake(3, 2.0);
-  EXPECT_NEAR(velocity_, 0, 1e-9);
-  EXPECT_NEAR(law_.step({}, position_, velocity_), -2.0, 1e-6);
-}
-
-// The wheel turns downhill with 2 N·m against 1 N·m of slowing. The holding torque takes over within 50 steps, and
-// exceeds the load by 1 N·m.
-TEST_F(JointLawTest, ALoadThatSlowingDoesNotBearIsBrakedByWhatHolds) {
-  Brake gentle = kBrake;
-  gentle.effort = 1.0;
-  law_ = JointLaw(gentle, kEffortLimit);
-  velocity_ = 1.0;
-  brake(0.051, 2.0);
-  EXPECT_TRUE(law_.holding());
-  brake(3, 2.0);
-  EXPECT_NEAR(velocity_, 0, 1e-9);
-}
-
-TEST_F(JointLawTest, ALoadAboveTheBoundDragsTheHeldWheelAndIsNotThrownBack) {
-  brake(0.1);
-  for (int i = 0; i < 200; ++i) EXPECT_LE(std::abs(step({}, 4.0)), kBrake.effort);
-  EXPECT_GT(velocity_, 0);
-  brake(3);
-  const double rest = position_;
-  EXPECT_NEAR(velocity_, 0, 1e-9);
-  brake(1);
-  EXPECT_NEAR(position_, rest, 1e-9);
 }
 
 // 2a + b < 4 is the limit; the law itself shows it on either side.

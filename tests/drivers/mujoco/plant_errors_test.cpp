@@ -76,18 +76,6 @@ TEST_F(PlantErrors, AreThoseOfTheCycleHoweverOftenItIsRead) {
   EXPECT_TRUE(same_bits(once, sensors(*plant)));
 }
 
-TEST_F(PlantErrors, MakeSensorsLate) {
-  parameters_.sensor_delay = 7;
-  parameters_.encoder_resolution = 0;
-  auto plant = erring();
-  std::vector<double> true_angles;
-  for (std::size_t k = 0; k < 100; ++k) {
-    true_angles.push_back(truth(*plant).joints[0].position);
-    const SensorFrame frame = cycle(*plant, both(effort_command(0.5), effort_command(0.5)));
-    EXPECT_EQ(frame.joints[0].position, true_angles[k < 7 ? 0 : k - 7]) << k;
-  }
-}
-
 TEST_F(PlantErrors, MakeActuatorsLate) {
   parameters_.actuator_delay = 5;
   auto plant = erring();

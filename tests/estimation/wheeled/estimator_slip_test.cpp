@@ -44,18 +44,18 @@ struct EstimatorSlipTest : EstimatorFixture {
 
 TEST_F(EstimatorSlipTest, NamesWheelsThatSpinOrAreStuckAndEndsWithThem) {
   struct Case {
-    std::array<std::optional<double>, 2> tread;
+    std::optional<double> left, right;
     std::uint64_t named, not_named;
   };
-  for (const Case& slip : {Case{{{}, 1.0}, kSlipRight | kSlipSpinning | kSlipTurn, kSlipLeft},
-                           Case{{0.0, {}}, kSlipLeft | kSlipStalled | kSlipTurn, kSlipRight},
-                           Case{{1.0, 1.0}, kSlipLeft | kSlipRight | kSlipSpinning, kSlipTurn}}) {
+  for (const Case& slip : {Case{{}, 1.0, kSlipRight | kSlipSpinning | kSlipTurn, kSlipLeft},
+                           Case{0.0, {}, kSlipLeft | kSlipStalled | kSlipTurn, kSlipRight},
+                           Case{1.0, 1.0, kSlipLeft | kSlipRight | kSlipSpinning, kSlipTurn}}) {
     SCOPED_TRACE(slip.named);
-    robot_.tread = slip.tread;
+    robot_.tread = {slip.left, slip.right};
     EXPECT_GT(flagged(1000), 900);
     EXPECT_TRUE(names(slip.named));
     EXPECT_FALSE(names(slip.not_named));
-    EXPECT_EQ(state_.wheeled.confidence[kRightEncoder] == 0, slip.tread[1].has_value());
+    EXPECT_EQ(state_.wheeled.confidence[kRightEncoder] == 0, slip.right.has_value());
     EXPECT_LT(position_error(), 3 * deviation());
     EXPECT_LT(yaw_error(), 0.01);
     recover();

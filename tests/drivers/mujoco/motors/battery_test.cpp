@@ -64,13 +64,6 @@ TEST_F(BatteryOfThePlant, IsReported) {
   EXPECT_NEAR(frame.battery_voltage, kVoltage - kResistance * kIdleCurrent, 1e-6);
 }
 
-TEST_F(BatteryOfThePlant, IsNotThereByDefault) {
-  parameters_.battery_voltage = MujocoPlantParameters{}.battery_voltage;
-  const SensorFrame frame = sensors(*fed());
-  EXPECT_EQ(frame.valid & kValidBattery, 0u);
-  EXPECT_EQ(frame.battery_voltage, 0);
-}
-
 // Both wheels at 5 rad/s with 1 N·m each: 10 W.
 TEST_F(BatteryOfThePlant, FeedsTheMechanicalPowerOfTheWheels) {
   auto plant = fed();
