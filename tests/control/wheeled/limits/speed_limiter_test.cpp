@@ -9,8 +9,7 @@
 #include "control/wheeled/limits/limiter_properties.h"
 #include "signals/command_frame.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 constexpr SpeedLimits kLimits{
     .linear = {.speed = 1, .acceleration = 1, .deceleration = 1, .emergency_deceleration = 2},
@@ -21,8 +20,6 @@ constexpr SpeedLimits kSmooth{
     .angular = {.speed = 2, .acceleration = 4, .deceleration = 6, .emergency_deceleration = 12, .jerk = 40},
 };
 constexpr double kDt = 1e-3;
-// A speed below 2 rounds to 2·10⁻¹⁶; a difference of two of them over 1 ms shows 10³ times that.
-constexpr double kRoundedAcceleration = 1e-12;
 
 TEST(SpeedLimiter, ReachesOneMetrePerSecondInExactlyOneSecond) {
   SpeedLimiter limiter(kLimits);
@@ -430,5 +427,4 @@ TEST(SpeedLimiter, StandsWhereReverseIsForbidden) {
   EXPECT_EQ(drive_to(limiter, -0.5).end, 0);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests
