@@ -8,8 +8,7 @@
 #include "bus/ring.h"
 #include "support/bus/damage.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 constexpr int kLooks = 100'000;
 
@@ -77,5 +76,4 @@ TEST(BoundedReader, TriesToReadARingAsOftenAsItMay) {
   EXPECT_GT(largest, 1u + 2u + 3u);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

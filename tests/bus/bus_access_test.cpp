@@ -20,8 +20,7 @@
 #include "support/processes/anonymous_memory.h"
 #include "support/processes/child_process.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 using Frames = LatestFrames<TestFrame>;
 
@@ -227,5 +226,4 @@ TEST_F(BusAccessTest, AWriterThatStartsWithoutDescriptorsNamesThem) {
   EXPECT_THAT(write_error(), AllOf(HasSubstr("Too many open files"), HasSubstr("ulimit -n")));
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -15,8 +15,7 @@
 #include "support/matchers.h"
 #include "support/processes/child_process.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 using ::testing::Contains;
 using Frames = LatestFrames<TestFrame>;
@@ -192,5 +191,4 @@ TEST_F(BusCleanup, TenNodesThatStartAtOnceBesideAHalfDeadBusAllStartAndHarmNothi
   }
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

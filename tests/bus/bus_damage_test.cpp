@@ -14,8 +14,7 @@
 #include "support/bus/scoped_bus.h"
 #include "support/bus/test_frame.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 using Frames = LatestFrames<TestFrame>;
 constexpr std::uint64_t kMutants = 3000;
@@ -113,5 +112,4 @@ TEST_F(BusDamageTest, WhatIsDamagedUnderALivingWriterIsMappedOrAnErrorThatNamesI
   }
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

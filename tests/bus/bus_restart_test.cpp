@@ -13,8 +13,7 @@
 #include "support/processes/anonymous_memory.h"
 #include "support/processes/child_process.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 using Frames = LatestFrames<TestFrame>;
 constexpr std::int64_t kLong = 10'000'000'000;  // ns; a wait that ends this late was not woken
@@ -140,5 +139,4 @@ TEST(BusRace, LetsOneOfManyWritersWinAndRefusesTheOthers) {
   }
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

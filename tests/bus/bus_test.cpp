@@ -10,8 +10,7 @@
 #include "support/matchers.h"
 #include "support/message_of.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 using Frames = LatestFrames<TestFrame>;
 
@@ -298,5 +297,4 @@ TEST_F(BusTest, ALongSourceIsCut) {
   EXPECT_EQ(announced_robot(sensors.memory()->head).source, std::string(255, 'x'));
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -11,8 +11,7 @@
 #include "support/bus/damage.h"
 #include "support/bus/test_frame.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 constexpr std::uint64_t kMutants = 100'000;
 constexpr std::uint64_t kDamagedRun = 7;
@@ -144,5 +143,4 @@ TEST(DamagedRing, AReaderEndsAndAfterTheNextRowsItIsInStepAgain) {
   }
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -8,8 +8,7 @@
 #include "bus/model/expectations.h"
 #include "bus/model/futex_stub.h"
 
-namespace robot_control::model {
-namespace {
+namespace robot_control::model::tests {
 
 constexpr std::size_t kSlots = 2;
 constexpr std::uint64_t kRun = 7;
@@ -170,5 +169,4 @@ TEST_F(LatestFramesModelTest, EveryOrderAndEveryCheckIsNeeded) {
   EXPECT_GE(model_.mutants("latest_frames.h").size(), 15u);
 }
 
-}  // namespace
-}  // namespace robot_control::model
+}  // namespace robot_control::model::tests

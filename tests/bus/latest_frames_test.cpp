@@ -7,8 +7,7 @@
 #include "support/bus/test_frame.h"
 #include "support/processes/anonymous_memory.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 constexpr std::uint64_t kRun = 7;
 
@@ -166,5 +165,4 @@ TEST_F(LatestFramesTest, ReadingAndWritingAllocateNothing) {
   EXPECT_EQ(guard.count(), 0u);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -10,8 +10,7 @@
 #include "support/processes/anonymous_memory.h"
 #include "support/processes/child_process.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 constexpr std::uint64_t kTorturedRun = 7;
 constexpr std::int64_t kDuration = 700'000'000;    // ns, at least
@@ -115,5 +114,4 @@ TEST(LatestFramesTorture, AReaderThatWaitsForEverMissesNoWakeUp) {
   EXPECT_EQ(echo.wait(), 0);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

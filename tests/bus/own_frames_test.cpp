@@ -6,8 +6,7 @@
 
 #include "bus/latest_frames.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 struct SmallFrame {
   FrameHead head;
@@ -87,5 +86,4 @@ TEST_F(OwnFramesTest, FindsNothingBeforeTheFirstPublication) {
   EXPECT_EQ(own_reader_.last_whole(buffer), Lookup::kMissing);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -7,8 +7,7 @@
 #include "bus/model/futex_stub.h"
 #include "bus/ring.h"
 
-namespace robot_control::model {
-namespace {
+namespace robot_control::model::tests {
 
 constexpr std::size_t kRows = 2;
 
@@ -164,5 +163,4 @@ TEST_F(RingModelTest, EveryOrderAndEveryCheckIsNeeded) {
   EXPECT_GE(model_.mutants("ring.h").size(), 10u);
 }
 
-}  // namespace
-}  // namespace robot_control::model
+}  // namespace robot_control::model::tests

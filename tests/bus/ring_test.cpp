@@ -8,8 +8,7 @@
 #include "support/processes/anonymous_memory.h"
 #include "support/processes/child_process.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 struct WideRow {
   std::array<std::uint64_t, 40> values{};
@@ -182,5 +181,4 @@ TEST_F(RingTest, AWriterThatNeverWaitsTearsNoRowAndEveryLossIsCounted) {
   EXPECT_EQ(taken + reader_.overwritten(), kRows);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -6,8 +6,7 @@
 #include "support/matchers.h"
 #include "support/message_of.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 MachineModel machine(std::initializer_list<JointRole> roles) {
   MachineModel model;
@@ -39,5 +38,4 @@ TEST(DriveMotors, RefuseADrivenJointBehindAnother) {
   EXPECT_THAT(refusal(machine({kDriven, kPassive, kDriven}), 2), HasSubstr("'joint 1' is not driven"));
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

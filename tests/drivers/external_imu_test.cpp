@@ -6,8 +6,7 @@
 
 #include "drivers/board/board_machine.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 struct ExternalImuTest : testing::Test {
   SensorFrame read() {
@@ -58,5 +57,4 @@ TEST_F(ExternalImuTest, WhatIsNotFiniteOrNotMeasuredIsNotValid) {
   EXPECT_EQ(read().valid, kValidGyro);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -5,8 +5,7 @@
 #include "support/matchers.h"
 #include "support/temporary_folder.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 struct AnInputFile : ::testing::Test {
   TemporaryFolder folder_;
@@ -50,5 +49,4 @@ TEST_F(AnInputFile, IsRefusedInTheSystemsWordsIfItIsNotThere) {
   EXPECT_THAT(read_input_file(std::string("a\0b", 3), 10).problem, HasSubstr("NUL"));
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -2,8 +2,7 @@
 
 #include "support/matchers.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 TEST(MessageText, EscapesControlCharactersAndWhatIsNoUtf8) {
   EXPECT_EQ(printable(std::string_view("a\0b\x1b[2J\x7f", 8)), R"(a\x00b\x1b[2J\x7f)");
@@ -36,5 +35,4 @@ TEST(MessageText, BoundsTheSentenceAsAWhole) {
   EXPECT_THAT(fit_for_message(std::string("a\0b \x1b", 5)), Not(HasSubstr("\x1b")));
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -14,8 +14,7 @@
 #include "support/processes/child_process.h"
 #include "support/temporary_folder.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 struct AnOutputFile : ::testing::Test {
   std::string file(const std::string& name = "file") const { return folder_.path() / name; }
@@ -122,5 +121,4 @@ TEST_F(AnOutputFile, FailsBeyondTheLimitOnFileSizesAndLeavesTheOldOne) {
   EXPECT_EQ(files_in_folder(), 1);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

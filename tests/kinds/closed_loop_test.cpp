@@ -10,8 +10,7 @@
 #include "signals/names.h"
 #include "signals/wheeled/drive_tuning.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 struct SecondKind : testing::Test {
   static Parameters parameters() {
@@ -166,5 +165,4 @@ TEST(SecondKindTwice, GivesTheSameBits) {
   EXPECT_EQ(digest(), digest());
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -9,8 +9,7 @@
 #include "support/matchers.h"
 #include "support/temporary_folder.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 struct Found {
   std::vector<std::uint64_t> cycles = {};
@@ -272,5 +271,4 @@ TEST_F(ABagLog, NamesTheRowsThatWereLostBeforeIt) {
   EXPECT_EQ(found.lost[100], 17u);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

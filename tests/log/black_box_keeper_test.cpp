@@ -16,8 +16,7 @@
 #include "support/matchers.h"
 #include "support/temporary_folder.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 struct ABlackBoxKeeper : testing::Test {
   static constexpr std::int64_t kSecond = 1'000'000'000;
@@ -284,5 +283,4 @@ TEST_F(ABlackBoxKeeper, SaysWhereAnIncidentCannotBeSaved) {
   EXPECT_THAT(keeper->take_notes(), ElementsAre(HasSubstr("not saved (e_stop_service): ")));
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

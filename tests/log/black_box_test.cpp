@@ -6,8 +6,7 @@
 #include "support/matchers.h"
 #include "support/processes/child_process.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 /// Every message of a log, as bits.
 std::vector<std::string> messages_of(const std::string& bag) {
@@ -124,5 +123,4 @@ TEST_F(ABlackBox, IsNothingElse) {
   EXPECT_THAT([&] { save(); }, ThrowsMessage<LogError>(HasSubstr("is no black box of this version")));
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -9,8 +9,7 @@
 #include "signals/wheeled/drive_tuning.h"
 #include "support/matchers.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 using ::testing::IsSupersetOf;
 
@@ -313,5 +312,4 @@ TEST_F(Columns, ShowTheInjectedFaultsAsOneOctalDigitPerComponent) {
   EXPECT_EQ(value("injected"), 0210);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

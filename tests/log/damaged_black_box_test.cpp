@@ -10,8 +10,7 @@
 #include "black_box_fixture.h"
 #include "support/matchers.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 namespace fs = std::filesystem;
 
@@ -135,5 +134,4 @@ TEST_F(ADamagedBlackBox, GivesWhatIsSoundAndCountsEveryGapWhateverIsDamaged) {
   }
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

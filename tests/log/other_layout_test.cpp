@@ -12,8 +12,7 @@
 #include "support/message_of.h"
 #include "support/temporary_folder.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 /// A bag of a header of version 0.3.0, and of one message of `type`.
 std::string bag_with(const TemporaryFolder& folder, MessageType type, const std::string& message) {
@@ -52,5 +51,4 @@ TEST(ALogOfAnotherLayout, HasRowsOfAnotherVersion) {
   EXPECT_FALSE(TraceReader(bag_with(folder, other, "")).of_this_version());
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

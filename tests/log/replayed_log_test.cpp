@@ -9,8 +9,7 @@
 #include "recorded_drive.h"
 #include "support/temporary_folder.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 struct AReplayedLog : testing::Test {
   AReplayedLog() {
@@ -74,5 +73,4 @@ TEST_F(AReplayedLog, IsExactOverStopsResetsTuningAndANewRun) {
   expect_replayed_whole();
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

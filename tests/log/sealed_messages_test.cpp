@@ -8,8 +8,7 @@
 #include "loop/log_header.h"
 #include "recorded_drive.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 /// Changes each byte of the message: it must be refused or not intact. Names the byte that is not detected.
 template <class Decode>
@@ -49,5 +48,4 @@ TEST(SealedMessages, ShowEveryChangeOfASnapshot) {
   }
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -10,8 +10,7 @@
 #include "support/log_table.h"
 #include "support/matchers.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 struct TraceMessages : testing::Test {
   TraceMessages() : TraceMessages(drive_parameters()) {}
@@ -153,5 +152,4 @@ TEST_F(TraceMessages, AreRefusedWithAListLongerThanItsMember) {
   EXPECT_THAT([&] { list.decode(bytes, read); }, testing::ThrowsMessage<TraceError>(HasSubstr("joint_position")));
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -5,8 +5,7 @@
 
 #include "cycle_fixture.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 std::int64_t clock_ns = 0;  // of these tests
 std::int64_t virtual_clock() {
@@ -194,5 +193,4 @@ TEST_F(LatchedLoop, IsLatchedWhereNoPermitIsWhole) {
   EXPECT_NE(causes() & kCauseLatchUnreadable, 0u);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -14,8 +14,7 @@
 #include "support/matchers.h"
 #include "support/message_of.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 constexpr const char* kHealthy =
     "cycle,linear,angular,event\n"
@@ -171,5 +170,4 @@ TEST(CommandScriptFuzz, ReadsOrRefusesWhateverStandsInTheFile) {
   }
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -5,8 +5,7 @@
 #include "cycle_fixture.h"
 #include "loop/build_id.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 constexpr std::uint64_t kHash = 7;
 constexpr std::uint64_t kRun = 5;
@@ -903,5 +902,4 @@ TEST_F(DriverCycleTest, WritesTheRowOfItsGate) {
   EXPECT_EQ(sensors.newest().gate.reasons, report.reasons);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

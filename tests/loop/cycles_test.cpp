@@ -3,8 +3,7 @@
 #include "cycle_fixture.h"
 #include "support/allocation_guard.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 /// A loop in DRIVE with a standing command.
 struct RunningLoop : ::testing::Test {
@@ -123,5 +122,4 @@ TEST(FirstCycles, BrakeUntilEveryNodeWasSeen) {
   EXPECT_EQ(loop.newest_permit().state, SupervisorState::kReady);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

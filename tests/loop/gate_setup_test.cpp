@@ -8,8 +8,7 @@
 #include "support/matchers.h"
 #include "support/message_of.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
@@ -169,5 +168,4 @@ TEST(DriverCycleAndGate, TheGateSeesTheSamplesOfItsOwnTick) {
   EXPECT_EQ(machine.command.effort, 0);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

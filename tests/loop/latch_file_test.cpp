@@ -11,8 +11,7 @@
 #include "support/file_content.h"
 #include "support/temporary_folder.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 constexpr std::uint64_t kStops = kCauseEmergencyStopService | kCauseStall;
 
@@ -125,5 +124,4 @@ TEST(LatchPath, IsAFileNamedAfterHostAndNamespaceInAFolder) {
   EXPECT_EQ(latch_path("", "arm", "/"), "");
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

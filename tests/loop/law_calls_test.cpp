@@ -6,8 +6,7 @@
 #include "cycle_fixture.h"
 #include "signals/names.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 struct LawCalls : testing::Test {
   LawCalls() { loop.steps(10); }
@@ -74,5 +73,4 @@ TEST_F(LawCalls, HaveARowForEachStepOfTheMonitorWithoutAFrame) {
   EXPECT_EQ(monitor().operator_input.resets, 1u);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

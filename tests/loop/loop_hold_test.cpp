@@ -6,8 +6,7 @@
 
 #include "support/allocation_guard.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 constexpr std::int64_t kMillisecond = 1'000'000;   // ns
 constexpr std::int64_t kTimeout = 10'000'000'000;  // ns; never reached where the loop answers
@@ -104,5 +103,4 @@ TEST(LoopHold, TheLoopsSideDoesNotAllocate) {
   EXPECT_EQ(guard.count(), 0u);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -11,8 +11,7 @@
 #include "signals/names.h"
 #include "support/allocation_guard.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 constexpr FaultComponent kNodes[]{FaultComponent::kController, FaultComponent::kEstimator, FaultComponent::kMonitor};
 
@@ -276,5 +275,4 @@ TEST_F(NodeFaults, NeverAllocate) {
   EXPECT_EQ(guard.count(), 0u);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -5,8 +5,7 @@
 #include "cycle_fixture.h"
 #include "support/allocation_guard.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 /// A loop in DRIVE with a standing command.
 struct PausedLoop : ::testing::Test {
@@ -150,5 +149,4 @@ TEST_F(PausedLoop, DoesNotAllocate) {
   EXPECT_EQ(guard.count(), 0u);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -2,8 +2,7 @@
 
 #include "loop/cycle_fixture.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 // Exactly, and in the very next cycle: a program that sets a pose may compare with ==.
 TEST(PoseRequest, HoldsExactlyFromTheNextCycleOn) {
@@ -30,5 +29,4 @@ TEST(PoseRequest, IsTheLastOfTwoInOneCycle) {
   EXPECT_EQ(loop.newest_state().base.pose_odom.position[1], 3);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -7,8 +7,7 @@
 #include "support/matchers.h"
 #include "support/temporary_folder.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 struct TelemetryProcessTest : testing::Test {
   using Channel = OwnedChannel<Ring<DriverTrace>>;
@@ -73,5 +72,4 @@ TEST_F(TelemetryProcessTest, TakesWhatALivingWriterWroteBeforeOnceItWritesAgain)
   EXPECT_EQ(telemetry.drain(), 6u);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

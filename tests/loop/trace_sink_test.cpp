@@ -8,8 +8,7 @@
 
 #include "support/bus/scoped_bus.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 struct Row {
   std::uint64_t number = 0;
@@ -135,5 +134,4 @@ TEST_F(TraceSinkTest, HandsOnSnapshotsAndItsThread) {
   EXPECT_EQ(telemetry.thread(), 42U);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -12,8 +12,7 @@
 #include "log/trace_reader.h"
 #include "losses_fixture.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 struct ABlackBox : Losses {
   /// ns; ten milliseconds are promised if telemetry's thread precedes others. Otherwise up to 144 were measured.
@@ -138,5 +137,4 @@ TEST_F(ABlackBox, HarmsNothingWhereTheDiskHasNoRoomAndTelemetrySaysSo) {
   expect_undisturbed();
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

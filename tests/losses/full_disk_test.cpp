@@ -12,8 +12,7 @@
 #include "log/trace_reader.h"
 #include "losses_fixture.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 constexpr rlim_t kLimit = 768 * 1024;  // bytes: room for one chunk of a second, not for two
 
@@ -113,5 +112,4 @@ TEST_F(NightlyFullDisk, IsReportedAndCountedAsAReadOnlyOneAndTheLogsGoOnAfterwar
   EXPECT_TRUE(robot_.await([&] { return std::filesystem::exists(folder_ / "run.1.bag"); }, 60));
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

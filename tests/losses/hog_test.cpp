@@ -4,8 +4,7 @@
 
 #include "losses_fixture.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 struct AHog : Losses {
   static Parameters on_one_core() {
@@ -57,5 +56,4 @@ TEST_F(AHog, AboveTheDriverStopsEverythingAndAfterItNothingJumps) {
   expect_undisturbed();
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -6,8 +6,7 @@
 #include "losses_fixture.h"
 #include "support/temporary_folder.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 /// 17 kg on four wheels of 0.1 m.
 std::string four_wheels() {
@@ -75,5 +74,4 @@ INSTANTIATE_TEST_SUITE_P(OfFour, AJoint,
                                            FailingJoint{"Faulty", Spoiled::kFaulty, kCauseDriverFault, 1}),
                          [](const auto& each) { return std::string(each.param.name); });
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

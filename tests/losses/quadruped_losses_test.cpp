@@ -12,8 +12,7 @@
 #include "robots/quadruped.h"
 #include "support/processes/stop_trials.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 constexpr int kTrials = 20;
 constexpr double kUpright = 0.15;            // rad
@@ -208,5 +207,4 @@ TEST_F(HogOfATrottingQuadbot, NightlyStarvesTheControllerAtItsPriorityAndTheRobo
   });
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

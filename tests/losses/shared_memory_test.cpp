@@ -13,8 +13,7 @@
 
 #include "losses_fixture.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 using enum LoopNode;
 
@@ -142,5 +141,4 @@ INSTANTIATE_TEST_SUITE_P(Each, AWoundedChannel, ::testing::ValuesIn(kChannels),
 INSTANTIATE_TEST_SUITE_P(Nightly, AWoundedChannel, ::testing::ValuesIn(kNightlyChannels),
                          [](const auto& each) { return std::string(each.param.name); });
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

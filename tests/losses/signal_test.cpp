@@ -5,8 +5,7 @@
 #include "log/trace_reader.h"
 #include "losses_fixture.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 struct Row {
   LoopNode node;
@@ -167,5 +166,4 @@ INSTANTIATE_TEST_SUITE_P(Each, ALostTelemetry, ::testing::Values(SIGSTOP),
 INSTANTIATE_TEST_SUITE_P(Nightly, ALostTelemetry, ::testing::Values(SIGKILL, SIGSEGV),
                          [](const auto& each) { return name_of_signal(each.param); });
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

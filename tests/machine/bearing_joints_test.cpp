@@ -6,8 +6,7 @@
 #include "machine/urdf_text.h"
 #include "support/matchers.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 struct Leg {
   std::string name = "";
@@ -239,5 +238,4 @@ TEST(BearingJoints, AreNotTheAxlesOfWhatIsNearlyRound) {
   EXPECT_EQ(refusal_of(robot_of(two_wheels() + roller)), "accepted");
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -8,8 +8,7 @@
 #include "machine/urdf_text.h"
 #include "support/robots/diffbot_urdf.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 // Decimal numbers of the file, a few dozen operations: rounding only.
 
@@ -271,5 +270,4 @@ TEST(RigidBodies, FixedLinksAreLumpedByTheParallelAxisTheorem) {
   EXPECT_NEAR((body.inertia - expected).norm(), 0, kRounding);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

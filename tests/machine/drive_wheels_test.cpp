@@ -3,8 +3,7 @@
 #include "machine/urdf_text.h"
 #include "support/matchers.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 std::string joint_name(const DriveTrain& robot, std::size_t wheel) {
   return robot.joints[robot.wheels[wheel].joint].name;
@@ -236,5 +235,4 @@ TEST(DriveWheels, AlmostOneRadiusOnEitherSideIsOneRadius) {
             "accepted");
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -10,8 +10,7 @@
 
 #include "signals/names.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 void add_joint(MachineModel& machine, const std::string& name) {
   machine.joints.emplace_back();
@@ -158,5 +157,4 @@ TEST_F(FaultNames, RefuseMoreThanTheListHolds) {
   EXPECT_EQ(faults_, InjectedFaults{});
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -7,8 +7,7 @@
 #include "machine/urdf_text.h"
 #include "support/matchers.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 constexpr double kFloor = -0.1;  // m, of two_wheels()
 
@@ -113,5 +112,4 @@ TEST(Feet, StayIfTheyAreAFootprintThatCarriesTheRobot) {
   EXPECT_NEAR(end_of(read_drive_train(robot_of(text), {}), "base_footprint"), 0, 1e-9);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -1,8 +1,7 @@
 #include "machine/urdf_text.h"
 #include "support/matchers.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 /// The healthy robot with one more joint, with these limits.
 JointModel with_joint(const std::string& type, const std::string& limit) {
@@ -119,5 +118,4 @@ TEST(JointRanges, WhatDoesNotRestAtZeroIsNotedAndMovesTheCentreOfGravity) {
   EXPECT_NEAR(robot.centre_of_gravity_base[2], 0.3 * 11 / 23, kRounding);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

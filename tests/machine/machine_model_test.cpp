@@ -9,8 +9,7 @@
 #include "machine/quadruped_urdf.h"
 #include "support/message_of.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 std::string refusal_of_machine(const std::string& content) {
   return message_of<RobotError>([&] { read_machine(robot_of(content), {}); }, "accepted");
@@ -102,5 +101,4 @@ TEST(AMachineOfAnyKind, HasNoMoreJointsThanAFrame) {
   EXPECT_NE(refusal_of_machine(content).find("33 moving joints. At most 32 are supported"), std::string::npos);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -7,8 +7,7 @@
 #include "support/matchers.h"
 #include "support/temporary_folder.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 /// OBJ: a prism about z, 0.03 long, with the corner of the angle φ at the radius reach(φ).
 template <typename Reach>
@@ -99,5 +98,4 @@ TEST(OutOfRound, ABoxAndASlabAreNoWheels) {
   }
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -8,8 +8,7 @@
 #include "machine/urdf_text.h"
 #include "support/matchers.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 const JointModel& joint_of(const DriveTrain& robot, const std::string& name) {
   for (const JointModel& each : robot.joints) {
@@ -254,5 +253,4 @@ TEST(NegativeNumbers, AreTakenAsNotGivenAndNoted) {
   }
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

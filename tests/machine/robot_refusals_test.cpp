@@ -9,8 +9,7 @@
 #include "support/quiet_refusal.h"
 #include "support/robots/diffbot_urdf.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 const std::string kFirstJoint = "<joint name=\"left_wheel_joint\"";
 const std::string kLeftLink = "<link name=\"left_wheel_link\">";
@@ -270,5 +269,4 @@ INSTANTIATE_TEST_SUITE_P(RobotRefusals, AnOverrideThatIsNotAboveZero,
                          testing::Values(0.0, -0.5, std::numeric_limits<double>::quiet_NaN(),
                                          std::numeric_limits<double>::infinity()));
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -7,8 +7,7 @@
 #include "machine/urdf_text.h"
 #include "support/matchers.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 /// A wheel of 0.1 m below an upright swivel, which it follows by `trail`.
 std::string swivel(const std::string& trail) {
@@ -141,5 +140,4 @@ TEST(Tracks, DriveOnTheWheelsThatAreGiven) {
       "accepted");
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -6,8 +6,7 @@
 
 #include <array>
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 /// 20 kg on four wheels of 0.1 m, axles 0.4 m apart, 0.5 m wide; left joints mirrored.
 DriveTrain skid_steer() {
@@ -127,5 +126,4 @@ TEST(Scrub, IsNoneOfOneWheelASide) {
   EXPECT_EQ(scrub.max_effort(1), 0);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -8,8 +8,7 @@
 #include "machine/urdf_text.h"
 #include "support/matchers.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 std::string four_wheels() {
   return two_wheels() + wheel("rear_left", "-0.3 0.25 0") + wheel("rear_right", "-0.3 -0.25 0");
@@ -320,5 +319,4 @@ TEST(NamedDrive, WheelsThatFollowOthersByMimicAreDrivenWithANote) {
   EXPECT_THAT(notes_of(read_drive_train(robot_of(pair), {}), RobotNote::Kind::kSuspicious), HasSubstr("<mimic joint"));
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

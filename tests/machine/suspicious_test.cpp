@@ -7,8 +7,7 @@
 #include "support/matchers.h"
 #include "support/temporary_folder.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 struct Made {
   double unit = 1;   ///< m, factor on all lengths
@@ -338,5 +337,4 @@ TEST(Suspicious, AnArmWhoseTipWheelCountsAsACastersBecauseNothingHoldsIt) {
               Not(HasSubstr("nothing holds it, because")));
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

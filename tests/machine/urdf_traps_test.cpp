@@ -8,8 +8,7 @@
 #include "support/quiet_refusal.h"
 #include "support/temporary_folder.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 std::string refusal(const std::string& content) {
   return quiet_refusal<RobotError>([&] { read_drive_train(robot_of(content), {}); });
@@ -179,5 +178,4 @@ TEST_F(MeshShapes, TheFirstOfTwoMeshesCounts) {
             "accepted");
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

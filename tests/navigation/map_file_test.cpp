@@ -9,8 +9,7 @@
 
 #include "support/matchers.h"
 
-namespace robot_control::navigation {
-namespace {
+namespace robot_control::navigation::tests {
 
 /// A map of 3 × 2 cells, as map_server's map_saver writes it.
 struct MapFileTest : testing::Test {
@@ -163,5 +162,4 @@ TEST_F(MapFileTest, EachWrongPictureIsRefused) {
   EXPECT_THAT(refused(""), HasSubstr("is not a binary PGM (P5)"));
 }
 
-}  // namespace
-}  // namespace robot_control::navigation
+}  // namespace robot_control::navigation::tests

@@ -5,8 +5,7 @@
 #include "navigation/guard.h"
 #include "navigation/house.h"
 
-namespace robot_control::navigation {
-namespace {
+namespace robot_control::navigation::tests {
 
 using namespace testing_house;
 
@@ -100,5 +99,4 @@ TEST(FreeWayAmongMoversTest, TheRobotDrivesOnOutOfTheWayOfOneThatWouldTouchIt) {
   EXPECT_TRUE(std::isinf(free_way(diffbot(), {}, {0.5, 0}, from_the_side)));
 }
 
-}  // namespace
-}  // namespace robot_control::navigation
+}  // namespace robot_control::navigation::tests

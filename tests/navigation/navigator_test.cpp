@@ -4,8 +4,7 @@
 #include "navigation/house.h"
 #include "support/matchers.h"
 
-namespace robot_control::navigation {
-namespace {
+namespace robot_control::navigation::tests {
 
 using namespace testing_house;
 using State = NavigatorState;
@@ -204,5 +203,4 @@ TEST_F(NavigatorTest, AStartTooNearToAWallIsLeftOnOnePath) {
   EXPECT_EQ(paths_, 1);
 }
 
-}  // namespace
-}  // namespace robot_control::navigation
+}  // namespace robot_control::navigation::tests

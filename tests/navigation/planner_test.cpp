@@ -8,8 +8,7 @@
 #include "navigation/map_consistency.h"
 #include "support/matchers.h"
 
-namespace robot_control::navigation {
-namespace {
+namespace robot_control::navigation::tests {
 
 using namespace testing_house;
 
@@ -251,5 +250,4 @@ TEST(PlannerTest, TheDistanceToWhatBlocksThePathFallsAsTheRobotMoves) {
   EXPECT_NEAR(free_distance(costmap, plan.poses, {2.1, 1.6, 0}, passed), far - 0.5, 0.11);
 }
 
-}  // namespace
-}  // namespace robot_control::navigation
+}  // namespace robot_control::navigation::tests

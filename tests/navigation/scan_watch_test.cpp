@@ -4,8 +4,7 @@
 
 #include "support/matchers.h"
 
-namespace robot_control::navigation {
-namespace {
+namespace robot_control::navigation::tests {
 
 /// A laser of 360 rays; each test breaks one thing.
 struct ScanWatchTest : testing::Test {
@@ -92,5 +91,4 @@ TEST_F(ScanWatchTest, AnOpenFieldIsNotFrozenAndACoveredLaserIsBlind) {
   EXPECT_THAT(watch_.problem(10.2), HasSubstr("no range that was measured"));
 }
 
-}  // namespace
-}  // namespace robot_control::navigation
+}  // namespace robot_control::navigation::tests

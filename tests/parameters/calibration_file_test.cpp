@@ -11,8 +11,7 @@
 #include "support/message_of.h"
 #include "support/temporary_folder.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 /// The healthy case is the calibration of a robot after an hour. Each test spoils one thing.
 struct CalibrationFile : ::testing::Test {
@@ -250,5 +249,4 @@ TEST_F(CalibrationFile, KeepsNoNonsense) {
   EXPECT_FALSE(keeps([](LearnedCalibration& c) { c.gyro_bias_deviation[0] = kNan; }));
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -8,8 +8,7 @@
 #include "support/message_of.h"
 #include "support/temporary_folder.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 struct CommandSources : ::testing::Test {
   CommandSourceList read(const std::string& text) {
@@ -68,5 +67,4 @@ TEST_F(CommandSources, WhatIsNoListIsRefused) {
   EXPECT_THROW(read_command_sources("/nowhere/sources.yaml"), ParameterError);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -4,8 +4,7 @@
 #include "parameters/suggestion.h"
 #include "support/matchers.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 /// The healthy case is a copy of the shipped file. Each test spoils one thing.
 struct ReadConditions : ::testing::Test {
@@ -190,5 +189,4 @@ TEST(ConditionPaths, NameConditionAndKey) {
   EXPECT_THAT(paths, Not(::testing::Contains("safety_monitor.imu_lost.limit")));
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

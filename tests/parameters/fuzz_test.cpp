@@ -7,8 +7,7 @@
 #include "parameters/parameter_file.h"
 #include "support/damaged_text.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 /// First seed, and last seed + 1.
 struct ReadParametersFuzz : testing::TestWithParam<std::pair<unsigned, unsigned>> {
@@ -58,5 +57,4 @@ TEST_P(ReadParametersFuzz, ReadsOrRefusesWhateverAnOverlaySays) {
   });
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

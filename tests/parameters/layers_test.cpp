@@ -6,8 +6,7 @@
 #include "support/matchers.h"
 #include "support/message_of.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 struct Layers : ::testing::Test {
   Parameters read(const std::string& text, const std::vector<Overlay>& overlays = {}) {
@@ -204,5 +203,4 @@ TEST_F(Layers, NoMessageRepeatsALongOrUnprintableInput) {
   }
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -10,8 +10,7 @@
 #include "support/damaged_text.h"
 #include "support/matchers.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 const std::string kBlock = "diff_drive_controller";
 
@@ -179,5 +178,4 @@ TEST_P(LiveParametersFuzz, AreTakenOrRefusedWhateverStandsInTheRequest) {
   EXPECT_GT(refused, static_cast<int>(GetParam() / 3));
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -3,8 +3,7 @@
 #include "parameters/parameter_file.h"
 #include "support/matchers.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 /// The healthy case is the shipped file with one gait. Each test spoils one thing.
 struct OwnGaitsTest : ::testing::Test {
@@ -104,5 +103,4 @@ TEST_F(OwnGaitsTest, AreRefusedIfTheyTipOver) {
                 "most 0.122 s, and time · part of the period at most 0.07 s"));
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -11,8 +11,7 @@
 #include "parameters/suggestion.h"
 #include "support/matchers.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 /// The healthy case is a copy of the shipped file. Each test spoils one thing.
 struct ReadParameters : ::testing::Test {
@@ -532,5 +531,4 @@ TEST_F(ReadParameters, RefusesAnEmergencyWeakerThanAUsualStopAndAJerkThatHoldsIt
   EXPECT_NO_THROW(read_parameters(file.path(), {{block + "max_linear_jerk", "0", "test"}}));
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -4,8 +4,7 @@
 #include "support/matchers.h"
 #include "support/message_of.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 /// Returns why it is refused; empty: it is not.
 std::string refusal_of(const LegModel& robot) {
@@ -44,5 +43,4 @@ TEST(Quadruped, IsRefusedIfItsKneeDoesNotBearATrot) {
                         "0.66 of its effort limit, at most 0.65. Give"));
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

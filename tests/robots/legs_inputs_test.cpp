@@ -5,8 +5,7 @@
 #include "control/legged/gait.h"
 #include "robots/quadruped_fixture.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 Request walk(double linear, std::uint64_t mode = kStanceStay) {
   return {.twist = {.linear = {linear, 0, 0}, .angular = {}}, .posture = {}, .mode = mode};
@@ -95,5 +94,4 @@ TEST(LegsInputs, ATwistWhileAFootIsInTheAirSetsItDownFirst) {
   EXPECT_EQ(robot.permit().causes, 0u) << robot.causes();
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

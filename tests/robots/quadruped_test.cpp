@@ -7,8 +7,7 @@
 #include "robots/quadruped_fixture.h"
 #include "support/temporary_folder.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 constexpr double kPi = 3.14159265358979323846;
 
@@ -507,5 +506,4 @@ TEST(QuadrupedReplay, IsExactOverStandingAStopAndAReset) {
   EXPECT_TRUE(report.exact()) << text_of(report);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

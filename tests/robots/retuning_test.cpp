@@ -8,8 +8,7 @@
 #include "support/allocation_guard.h"
 #include "support/matchers.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 /// Healthy: the defaults on two wheels, which the controller drives at up to (1 + 2·0.25)/0.1 = 15 rad/s; the monitor
 /// stops beyond 1.25·15 = 18.75.
@@ -209,5 +208,4 @@ TEST_F(RetunedLoop, TakesASetOnceThatArrivedBeforeTheFirstCycle) {
   EXPECT_EQ(in_force().count, 1u);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

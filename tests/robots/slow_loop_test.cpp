@@ -4,8 +4,7 @@
 #include "support/matchers.h"
 #include "support/robots/diffbot_urdf.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 constexpr Role kRoles4[] = {Role::kDriver, Role::kEstimator, Role::kController, Role::kMonitor};
 
@@ -44,5 +43,4 @@ TEST(SlowLoop, IsNotedOfADriverWhereTorquesBrake) {
               ElementsAre(HasSubstr("brake the robot with a time constant of")));
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

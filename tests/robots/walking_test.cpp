@@ -3,8 +3,7 @@
 #include "control/legged/gait.h"
 #include "robots/quadruped_fixture.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 Request walk(double linear, double lateral, double angular, std::uint64_t mode = kStanceStay) {
   return {.twist = {.linear = {linear, lateral, 0}, .angular = {0, 0, angular}}, .posture = {}, .mode = mode};
@@ -361,5 +360,4 @@ TEST(Walking, IsTheSameBitForBit) {
   EXPECT_EQ(a.truth().pose_world.position, b.truth().pose_world.position);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

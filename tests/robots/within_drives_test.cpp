@@ -7,8 +7,7 @@
 #include "support/matchers.h"
 #include "support/robots/diffbot_urdf.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 /// Diffbot has 3.5 N·m and 30 rad/s, and no torque rate of its own.
 struct WithinDrives : ::testing::Test {
@@ -57,5 +56,4 @@ TEST_F(WithinDrives, ASecondTimeChangesNothing) {
   EXPECT_EQ(twice.warnings, once.warnings);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -7,8 +7,7 @@
 #include <thread>
 #include <vector>
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 struct Aligned {
   alignas(64) double value = 0;
@@ -73,5 +72,4 @@ TEST_F(AllocationGuardTest, IgnoresOtherThreads) {
   EXPECT_LE(here, 1u);  // join may release the thread's state, once
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -4,8 +4,7 @@
 
 #include <vector>
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 constexpr std::int64_t kStart = 5'000'000'000;
 constexpr std::int64_t kPeriod = 1'000'000;
@@ -95,5 +94,4 @@ TEST_F(PeriodicTest, TheGridStaysOnHardwareAndTheCycleJumps) {
   EXPECT_EQ(hardware.begin(kStart + 8 * kPeriod), 0);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

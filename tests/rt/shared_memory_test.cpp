@@ -12,8 +12,7 @@
 #include "rt/futex.h"
 #include "support/processes/child_process.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 constexpr std::size_t kBytes = 8192;
 
@@ -143,5 +142,4 @@ TEST_F(SharedMemoryTest, AWaitOnAReadOnlyMappingIsWokenByAnotherProcess) {
   EXPECT_LT(monotonic_ns() - before_ns, 5'000'000'000);  // woken, not timed out
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -15,8 +15,7 @@
 #include "signals/trace.h"
 #include "signals/truth_frame.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 /// A constant expression cannot read padding, so this compiles only without any.
 template <class Plain>
@@ -99,5 +98,4 @@ TEST(Permit, BrakesByDefault) {
   EXPECT_EQ(Permit{}.action, PermitAction::kBrake);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

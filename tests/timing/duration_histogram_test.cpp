@@ -9,8 +9,7 @@
 
 #include "timing/recent_durations.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 constexpr std::int64_t kSecond = 1'000'000'000;
 
@@ -93,5 +92,4 @@ TEST(RecentDurations, ASampleOfALongPastSecondCountsForTheTotalAlone) {
   EXPECT_EQ(durations.total().samples, 2u);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

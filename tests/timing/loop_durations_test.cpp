@@ -2,8 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 constexpr std::int64_t kPeriod = 1'000'000;  // ns
 constexpr std::int64_t kStart = 5'000'000'000;
@@ -134,5 +133,4 @@ TEST_F(LoopDurationsTest, OverrunsOfAllRunsAreAdded) {
   EXPECT_EQ(all.overruns(), 4u);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -2,8 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 constexpr std::int64_t kInterval = 1'000'000'000;
 
@@ -84,5 +83,4 @@ TEST_F(RealtimeCheckTest, WhatTheKernelDoesNotCountIsNotReported) {
   EXPECT_FALSE(check.recent().run_queue_ns.has_value());
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

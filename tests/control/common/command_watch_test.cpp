@@ -8,8 +8,7 @@
 
 #include "signals/command_frame.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr std::uint64_t kPlanar = kPartLinearX | kPartAngularZ;  ///< of a differential drive
@@ -350,5 +349,4 @@ TEST_F(CommandWatchTest, WhatNoSenderSentIsNoZeroRequestAndNoEndOfASilence) {
   EXPECT_EQ(watch.silent_cycles(3000), 3000u);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

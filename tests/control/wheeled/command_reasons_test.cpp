@@ -7,8 +7,7 @@
 #include "control/wheeled/control_bench.h"
 #include "signals/names.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 /// Spoils one thing of a bench that drives at 0.5 m/s and 0.2 rad/s. It steps the bench no farther than to the command
 /// with the reason.
@@ -122,5 +121,4 @@ TEST(CommandReasons, RampWithTheEmergencyDecelerationForOneSenderTooMany) {
   EXPECT_NEAR(bench.plant.twist.linear, 0.5, 1e-6) << "one is left";
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -6,8 +6,7 @@
 #include "control/wheeled/wheel_loops/wheel_loop_gains.h"
 #include "support/matchers.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 TEST(ControlProblems, FindsNoneInTheDefaultsAtAnyRate) {
   for (const double rate : {100.0, 200.0, 333.0, 500.0, 1000.0, 2000.0}) {
@@ -150,5 +149,4 @@ TEST(ControlProblems, RefuseGainsThatLeaveTheWheelsToFeedForward) {
               UnorderedElementsAre(HasSubstr("pid_kp"), HasSubstr("tracking_bandwidth")));
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -10,8 +10,7 @@
 #include "control/wheeled/control_bench.h"
 #include "support/allocation_guard.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 /// Driving at 0.5 m/s and 0.2 rad/s, healthy.
 struct DriveControllerTest : testing::Test {
@@ -364,5 +363,4 @@ TEST_F(DriveControllerTest, DoesNotAllocate) {
   EXPECT_EQ(guard.count(), 0u);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

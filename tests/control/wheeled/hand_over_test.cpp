@@ -6,8 +6,7 @@
 
 #include "control/wheeled/control_bench.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 constexpr double kSlope = 5 * std::numbers::pi / 180;
 // m·g·sin(slope)·r/2 per wheel
@@ -167,5 +166,4 @@ TEST_F(HandOver, ContinuesFromTheMeasuredSpeedAfterAShortBrake) {
   EXPECT_NEAR(bench.plant.twist.linear, 1, 0.01);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -4,8 +4,7 @@
 
 #include "control/wheeled/control_bench.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 constexpr double kDegree = std::numbers::pi / 180;
 
@@ -71,5 +70,4 @@ TEST_F(OrderedRest, IsNoReasonToBrakeWhileAMotionIsRequested) {
   }
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

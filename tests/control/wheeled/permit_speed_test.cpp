@@ -8,8 +8,7 @@
 
 #include "control/wheeled/control_bench.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 constexpr double kPermitRounding = 1e-14;  // a few operations on numbers of order one
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
@@ -159,5 +158,4 @@ TEST_F(PermitSpeed, IsNoReasonUnderABrakeOrARamp) {
   EXPECT_FALSE(slowed());
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

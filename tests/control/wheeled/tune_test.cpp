@@ -9,8 +9,7 @@
 #include "control/wheeled/derived_tuning.h"
 #include "support/allocation_guard.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 /// The bound lies between rounding and anything that a wheel could feel.
 constexpr double kTuneRounding = 1e-9;
@@ -360,5 +359,4 @@ TEST_F(Tune, NeverExceedsTheOldOrTheNewLimitsAtRandom) {
   }
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -10,8 +10,7 @@
 #include "support/matchers.h"
 #include "support/message_of.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 /// The healthy board at 500 Hz, whose wheels turn at 10 rad/s.
 struct BoardDriverTest : testing::Test {
@@ -294,5 +293,4 @@ TEST(BoardFuzz, NightlyNoneOfAMillionStreamsIsAReport) {
   expect_no_motion(1'000'000);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -11,8 +11,7 @@
 #include "drivers/board/mutated_stream.h"
 #include "firmware/board.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 using Bytes = std::vector<std::uint8_t>;
 
@@ -233,5 +232,4 @@ TEST_F(BoardTest, NightlyNoneOfAMillionStreamsMovesAWheel) {
   expect_no_motion(1'000'000);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

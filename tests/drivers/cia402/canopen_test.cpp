@@ -2,8 +2,7 @@
 
 #include "support/matchers.h"
 
-namespace robot_control::canopen {
-namespace {
+namespace robot_control::canopen::tests {
 
 TEST(Canopen, AnNmtCommandIsTwoBytesToAllNodesOrOne) {
   const can_frame frame = encode_nmt({.command = NmtCommand::kStart, .node = 5});
@@ -73,5 +72,4 @@ TEST(Canopen, ErrorCodesHaveWordsOrThoseOfTheirClass) {
   EXPECT_STREQ(error_code_words(0xE000), "unknown error");
 }
 
-}  // namespace
-}  // namespace robot_control::canopen
+}  // namespace robot_control::canopen::tests

@@ -4,8 +4,7 @@
 #include "drivers/drive/device_rig.h"
 #include "support/matchers.h"
 
-namespace robot_control::cia402 {
-namespace {
+namespace robot_control::cia402::tests {
 
 std::string words_after(
     const Cia402Pair& pair, const std::function<void(Cia402Device&)>& change = [](auto&) {}) {
@@ -394,5 +393,4 @@ TEST(Cia402Drive, ContinuesItsPositionOverTheOverflowOf32Bits) {
   EXPECT_NEAR(rig.drive().sample().joint.position - before, 10 * 0.1 / pair.drive.drive.gear, 0.02);
 }
 
-}  // namespace
-}  // namespace robot_control::cia402
+}  // namespace robot_control::cia402::tests

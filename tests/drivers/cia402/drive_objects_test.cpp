@@ -7,8 +7,7 @@
 #include <map>
 #include <string>
 
-namespace robot_control::cia402 {
-namespace {
+namespace robot_control::cia402::tests {
 
 /// The dictionary of a drive: keys of each section, as "6071 DataType" → "0x0003".
 std::map<std::string, std::string> read_eds(const std::string& name) {
@@ -79,5 +78,4 @@ TEST_F(DriveObjects, AModeIsSupportedByItsBit) {
   EXPECT_FALSE(supports(0x1EF, Mode::kCyclicTorque));
 }
 
-}  // namespace
-}  // namespace robot_control::cia402
+}  // namespace robot_control::cia402::tests

@@ -9,8 +9,7 @@
 #include "support/allocation_guard.h"
 #include "support/matchers.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 enum class TestedDialect { kOdrive, kCia402, kVesc };
 constexpr const char* kNames[] = {"odrive", "cia402", "vesc"};
@@ -217,5 +216,4 @@ INSTANTIATE_TEST_SUITE_P(Dialects, CanDriverOn,
                          ::testing::Values(TestedDialect::kOdrive, TestedDialect::kCia402, TestedDialect::kVesc),
                          [](const auto& each) { return std::string(kNames[static_cast<std::size_t>(each.param)]); });
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

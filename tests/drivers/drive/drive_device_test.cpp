@@ -10,8 +10,7 @@
 #include "support/allocation_guard.h"
 #include "support/matchers.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 struct Dialect {
   std::string name;
@@ -495,5 +494,4 @@ TEST_P(InjectedFault, IsSaidInWords) {
 INSTANTIATE_TEST_SUITE_P(Faults, InjectedFault, ::testing::ValuesIn(fault_cases()),
                          [](const auto& each) { return each.param.name; });
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -7,8 +7,7 @@
 #include "support/allocation_guard.h"
 #include "support/matchers.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 /// A healthy bus: a frame was received just now. The test holds the other end of the socket.
 struct BusWatchTest : ::testing::Test {
@@ -126,5 +125,4 @@ TEST_F(BusWatchTest, AStepDoesNotAllocate) {
   EXPECT_EQ(guard.count(), 0U);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

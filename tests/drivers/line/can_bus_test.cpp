@@ -54,8 +54,7 @@ extern "C" int recvmmsg(int descriptor, mmsghdr* messages, unsigned count, int f
   return received;
 }
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 can_frame numbered(unsigned number) {
   return word_frame(0x100 + number % 0x100, number, 8);
@@ -317,5 +316,4 @@ TEST_F(CanBusTest, NeitherSendingNorReceivingAllocates) {
   EXPECT_EQ(guard.count(), 0u);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -7,8 +7,7 @@
 
 #include "support/matchers.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 std::string binary(std::uint32_t value, unsigned bits) {
   std::string text;
@@ -147,5 +146,4 @@ TEST(CanLoad, ARateThatIsRefusedLeavesARateThatFitsForAllPlans) {
   }
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -16,8 +16,7 @@
 #include "support/quiet_refusal.h"
 #include "support/temporary_folder.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 can_frame message_of(std::uint64_t number) {
   return word_frame(0x123, number, 8);
@@ -189,5 +188,4 @@ TEST(CanSocket, SocketCanCarriesFramesBetweenTwoSockets) {
   EXPECT_TRUE(one.receive({}).frames.empty()) << "its own frames";
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -17,8 +17,7 @@
 #include "support/message_of.h"
 #include "support/temporary_folder.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 const RealtimeParameters kThread{.name = "serial", .policy = RealtimePolicy::kOff};
 
@@ -119,5 +118,4 @@ TEST_F(SerialPortTest, TheDriverTurnsTheWheelsOfABoardBehindAPseudoTerminal) {
   EXPECT_EQ(frame.links[0].errors, 0U);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

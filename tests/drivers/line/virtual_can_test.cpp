@@ -4,8 +4,7 @@
 
 #include "drivers/drive/device_rig.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 struct VirtualCanBus : ::testing::Test {
   VirtualCan bus_{1.0e6};
@@ -81,5 +80,4 @@ TEST(PlannedLoad, IsThatOfTheFramesOnTheBus) {
   expect_planned_load<Cia402Pair>({with_velocity}, 500);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -10,8 +10,7 @@
 #include "drivers/mujoco/constants.h"
 #include "support/allocation_guard.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 constexpr double kFreeInertia = 0.005;   // kg·m², a wheel off the ground
 constexpr double kRobotInertia = 0.065;  // kg·m², a wheel that moves its half of 12 kg
@@ -133,5 +132,4 @@ TEST_F(JointLawTest, StepDoesNotAllocate) {
   EXPECT_EQ(guard.count(), 0u);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

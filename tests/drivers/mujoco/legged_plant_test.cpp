@@ -10,8 +10,7 @@
 #include "machine/legs/legs_corpus.h"
 #include "signals/rotation.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 constexpr double kPeriod = 0.001;    // s
 constexpr double kStandUp = 1.5;     // s
@@ -137,5 +136,4 @@ TEST_P(LeggedPlant, StaysUprightWhenItsJointsLoseTheirPower) {
 
 INSTANTIATE_TEST_SUITE_P(Robots, LeggedPlant, testing::ValuesIn(legged_robots()), robot_name);
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -8,8 +8,7 @@
 #include "support/allocation_guard.h"
 #include "support/matchers.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 struct MujocoFaultTest : PlantTest {
   void SetUp() override { std::filesystem::remove("MUJOCO_LOG.TXT"); }
@@ -142,5 +141,4 @@ TEST(RunGuarded, ReturnsFalseWhenMujocoRaisesAnError) {
   EXPECT_EQ(steps, 2);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

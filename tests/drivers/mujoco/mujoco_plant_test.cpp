@@ -8,8 +8,7 @@
 #include "drivers/mujoco/plant_fixture.h"
 #include "support/allocation_guard.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 constexpr double kRadius = 0.1;
 constexpr double kBase = 0.5;
@@ -260,5 +259,4 @@ TEST_P(Repeats, BitForBitInAnotherPlantAndAfterStart) {
 
 INSTANTIATE_TEST_SUITE_P(MujocoPlantTest, Repeats, testing::Values(0.01, 0.002, 0.001, 0.0005));
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -11,8 +11,7 @@
 #include "drivers/mujoco/sensors/integrated_force.h"
 #include "support/robots/corpus.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 namespace fs = std::filesystem;
 
@@ -195,5 +194,4 @@ INSTANTIATE_TEST_SUITE_P(Corpus, RealRobot,
                                          "scout_v2", "p3dx_mario", "linorobot2_2wd", "rosbot2r", "dingo_d", "create_2"),
                          [](const auto& named) { return std::string(named.param); });
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

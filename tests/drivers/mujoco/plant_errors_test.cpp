@@ -7,8 +7,7 @@
 #include "drivers/mujoco/plant_fixture.h"
 #include "support/allocation_guard.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 struct PlantErrors : PlantTest {
   PlantErrors() {
@@ -199,5 +198,4 @@ TEST_F(PlantErrors, NeverAllocate) {
   EXPECT_EQ(guard.count(), 0u);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

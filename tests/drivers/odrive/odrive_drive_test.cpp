@@ -5,8 +5,7 @@
 #include "drivers/odrive/odrive_messages_06.h"
 #include "support/matchers.h"
 
-namespace robot_control::odrive {
-namespace {
+namespace robot_control::odrive::tests {
 
 std::string words_after(const OdrivePair& pair, double seconds = 3) {
   DeviceRig rig;
@@ -278,5 +277,4 @@ TEST(OdriveDrive, AnAxisThatCannotCloseItsLoopIsAFault) {
   EXPECT_THAT(rig.drive().words(), HasSubstr("stays without torque: axis state 1"));
 }
 
-}  // namespace
-}  // namespace robot_control::odrive
+}  // namespace robot_control::odrive::tests

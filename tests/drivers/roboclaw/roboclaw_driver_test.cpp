@@ -8,8 +8,7 @@
 #include "support/allocation_guard.h"
 #include "support/matchers.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 using roboclaw::PacketCommand;
 
@@ -305,5 +304,4 @@ TEST(RoboclawFuzz, NightlyAMillionMutatedAnswersMoveNothing) {
   expect_no_motion_of_the_roboclaw(1'000'000);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -12,8 +12,7 @@
 #include "support/matchers.h"
 #include "support/message_of.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 const std::vector<std::string> kWheels = {"left_wheel_joint", "right_wheel_joint"};
 
@@ -214,5 +213,4 @@ TEST_F(DriveFileTest, AnOverloadedBusIsRefusedWithTheRateThatFits) {
               HasSubstr("set robot.rate to at most 5"));
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -6,8 +6,7 @@
 #include "drivers/line/answer_faults.h"
 #include "drivers/table/drive_machine.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 struct DriveUnderTest {
   const DriveRow* row = nullptr;
@@ -100,5 +99,4 @@ INSTANTIATE_TEST_SUITE_P(Table, EveryDrive, testing::ValuesIn(all_drives()), [](
   return std::string(each.param.row->name) + (each.param.takes_speeds ? "_with_speeds" : "_with_torques");
 });
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

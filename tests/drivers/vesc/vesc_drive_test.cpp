@@ -3,8 +3,7 @@
 #include "drivers/drive/device_rig.h"
 #include "support/matchers.h"
 
-namespace robot_control::vesc {
-namespace {
+namespace robot_control::vesc::tests {
 
 constexpr double kCount = 2 * std::numbers::pi / 42;  // rad of the motor, 7 pole pairs
 constexpr double kGear = 2.5;
@@ -145,5 +144,4 @@ TEST(VescDrive, TheTimeoutBrakesWithItsCurrent) {
   EXPECT_NEAR(rig.motor().velocity, 0, 1.0e-3);
 }
 
-}  // namespace
-}  // namespace robot_control::vesc
+}  // namespace robot_control::vesc::tests

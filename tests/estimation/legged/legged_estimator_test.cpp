@@ -6,8 +6,7 @@
 #include "machine/legs/legs_corpus.h"
 #include "support/allocation_guard.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 /// quadbot, which stands at rest on four feet with force sensors.
 struct Standing {
@@ -114,5 +113,4 @@ TEST(LeggedEstimator, AllocatesNothing) {
   EXPECT_EQ(guard.count(), 0u);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

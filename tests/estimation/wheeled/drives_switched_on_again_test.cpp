@@ -2,8 +2,7 @@
 
 #include "estimation/wheeled/estimator_fixture.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 constexpr double kOtherZero = 7.0;  // rad
 
@@ -127,5 +126,4 @@ TEST_F(DrivesSwitchedOnAgain, TheDistanceGoesOn) {
   EXPECT_NEAR(x() - before_x, robot_.x() - before_true, 0.002);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

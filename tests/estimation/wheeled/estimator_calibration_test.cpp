@@ -5,8 +5,7 @@
 #include "machine/bodies/rigid_bodies.h"
 #include "support/constants.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 EstimatorParameters held() {
   EstimatorParameters parameters;
@@ -146,5 +145,4 @@ TEST_F(EstimatorCalibrationTest, AGyroThatIsLostLeavesCalibratedWheels) {
   EXPECT_LT((ours - truth).norm(), (raw - truth).norm() / 5);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -5,8 +5,7 @@
 #include "estimation/wheeled/estimator_fixture.h"
 #include "support/constants.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 // Pulled with 1 m/s², these tyres turn 1 % faster than the robot moves; in curves they drift outwards.
 struct CreepingTyres : EstimatorFixture {
@@ -117,5 +116,4 @@ TEST(EstimatorCreep, ATiltInDoubtMakesNoCreep) {
   EXPECT_NEAR(state.base.pose_odom.position[0], robot.x(), 0.002 * robot.x());
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -3,8 +3,7 @@
 #include "estimation/wheeled/estimator_fixture.h"
 #include "support/constants.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 constexpr double kExact = 1e-4;  // m: two readings of an encoder
 
@@ -310,5 +309,4 @@ TEST_P(ALyingGyro, WidensTheHeading) {
 
 INSTANTIATE_TEST_SUITE_P(Seconds, ALyingGyro, testing::Values(0.5, 1.0, 3.0));
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

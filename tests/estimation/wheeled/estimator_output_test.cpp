@@ -3,8 +3,7 @@
 #include "estimation/wheeled/estimator_fixture.h"
 #include "support/constants.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 constexpr double kAhead = 0.2;  // m, of base_link from the axle
 
@@ -153,5 +152,4 @@ INSTANTIATE_TEST_SUITE_P(Planar, EstimatorPlaneTest, testing::Bool(), [](const t
   return planar.param ? "Projected" : "InThreeDimensions";
 });
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

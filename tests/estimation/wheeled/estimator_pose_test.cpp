@@ -9,8 +9,7 @@
 #include "support/constants.h"
 #include "support/matchers.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 /// Ideal sensors leave at most two readings of an encoder, at either end of a way.
 double reading() {
@@ -420,5 +419,4 @@ TEST(EstimatorConstruction, NamesWhatIsWrongItsRuleAndItsValue) {
       ThrowsMessage<std::invalid_argument>(AllOf(HasSubstr("gyro_noise must be > 0 rad/s/√Hz"), HasSubstr("-0.5"))));
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -4,8 +4,7 @@
 #include "estimation/wheeled/estimator_fixture.h"
 #include "support/constants.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 /// Stands for two seconds, drives curves in which the clock offset is found, then 0.5 m/s; the noise is that of a
 /// consumer IMU.
@@ -273,5 +272,4 @@ TEST_F(EstimatorRollingTest, CreepIsNotCalledSlip) {
   EXPECT_LE(flagged(two_wheeler(), creeps, level), 0.03);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -3,8 +3,7 @@
 #include "estimation/wheeled/estimator_fixture.h"
 #include "support/constants.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 constexpr double kSlope = 0.1;  // rad, upwards
 constexpr double kTime = 1.0;   // s, in which the robot pitches
@@ -101,5 +100,4 @@ TEST(EstimatorOnARamp, StartsWithTheTiltThatItStandsAt) {
   EXPECT_EQ(state.base.pose_odom.position, (Vector3{0, 0, 0}));
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

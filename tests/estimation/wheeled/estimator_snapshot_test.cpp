@@ -7,8 +7,7 @@
 #include "signals/law_snapshot.h"
 #include "support/constants.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 struct EstimatorSnapshotTest : EstimatorFixture {
   EstimatorSnapshotTest() { robot_.noise = {.gyro = 2.44e-4, .accelerometer = 2e-3, .counts = 4096}; }
@@ -59,5 +58,4 @@ TEST_F(EstimatorSnapshotTest, ANewRunIsThatOfANewEstimator) {
   }
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -3,8 +3,7 @@
 #include "estimation/wheeled/estimator_fixture.h"
 #include "support/constants.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 constexpr int kWindow = 250;  // cycles, standstill_time
 
@@ -163,5 +162,4 @@ TEST_F(EstimatorStandstillTest, ACreepThatIsTakenForRestIsMadeGoodWhenItEnds) {
   EXPECT_NEAR(x(), robot_.x(), tolerance());
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -3,8 +3,7 @@
 #include "estimation/wheeled/estimator_fixture.h"
 #include "support/constants.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 struct EstimatorStartTest : EstimatorFixture {
   /// The robot moves and no sample is received.
@@ -76,5 +75,4 @@ TEST_F(EstimatorStartTest, IsNotAtRestWithoutEncoders) {
   EXPECT_TRUE(has(kStateValid));
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -8,8 +8,7 @@
 #include "estimation/wheeled/estimator_fixture.h"
 #include "support/allocation_guard.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 constexpr double kPromisedNs = 1500;  // the median on a quiet machine, whose kernel takes 92
 constexpr std::size_t kCycles = 1000;
@@ -55,5 +54,4 @@ TEST_F(EstimatorCost, IsWithinItsPromiseOnASteadyCurve) {
   EXPECT_LE(best, kBound);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -3,8 +3,7 @@
 #include "log/bag/read_bag.h"
 #include "support/matchers.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 /// Reads a chunk of these bytes that announces `size` bytes; returns its content, or the message of the refusal.
 std::string said_of(const std::string& bytes, std::uint32_t size) {
@@ -48,5 +47,4 @@ TEST(AChunk, IsRefusedBeforeItInflatesWithoutBounds) {
   EXPECT_THAT(refusal(make_bag(1, 10, {.size_of_chunk = kMaxChunk}).bytes), HasSubstr("field size: 26843"));
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -4,8 +4,7 @@
 #include "support/matchers.h"
 #include "support/message_of.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 TEST(ASoundBag, IsReadToItsLastMessage) {
   const MadeBag made = make_bag(3, 200);
@@ -95,5 +94,4 @@ TEST(AHeader, IsRefusedAtTheByteOfABrokenField) {
   EXPECT_EQ(said(sound), "");
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -11,8 +11,7 @@
 #include "log/replay/recorded.h"
 #include "log/replay/replay_error.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 constexpr std::uint64_t kSecond = 1000;  // cycles
 
@@ -149,5 +148,4 @@ TEST_F(ReplayedDrive, DoesNotUseADamagedSnapshotAndIsNotExactWithIt) {
   EXPECT_FALSE(report.exact());
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

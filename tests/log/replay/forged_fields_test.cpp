@@ -15,8 +15,7 @@
 #include "log/replay/recorded.h"
 #include "support/matchers.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 /// A drive with two runs, live tuning, faults of the nodes' outputs, a request that wheels refuse, and a stop.
 struct LoggedDrive {
@@ -165,5 +164,4 @@ TEST_P(EditsOfForgedFields, AreNoticedOrDocumentedWithARenewedChecksum) {
   EXPECT_THAT(listed, IsEmpty()) << "no such fields";
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -11,8 +11,7 @@
 #include "robots/differential_drive.h"
 #include "signals/names.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 class RandomNodes {
  public:
@@ -187,5 +186,4 @@ TEST(ReplayedNodes, KeepTheirPoseOverRestartsWithTheSameParameters) {
   }
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

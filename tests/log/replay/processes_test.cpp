@@ -9,8 +9,7 @@
 #include "log/trace_reader.h"
 #include "support/processes/driving_robot.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 struct ReplayedProcesses : testing::Test {
   ReplayedProcesses() {
@@ -62,5 +61,4 @@ TEST_F(ReplayedProcesses, AreExactOnADriveInWhichEveryNodeIsLostAndStartedAgain)
   expect_exact();
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

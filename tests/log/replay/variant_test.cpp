@@ -5,8 +5,7 @@
 #include "log/replay/recorded.h"
 #include "robots/differential_drive.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 struct VariedDrive : testing::Test {
   void drive(double speed) {
@@ -84,5 +83,4 @@ TEST_F(VariedDrive, IsLessSureOfItsPathWithANoisierGyro) {
   EXPECT_TRUE(differs);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -6,8 +6,7 @@
 #include "log/rows/traces.h"
 #include "support/matchers.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 constexpr double kPeriod = 0.001;
 constexpr std::size_t kWindow = 8;
@@ -266,5 +265,4 @@ TEST_F(JoinTest, LosesNothingOverRandomInterleavings) {
   }
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

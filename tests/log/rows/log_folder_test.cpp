@@ -7,8 +7,7 @@
 #include "support/matchers.h"
 #include "support/temporary_folder.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 struct ALogFolder : ::testing::Test {
   std::string path(const std::string& name) const { return folder_.path() / name; }
@@ -112,5 +111,4 @@ TEST_F(ALogFolder, NeverHoldsMoreThanItsQuotaAndTheLogEndsWithAWholePart) {
   EXPECT_EQ(std::filesystem::file_size(path("run.bag")), kQuota / 7'000 * 7'000);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -9,8 +9,7 @@
 #include "machine/gravity.h"
 #include "simulation/closed_loop.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 constexpr std::uint64_t kPushStart = 1000;  // cycle
 constexpr std::uint64_t kNever = ~std::uint64_t{0};
@@ -204,5 +203,4 @@ TEST_P(StuckImu, LimitsTheSpeed) {
 INSTANTIATE_TEST_SUITE_P(Devices, StuckImu, testing::Values("gyro", "accelerometer"),
                          [](const auto& device) { return std::string(device.param); });
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

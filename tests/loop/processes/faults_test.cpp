@@ -14,8 +14,7 @@
 #include "support/processes/four_nodes.h"
 #include "support/temporary_folder.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 constexpr double kTimeout = 240;  // s
 
@@ -103,5 +102,4 @@ TEST_F(Faults, GiveTheNumbersOfTheClosedLoopInFourProcesses) {
   EXPECT_EQ(LogTable::difference(LogTable::of_bag(folder_.path() / "log" / "run.bag"), one), "");
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -9,8 +9,7 @@
 #include "gate/joint_clamp.h"
 #include "simulation/closed_loop.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 constexpr std::uint64_t kClamps = kGateEffortClamped | kGateRateClamped | kGateSpeedClamped | kGatePositionClamped;
 
@@ -88,5 +87,4 @@ TEST_F(GateInTheLoop, IsNotTaperingAtTheSpeedLimitOfTheController) {
   EXPECT_NEAR(limited, loop.row().controller->command.twist_limited.linear[0], 0.02);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

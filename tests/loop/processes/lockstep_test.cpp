@@ -15,8 +15,7 @@
 #include "support/log_table.h"
 #include "support/processes/four_nodes.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 constexpr std::uint64_t kCycles = 6000;
 constexpr double kLockstepPatience = 120;  // s
@@ -133,5 +132,4 @@ TEST_F(Lockstep, AWallClockRunEqualsLockstepUntilTheFirstMissedCycle) {
   EXPECT_GE(judged, kNeeded);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -13,8 +13,7 @@
 #include "support/log_table.h"
 #include "support/processes/four_nodes.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 constexpr double kServicePatience = 120;         // s
 constexpr std::int64_t kSecond = 1'000'000'000;  // ns
@@ -199,5 +198,4 @@ TEST_F(Services, AStepThatIsTakenBackSaysHowFarItCame) {
   });
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -7,8 +7,7 @@
 
 #include "support/processes/loop_speed.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 // Promised: 60 × and 20 × real time on a quiet machine whose bare loop runs at 150 ×.
 constexpr double kClosedLoopShare = 60.0 / 150.0;
@@ -41,5 +40,4 @@ TEST_F(Speed, FourProcessesInLockstepKeepTheirShareOfTheBareEngine) {
             kFourNodesShare);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -10,8 +10,7 @@
 #include "support/message_of.h"
 #include "support/temporary_folder.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 constexpr std::size_t kShort = 2048;
 
@@ -183,5 +182,4 @@ TEST(LongMessages, AreCutInTheMiddleToTwoKilobytes) {
   EXPECT_THAT(message, AllOf(HasSubstr("r.urdf"), HasSubstr("Mend it."), HasSubstr("…")));
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

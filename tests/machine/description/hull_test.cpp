@@ -9,8 +9,7 @@
 
 #include "machine/description/mesh.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 const Points kCube{{-1, -1, -1}, {-1, -1, 1}, {-1, 1, -1}, {-1, 1, 1}, {1, -1, -1}, {1, -1, 1}, {1, 1, -1}, {1, 1, 1}};
 
@@ -136,5 +135,4 @@ TEST(HullTriangles, AreNoneOfAFlatCloud) {
   EXPECT_TRUE(hull_triangles({}).empty());
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -9,8 +9,7 @@
 #include "machine/description/stl.h"
 #include "mesh_texts.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 constexpr unsigned kSeeds = 2000;
 
@@ -84,5 +83,4 @@ TEST_P(AssimpFuzz, Dae) {
   expect_only_faces_or_a_problem_of(kDae, "dae");
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -11,8 +11,7 @@
 #include "support/quiet_refusal.h"
 #include "support/temporary_folder.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 using Corner = Eigen::Vector3d;
 
@@ -171,5 +170,4 @@ TEST_F(Mesh, CornersAreReadAgainWhenTheFileIsAnother) {
   EXPECT_EQ(mesh_corners(file).points[1], Corner(0, 3, 0));
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -6,8 +6,7 @@
 #include "support/message_of.h"
 #include "support/temporary_folder.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 constexpr const char* kManifest = "<package><name>bot_description</name></package>";
 
@@ -135,5 +134,4 @@ TEST_F(Resource, WhatNamesNoFileIsRefused) {
   }
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -6,8 +6,7 @@
 #include "support/quiet_refusal.h"
 #include "support/temporary_folder.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 constexpr const char* kRobot =
     "<robot name=\"bot\" xmlns:xacro=\"http://www.ros.org/wiki/xacro\">"
@@ -149,5 +148,4 @@ TEST(OtherProcess, CrashesApart) {
   EXPECT_EQ(run_apart([]() -> std::string { throw 1; }).code, 1);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -9,8 +9,7 @@
 #include "machine/description/urdf_document.h"
 #include "machine/legs/legs_corpus.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 constexpr double kWhole = 3.14159265358979323846;
 
@@ -141,5 +140,4 @@ TEST(LegKinematics, TellsReachAndRangeApart) {
   EXPECT_EQ(leg.inverse(hip + Eigen::Vector3d(0, 0.08, -0.3)).reach, FootReach::kReached);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

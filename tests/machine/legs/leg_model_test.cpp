@@ -13,8 +13,7 @@
 #include "support/matchers.h"
 #include "support/message_of.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 constexpr double kDigits = 1.5e-9;      // m, of the feet in FACTS.json, which has nine decimals
 constexpr double kEffortDigits = 1e-5;  // N·m
@@ -301,5 +300,4 @@ TEST(HasLegs, IsTrueForQuadrupedsAndFalseForRobotsOnWheels) {
   }
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

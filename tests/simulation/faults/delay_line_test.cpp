@@ -4,8 +4,7 @@
 
 #include "support/allocation_guard.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 TEST(DelayLine, GivesWhatWentInSoManyStepsAgo) {
   for (const std::size_t delay : {1u, 2u, 5u}) {
@@ -55,5 +54,4 @@ TEST(DelayLine, NeverAllocates) {
   EXPECT_EQ(guard.count(), 0u);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -10,8 +10,7 @@
 
 #include "support/allocation_guard.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 constexpr std::uint64_t kSeed = 42;
 constexpr std::uint64_t kOnset = 100;
@@ -143,5 +142,4 @@ TEST_F(FaultyOutputTest, NeverAllocates) {
   EXPECT_EQ(guard.count(), 0u);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -5,8 +5,7 @@
 #include <algorithm>
 #include <limits>
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 constexpr double kUnlimited = std::numeric_limits<double>::infinity();
 
@@ -174,5 +173,4 @@ TEST(UsedAccelerationScale, FallsAtTheTighterJerkLimit) {
   }
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -7,8 +7,7 @@
 
 #include "control/wheeled/test_robot.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 constexpr double kCycle = 1e-3;  // s
 
@@ -150,5 +149,4 @@ TEST_F(GroundFrictionTest, TakesWhatStandingWheelsHoldAgainstATurnForStrain) {
   EXPECT_NEAR(law_.effort(1), 0, 1e-12) << "a slope";
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

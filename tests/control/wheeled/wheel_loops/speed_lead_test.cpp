@@ -5,8 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 constexpr double kLeadPeriod = 1.0e-3;
 constexpr double kResponse = 0.05;  // s
@@ -64,5 +63,4 @@ TEST(SpeedLead, SkippedCyclesCount) {
   EXPECT_NEAR(third.step(0, kRamp, 3), last, 1.0e-12);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -8,8 +8,7 @@
 #include <random>
 #include <vector>
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 constexpr double kBandwidth = 20;
 constexpr double kW = 2 * std::numbers::pi * kBandwidth;
@@ -203,5 +202,4 @@ TEST(TrackingLoop, PredictsOverSkippedSamples) {
   }
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

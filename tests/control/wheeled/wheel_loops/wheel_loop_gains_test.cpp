@@ -10,8 +10,7 @@
 #include "control/wheeled/wheel_loops/wheel_loop_stability.h"
 #include "support/constants.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 WheelLoopGains derived(double rate) {
   const DriveTrain robot = make_test_robot();
@@ -140,5 +139,4 @@ TEST(WheelLoopGains, AreAcceptedForRobotsOfEverySize) {
   }
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -7,8 +7,7 @@
 #include "support/allocation_guard.h"
 #include "support/constants.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 constexpr double kLimit = 5;
 
@@ -219,5 +218,4 @@ TEST(WheelLoop, ForgetsWhatItCarriedWithoutAnIntegrator) {
   EXPECT_LT(loop.integral(), 1.3 * std::exp(-9.9)) << "a tenth of a second, ten times";
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -7,8 +7,7 @@
 #include "support/message_of.h"
 #include "support/robots/made_robot.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 struct FeetOnGround : PlantTest {
   /// Balls of 3 cm before and behind the wheels that end `gap` m above them.
@@ -86,5 +85,4 @@ TEST_F(FeetOnGround, AFootprintBoxDoesNotLiftTheWheels) {
   EXPECT_GT(truth(*stood(robot)).normal_force[0], 10);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -7,8 +7,7 @@
 #include "support/message_of.h"
 #include "support/robots/made_robot.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 std::string part(const std::string& name, const std::string& shape, const std::string& parent, const std::string& joint,
                  const std::string& mass = "0.5") {
@@ -88,5 +87,4 @@ TEST_F(Standing, TurnsOnABallWithoutASwivel) {
   EXPECT_NEAR(truth(*plant).twist_base.angular[2], expected, 0.01 * expected);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -9,8 +9,7 @@
 #include "drivers/mujoco/constants.h"
 #include "support/allocation_guard.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 constexpr double kMass = 0.5;        // kg
 constexpr double kTyreRadius = 0.1;  // m
@@ -145,5 +144,4 @@ TEST_F(TyreTest, StepDoesNotAllocate) {
   EXPECT_EQ(guard.count(), 0u);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

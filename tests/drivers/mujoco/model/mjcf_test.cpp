@@ -11,8 +11,7 @@
 #include "drivers/mujoco/plant_fixture.h"
 #include "support/robots/made_robot.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 using ModelPointer = std::unique_ptr<mjModel, DeleteMujoco>;
 
@@ -222,5 +221,4 @@ TEST_F(MjcfTest, TheExportedTextOpensByItselfAndStands) {
   EXPECT_EQ(data->ncon, 3) << "two wheels and the ball, rolling down the slope";
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -7,8 +7,7 @@
 #include "support/matchers.h"
 #include "support/message_of.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 struct MujocoModelTest : testing::Test {
   MujocoModel compiled(const std::string& scene, double period = 0.001) const {
@@ -167,5 +166,4 @@ TEST_F(MujocoModelTest, AnIncludeCycleInASceneIsRefused) {
   EXPECT_THAT(refusal(first), AllOf(HasSubstr("first.xml"), HasSubstr("include")));
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

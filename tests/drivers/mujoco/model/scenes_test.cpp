@@ -6,8 +6,7 @@
 #include "support/message_of.h"
 #include "support/robots/made_robot.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 struct SceneTest : PlantTest {
   std::unique_ptr<MujocoPlant> in(const std::string& scene) {
@@ -127,5 +126,4 @@ TEST_F(SceneTest, ARobotWithALargerLeftWheelDrivesToTheRight) {
   EXPECT_NEAR(truth(*plant).twist_base.angular[2], -0.02 * 0.1 * 5 / 0.5, 0.03 * 0.02);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -7,8 +7,7 @@
 #include "drivers/mujoco/plant_fixture.h"
 #include "support/message_of.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 constexpr double kVoltage = 24, kResistance = 0.5;
 constexpr double kVoltRounding = 1e-12;
@@ -84,5 +83,4 @@ TEST_F(BatteryOfThePlant, IsRefusedWithMoreResistanceThanItsVoltageBears) {
   EXPECT_NE(message.find("more than 24 ohm"), std::string::npos) << message;
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -7,8 +7,7 @@
 #include "support/message_of.h"
 #include "support/robots/made_robot.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 // Centre of gravity 0.2 m above the ground, axles 0.15 m before and behind it.
 MadeRobot four_wheels() {
@@ -90,5 +89,4 @@ TEST_F(CheckBrake, RefusesABrakeThatDoesNotHold) {
   EXPECT_THAT(refusal(), HasSubstr("brake_stiffness"));
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

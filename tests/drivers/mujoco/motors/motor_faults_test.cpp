@@ -12,8 +12,7 @@
 #include "drivers/mujoco/two_wheels.h"
 #include "support/allocation_guard.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 constexpr double kLimit = 3.5;  // N·m, as two_wheels has it
 
@@ -148,5 +147,4 @@ TEST_F(MotorFaultsTest, NeverAllocate) {
   EXPECT_EQ(guard.count(), 0u);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

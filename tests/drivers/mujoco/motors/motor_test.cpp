@@ -2,8 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 constexpr double kStall = 4;     // N·m
 constexpr double kNoLoad = 200;  // rad/s, of the shaft
@@ -53,5 +52,4 @@ TEST(MotorTest, IsLimitedOnlyByItsStallTorqueWithoutANoLoadSpeed) {
   EXPECT_EQ(motor.limited(-10, -1000), -kStall);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -9,8 +9,7 @@
 #include "drivers/mujoco/plant_fixture.h"
 #include "support/robots/made_robot.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 constexpr double kTolerance = 0.003;  // rad or m
 
@@ -76,5 +75,4 @@ TEST_F(RestingJoints, BeginThereInTheExportedModelAndStay) {
   }
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

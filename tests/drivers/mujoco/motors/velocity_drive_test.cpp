@@ -6,8 +6,7 @@
 
 #include <limits>
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 constexpr double kStep = 0.001;     // s
 constexpr double kInertia = 0.065;  // kg·m²
@@ -98,5 +97,4 @@ TEST_F(VelocityDriveTest, TorquesAndNumbersThatAreNotFiniteBrake) {
   }
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -5,8 +5,7 @@
 #include "drivers/mujoco/sensors/integrated_force.h"
 #include "support/robots/made_robot.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 struct Case {
   const char* name;
@@ -72,5 +71,4 @@ TEST_P(Accelerometer, IntegratesToTheVelocity) {
 INSTANTIATE_TEST_SUITE_P(DampingAndPeriod, Accelerometer,
                          testing::Combine(testing::Values(0, 0.01, 0.1, 1), testing::Values(0.01, 0.001)));
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -10,8 +10,7 @@
 #include "support/allocation_guard.h"
 #include "support/robots/corpus.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 struct ContactSensors : PlantTest, testing::WithParamInterface<TyreModel> {
   ContactSensors() {
@@ -127,5 +126,4 @@ TEST_P(ContactSensors, NeverAllocate) {
 INSTANTIATE_TEST_SUITE_P(Tyres, ContactSensors, testing::Values(TyreModel::kBrush, TyreModel::kNative),
                          [](const auto& tyre) { return tyre.param == TyreModel::kBrush ? "brush" : "native"; });
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -18,8 +18,7 @@
 #include "support/allocation_guard.h"
 #include "support/robots/made_robot.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 double bound(std::size_t count) {
   return 5 * std::sqrt(2.0 / static_cast<double>(count));
@@ -325,5 +324,4 @@ TEST(FieldErrors, NeverAllocate) {
   EXPECT_EQ(guard.count(), 0u);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

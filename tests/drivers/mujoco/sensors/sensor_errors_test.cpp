@@ -16,8 +16,7 @@
 #include "support/allocation_guard.h"
 #include "support/message_of.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 constexpr double kDeviations = 5;
 constexpr double kCount = 2 * std::numbers::pi / 4096;  // rad
@@ -385,5 +384,4 @@ TEST_F(SensorErrorsTest, NeverAllocate) {
   EXPECT_EQ(guard.count(), 0u);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -13,8 +13,7 @@
 #include "signals/names.h"
 #include "support/allocation_guard.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 constexpr std::uint64_t kOnset = 100;
 
@@ -311,5 +310,4 @@ TEST_F(SensorFaultsTest, NeverAllocate) {
   EXPECT_EQ(guard.count(), 0u);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -8,8 +8,7 @@
 #include "estimation/common/values.h"
 #include "support/constants.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 /// A gyro and an accelerometer have given their first samples: 0.1 rad/s and 1 m/s² along z.
 struct ImuSamplesTest : testing::Test {
@@ -221,5 +220,4 @@ TEST_F(ImuSamplesTest, AResetForgets) {
   EXPECT_FALSE(reading_.accelerometer.has_value());
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

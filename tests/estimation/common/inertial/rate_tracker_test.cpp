@@ -7,8 +7,7 @@
 #include "estimation/wheeled/estimator_fixture.h"
 #include "support/constants.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 using Eigen::Vector3d;
 
@@ -109,5 +108,4 @@ TEST_F(PublishedRate, SurvivesMissingSamplesOfAWheel) {
   EXPECT_NEAR(state_.joint_velocity[0], 5, 0.05);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

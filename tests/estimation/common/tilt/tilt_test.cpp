@@ -10,8 +10,7 @@
 
 #include "signals/rotation.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 constexpr double kTiltStep = 0.01;  // s
 constexpr double kAllowedTilt =
@@ -178,5 +177,4 @@ TEST(TiltTest, WhatIsSetBeyondTheSteepestIsBounded) {
   EXPECT_NEAR(tilt.up()[0], Tuning::kSteepest, 1e-9);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -4,8 +4,7 @@
 
 #include "estimation/wheeled/planar/planar_core_fixture.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 constexpr double kDerivative = 1e-8;  // relative, of a central difference of 1e-5
 
@@ -133,5 +132,4 @@ TEST(CoreTransport, TheCovarianceOfAStraightWayIsThatOfTheClosedForm) {
   EXPECT_NEAR((*core.covariance())(PlanarCore::kX, PlanarCore::kX), slips, 1e-9 * slips);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

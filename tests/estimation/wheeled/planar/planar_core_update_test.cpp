@@ -3,8 +3,7 @@
 
 #include "estimation/wheeled/planar/planar_core_fixture.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 constexpr double kRounding = 1e-12;  // relative
 constexpr double kBase = PlanarCoreParams{}.wheel_base;
@@ -286,5 +285,4 @@ TEST_F(CoreUpdateTest, ABiasThatIsSetIsCorrelatedWithNothing) {
   EXPECT_NEAR(p.row(PlanarCore::kBias).norm(), 9e-6, 1e-18);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -4,8 +4,7 @@
 
 #include <gtest/gtest.h>
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 struct RestWatchTest : testing::Test {
   static constexpr double kStep = 0.01;  // s
@@ -162,5 +161,4 @@ TEST_F(RestWatchTest, AResetBeginsANewWindow) {
   EXPECT_EQ(window(0), RestWindow::kQuiet);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -3,8 +3,7 @@
 #include "estimation/wheeled/slip/slip_fixture.h"
 #include "support/constants.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 constexpr double kMinSpan = Tuning::kResidualSpans[0];
 constexpr double kNext = Tuning::kResidualSpans[1];
@@ -294,5 +293,4 @@ TEST(SlipDetector, GarbageLeavesItFinite) {
   }
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -3,8 +3,7 @@
 #include "estimation/wheeled/slip/slip_fixture.h"
 #include "signals/state_frame.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 struct WheelSlideTest : SlipFixture {
   WheelSlideTest() { learn(); }
@@ -197,5 +196,4 @@ TEST_F(WheelSlideTest, TheEndLeavesNoSlipSideways) {
   EXPECT_EQ(slide_.reasons(), 0u);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -5,8 +5,7 @@
 #include "estimation/wheeled/rolling_robot.h"
 #include "support/constants.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 constexpr double kBandwidth = 20;  // Hz
 
@@ -158,5 +157,4 @@ TEST_F(SideEncoderTest, AWheelThatTurnsBackToZeroHas) {
   for (double angle = 12.5; angle > -2; angle -= 0.5) EXPECT_EQ(read(angle, 0.1), EncoderReading::kTravel) << angle;
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

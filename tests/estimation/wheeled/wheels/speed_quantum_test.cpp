@@ -8,8 +8,7 @@
 #include <random>
 #include <utility>
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 struct SpeedReadings : testing::Test {
   /// A changing speed, read every `gap` s or so, and rounded to `step` m/s.
@@ -45,5 +44,4 @@ TEST_F(SpeedReadings, StepsThatTheEncodersCountExplainsAreNone) {
   EXPECT_EQ(read(0.08, 0.02, 0.001).step(), 0);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests
