@@ -64,12 +64,6 @@ struct Lockstep : ::testing::Test {
   DriveTrain robot_;
 };
 
-TEST_F(Lockstep, FourProcessesGiveTheNumbersOfTheClosedLoop) {
-  const LogTable four = four_processes("four", ClockMode::kLockstep);
-  EXPECT_EQ(four.rows(), kCycles) << "no row is lost";
-  EXPECT_EQ(LogTable::difference(four, one_process()), "");
-}
-
 TEST_F(Lockstep, GivesTheSameNumbersUnderLoad) {
   const LogTable quiet = four_processes("quiet", ClockMode::kLockstep);
   const auto burn = [] {
