@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <bit>
-#include <set>
 #include <vector>
 
 #include "cycle_fixture.h"
@@ -82,28 +81,6 @@ TEST_F(NodeFaults, OffIsATokenInEveryCycle) {
   }
 }
 
-TEST_F(NodeFaults, SlowIsAFrameEveryTenthCycleAndTokensBetween) {
-  for (const FaultComponent node : {FaultComponent::kEstimator, FaultComponent::kMonitor}) {
-    inject(node, FaultKind::kSlow);
-    for (int i = 0; i < 30; ++i) {
-      EXPECT_EQ(publishes(node), i % 10 == 0 ? Lookup::kFrame : Lookup::kToken) << name_of(node) << i;
-    }
-    inject(node, FaultKind::kOk);
-    loop.step();
-  }
-}
-
-TEST_F(NodeFaults, IntermittentIsFramesAndTokens) {
-  for (const FaultComponent node : kNodes) {
-    inject(node, FaultKind::kIntermittent);
-    std::set<Lookup> found;
-    for (int i = 0; i < 300; ++i) found.insert(publishes(node));
-    EXPECT_EQ(found, (std::set<Lookup>{Lookup::kFrame, Lookup::kToken})) << name_of(node);
-    inject(node, FaultKind::kOk);
-    loop.step();
-  }
-}
-
 TEST_F(NodeFaults, StuckIsOldContentUnderANewHead) {
   inject(FaultComponent::kController, FaultKind::kStuck);
   ASSERT_EQ(publishes(FaultComponent::kController), Lookup::kFrame);
@@ -114,20 +91,6 @@ TEST_F(NodeFaults, StuckIsOldContentUnderANewHead) {
     EXPECT_EQ(effort(command_), effort(first));
     EXPECT_EQ(command_.state_cycle, first.state_cycle);
   }
-}
-
-TEST_F(NodeFaults, DelayedIsTheContentOfTenCyclesAgo) {
-  Loop healthy;
-  healthy.drive();
-  inject(FaultComponent::kController, FaultKind::kDelayed);
-  std::vector<double> efforts;
-  for (std::size_t i = 0; i < 20; ++i) {  // then the monitor takes the command for stale
-    healthy.step();
-    efforts.push_back(effort(healthy.newest_command()));
-    ASSERT_EQ(publishes(FaultComponent::kController), Lookup::kFrame);
-    EXPECT_EQ(effort(command_), efforts[i < 10 ? 0 : i - 10]) << i;
-  }
-  EXPECT_NE(efforts.front(), efforts.back()) << "or nothing was shown";
 }
 
 TEST_F(NodeFaults, AWrongControllerTurnsEveryEffortRound) {

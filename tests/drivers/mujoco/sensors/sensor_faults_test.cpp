@@ -118,15 +118,6 @@ TEST_F(SensorFaultsTest, AWrongEncoderCountsBackwardsWithoutAJump) {
   }
 }
 
-TEST_F(SensorFaultsTest, ASlowEncoderIsSampledEveryTenthCycle) {
-  for (std::uint64_t i = 0; i < 50; ++i) {
-    step(FaultComponent::kEncoder, FaultKind::kSlow, kOnset + i);
-    EXPECT_EQ(left().position, left_at(kOnset + i - i % kFaultCycles).position) << i;
-    EXPECT_EQ(left().velocity, left_at(kOnset + i - i % kFaultCycles).velocity) << i;
-    expect_rest_healthy(kOnset + i);
-  }
-}
-
 TEST_F(SensorFaultsTest, IsHealthyAgainAfterOk) {
   for (std::size_t component = 0; component < kFaultComponents; ++component) {
     for (std::size_t kind = 1; kind < kFaultKinds; ++kind) {
@@ -198,14 +189,6 @@ TEST_P(InertialFaults, WrongHasTheOtherSign) {
   EXPECT_EQ(lost_, 0u);
 }
 
-TEST_P(InertialFaults, SlowIsSampledEveryTenthCycle) {
-  for (std::uint64_t i = 0; i < 50; ++i) {
-    inject(FaultKind::kSlow, kOnset + i);
-    EXPECT_EQ(axes(), axes_at(kOnset + i - i % kFaultCycles));
-    EXPECT_EQ(lost_, 0u);
-  }
-}
-
 INSTANTIATE_TEST_SUITE_P(Devices, InertialFaults,
                          testing::Values(FaultComponent::kGyro, FaultComponent::kAccelerometer),
                          [](const auto& device) { return std::string(name_of(device.param)); });
@@ -258,14 +241,6 @@ TEST_F(BatteryFaults, GarbageIsAnythingUpToTwiceTheVoltage) {
   // As for the encoders: 1000 numbers do not all miss the outer tenth.
   EXPECT_LT(lowest, 0.2);
   EXPECT_GT(highest, 1.8);
-}
-
-TEST_F(BatteryFaults, SlowIsSampledEveryTenthCycle) {
-  for (std::uint64_t i = 0; i < 50; ++i) {
-    inject(FaultKind::kSlow, kOnset + i);
-    EXPECT_EQ(battery().voltage, battery_at(kOnset + i - i % kFaultCycles).voltage);
-    EXPECT_EQ(lost_, 0u);
-  }
 }
 
 struct ButtonFaults : SensorFaultsTest {
