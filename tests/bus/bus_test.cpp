@@ -7,6 +7,7 @@
 
 #include "support/bus/scoped_bus.h"
 #include "support/bus/test_frame.h"
+#include "support/file_content.h"
 #include "support/matchers.h"
 #include "support/message_of.h"
 
@@ -235,12 +236,14 @@ TEST_F(BusTest, AnUnlinkedChannelGoesOnWithItsOldReadersUntilASuccessorAppears) 
 }
 
 TEST_F(BusTest, RecreatesWhatIsLeftOfAnObject) {
-  for (const auto& [content, obstacle] : {std::pair{std::string(sizeof(Frames) - 1, 'x'), "is truncated"},
-                                          {"short", "is truncated"},
-                                          {std::string(sizeof(Frames), '\0'), "has no content yet"},  // its maker died
-                                          {std::string(sizeof(Frames), 'x'), "is not of this software"},
-                                          {"", ""}}) {
-    plant(content);
+  { OwnedChannel<Frames>(bus_.name(), ChannelNames::kState); }
+  const std::string whole = content(file());
+  for (const auto& [left, obstacle] : {std::pair{whole.substr(0, whole.size() - 1), "is truncated"},
+                                       {"short", "is truncated"},
+                                       {std::string(sizeof(Frames), '\0'), "has no content yet"},  // its maker died
+                                       {std::string(sizeof(Frames), 'x'), "is not of this software"},
+                                       {"", ""}}) {
+    plant(left);
     ForeignChannel<Frames> reader(bus_.name(), ChannelNames::kState);
     EXPECT_FALSE(reader.poll());
     EXPECT_THAT(reader.obstacle(), HasSubstr(obstacle));

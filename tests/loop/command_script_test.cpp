@@ -23,7 +23,7 @@ constexpr const char* kHealthy =
     "20,,,e_stop\n"
     "30,0,0,e_stop_reset\n";
 
-std::string refusal(const std::string& text, std::uint64_t executable = kEveryPart) {
+std::string refusal(const std::string& text, std::uint64_t executable = CommandScript::kEveryPart) {
   return message_of<ParameterError>([&] { CommandScript::parse(text, "script.csv", executable); });
 }
 
