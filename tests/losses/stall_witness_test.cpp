@@ -6,8 +6,7 @@
 
 #include "losses_fixture.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 constexpr std::int64_t kSpellNs = 100'000'000;
 
@@ -31,8 +30,6 @@ TEST_F(Witness, SeesThatItWasStoppedAndForgetsItWhereALaterTimeIsAskedFor) {
   EXPECT_LT(witness_.longest_gap_ns(monotonic_ns() - kSpellNs / 2), kSpellNs);
 }
 
-}  // namespace
-
 /// The stop is the loop's own: a node that computes without end is no stall of the machine.
 using AStop = Losses;
 
@@ -44,4 +41,4 @@ TEST_F(AStop, IsNoStallByItself) {
   nodes().process(LoopNode::kController).send(SIGCONT);
 }
 
-}  // namespace robot_control
+}  // namespace robot_control::tests
