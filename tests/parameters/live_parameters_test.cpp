@@ -7,7 +7,6 @@
 #include "parameters/parameter_file.h"
 #include "parameters/parameter_tree.h"
 #include "parameters/schema.h"
-#include "support/damaged_text.h"
 #include "support/matchers.h"
 
 namespace robot_control::tests {
@@ -158,12 +157,26 @@ INSTANTIATE_TEST_SUITE_P(Nightly, LiveParametersFuzz, testing::Values(6000u));
 TEST_P(LiveParametersFuzz, AreTakenOrRefusedWhateverStandsInTheRequest) {
   const std::string good =
       "{max_linear_speed: 0.5, keep_curvature: true, cmd_vel_timeout: 1.0, pid_kp: 1.5, feed_forward: {mass: 13.0}}";
+  const std::string_view marks = ":#-[]{}\"'\n \t,!&*|>%@?.~\0\xff";
   int taken = 0, refused = 0;
   for (unsigned seed = 0; seed < GetParam(); ++seed) {
     std::mt19937 random(seed);
-    std::string text(seed % 4 == 0 ? random() % 200 : 0, ' ');  // nothing but noise
-    for (char& each : text) each = static_cast<char>(random());
-    if (seed % 4 != 0) text = damaged(good, random);
+    const auto pick = [&](std::size_t bound) {
+      return std::uniform_int_distribution<std::size_t>(0, bound - 1)(random);
+    };
+    std::string text = good;
+    if (seed % 4 == 0) {  // nothing but noise
+      text.clear();
+      for (std::size_t i = pick(200); i > 0; --i) text += static_cast<char>(pick(256));
+    }
+    for (std::size_t count = 1 + pick(6); count > 0; --count) {
+      const std::size_t place = pick(text.size() + 1);
+      if (pick(2) == 0) {
+        text.insert(place, pick(8) == 0 ? pick(600) : 1, marks[pick(marks.size())]);
+      } else {
+        text.erase(place, pick(8));
+      }
+    }
     try {
       const LiveChange change = read(text);
       change.problems.empty() ? ++taken : ++refused;
