@@ -91,6 +91,25 @@ TEST_F(BoardDriverTest, ALineThatIsCutBrakesTheBoardByItsWatchdogAndIsAFaultUnti
   EXPECT_TRUE(turns());
 }
 
+TEST_F(BoardDriverTest, StandsHalfASecondAfterItsAnswersFailAndThroughAReset) {
+  for (const AnswerFault fault :
+       {AnswerFault::kLost, AnswerFault::kDamaged, AnswerFault::kShifted, AnswerFault::kLate}) {
+    SCOPED_TRACE(std::string(kAnswerFaults[static_cast<std::size_t>(fault)]));
+    machine_.board().line().faults().answers = fault;
+    cycles(250);
+    EXPECT_FALSE(turns());
+    cycles(2000);
+    machine_.reset();
+    cycles(2000);
+    EXPECT_FALSE(turns());
+    machine_.board().line().faults().answers = AnswerFault::kNone;
+    cycles(1000);
+    machine_.reset();
+    cycles(1000);
+    ASSERT_TRUE(turns()) << machine_.warning();
+  }
+}
+
 /// At 100 Hz the watchdog of 50 ms expires before 12 reports are missing.
 TEST(BoardAt100Hz, NamesABrakeByItselfAlsoIfItsFirstReportIsLost) {
   BoardMachine machine(100);

@@ -72,7 +72,6 @@ TEST_P(EveryDrive, IsAtRestWhileItsAnswersFailAndUntilTheReset) {
     run(1);
     for (int i = 0; i < 20; ++i) {
       ASSERT_FALSE(turns()) << 0.1 * i;
-      if (i == 10) machine_.reset();
       run(0.1);
     }
     ASSERT_EQ(machine_.board().inject(component, "ok"), "");
