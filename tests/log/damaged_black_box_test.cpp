@@ -70,6 +70,32 @@ TEST_F(ADamagedBlackBox, HoldsEveryWholeChunkWhereItsWriterWasKilledAtAnyByte) {
   }
 }
 
+TEST_F(ADamagedBlackBox, LosesTheChunkThatIsDamagedAndNoOther) {
+  overwrite(1, 500'000, "damaged, damaged, damaged, damaged, damaged, damaged");
+  EXPECT_THAT(save().missing, HasSubstr("records are missing at 1 place of the others"));
+  std::size_t rows = 0;
+  std::vector<std::uint64_t> lost;
+  TraceReader reader(path("saved/run.bag"));
+  reader.read({.row = [&](const TraceRow& row, std::int64_t) {
+    ++rows;
+    lost.push_back(row.lost);
+  }});
+  EXPECT_EQ(lost.front(), 0u);
+  EXPECT_EQ(lost.back(), all.size() - rows);
+  EXPECT_GE(lost.back(), 1u);
+  EXPECT_LE(lost.back(), 2u) << "52 bytes are of two chunks at most, each of a cycle here";
+  EXPECT_THAT(reader.header().missing, HasSubstr("rows, in the cycles "));
+}
+
+TEST_F(ADamagedBlackBox, IsReadUpToWhereABagIsCutOff) {
+  fs::resize_file(bag(1), kBag / 2);
+  const std::vector<std::uint64_t> left = cycles_of_saved();
+  EXPECT_EQ(left.front(), 0u);
+  EXPECT_EQ(left.back(), 5999u);
+  EXPECT_LT(left.size(), all.size());
+  EXPECT_THAT(saved.missing, HasSubstr("bags that are cut off: 1 of 17; records are missing at 1 place"));
+}
+
 TEST_F(ADamagedBlackBox, IsReadAroundABagOfWhichNothingIsLeft) {
   overwrite(1, 0, std::string(kBag, 'x'));
   const std::vector<std::uint64_t> left = cycles_of_saved();

@@ -336,11 +336,13 @@ TEST_F(Emergency, IsNoneByAZeroCommand) {
 TEST_F(Emergency, IsATimeout) {
   while (bench.cycle <= bench.command.request_cycle + 1250) bench.step();
   expect_a_ramp_of(2, kReasonTimedOut);
+  EXPECT_EQ(bench.command.timeouts, 1u);
 }
 
 TEST_F(Emergency, IsARefusedCommand) {
   bench.send(std::nan(""), 0);
   expect_a_ramp_of(2, kReasonRefused);
+  EXPECT_EQ(bench.command.requests_refused, 1u);
 }
 
 TEST_F(Emergency, IsARampPermit) {
