@@ -8,8 +8,7 @@
 #include "bus/ring.h"
 #include "support/bus/damage.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 constexpr int kLooks = 100'000;
 
@@ -47,7 +46,7 @@ std::uint64_t most_loads(Look look) {
   return largest;
 }
 
-TEST(BoundedReader, OfFramesTriesAsOftenAsItMay) {
+TEST(BoundedReader, TriesToReadFramesAsOftenAsItMay) {
   const LatestFrames<Frame, HostileAtomic> memory{};
   const FrameReader<Frame, HostileAtomic> reader(&memory);
   Frame frame;
@@ -60,7 +59,7 @@ TEST(BoundedReader, OfFramesTriesAsOftenAsItMay) {
             kFrameSlots * kReadTries * kCopy);
 }
 
-TEST(BoundedReader, OfAValueTriesAsOftenAsItMay) {
+TEST(BoundedReader, TriesToReadAValueAsOftenAsItMay) {
   const LatestValue<Row, HostileAtomic> latest;
   Row value;
   const std::uint64_t largest = most_loads([&] { latest.load(value); });
@@ -68,7 +67,7 @@ TEST(BoundedReader, OfAValueTriesAsOftenAsItMay) {
   EXPECT_GT(largest, 2u + 3u);
 }
 
-TEST(BoundedReader, OfARingTriesAsOftenAsItMay) {
+TEST(BoundedReader, TriesToReadARingAsOftenAsItMay) {
   const Ring<Row, HostileAtomic, 16> ring{};
   RingReader<Row, HostileAtomic, 16> reader(&ring, 0);
   Row row;
@@ -77,5 +76,4 @@ TEST(BoundedReader, OfARingTriesAsOftenAsItMay) {
   EXPECT_GT(largest, 1u + 2u + 3u);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

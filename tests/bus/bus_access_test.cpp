@@ -1,8 +1,6 @@
 /// Checks who may open a channel's object, and what a node does with an object that others may open.
 
 #include <fcntl.h>
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -17,22 +15,19 @@
 #include "bus/bus.h"
 #include "support/bus/scoped_bus.h"
 #include "support/bus/test_frame.h"
+#include "support/matchers.h"
 #include "support/message_of.h"
 #include "support/processes/anonymous_memory.h"
 #include "support/processes/child_process.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
-using testing::AllOf;
-using testing::HasSubstr;
 using Frames = LatestFrames<TestFrame>;
 
 constexpr uid_t kNobody = 65534;
 constexpr unsigned kAlarm = 10;  // s; a process that waits that long on a pipe would wait endlessly
 
-class BusAccessTest : public testing::Test {
- protected:
+struct BusAccessTest : testing::Test {
   std::string file() const { return "/dev/shm" + bus_object_name(bus_.name(), ChannelNames::kState); }
 
   std::string write_error() const {
@@ -231,5 +226,4 @@ TEST_F(BusAccessTest, AWriterThatStartsWithoutDescriptorsNamesThem) {
   EXPECT_THAT(write_error(), AllOf(HasSubstr("Too many open files"), HasSubstr("ulimit -n")));
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -1,28 +1,23 @@
 #include "bus/bus_cleanup.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include <array>
-#include <csignal>
 #include <filesystem>
 #include <memory>
 
 #include "bus/bus.h"
-#include "rt/clock.h"
 #include "signals/command_frame.h"
 #include "signals/permit.h"
 #include "support/bus/scoped_bus.h"
 #include "support/bus/test_frame.h"
+#include "support/matchers.h"
 #include "support/processes/child_process.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 using ::testing::Contains;
-using ::testing::Not;
 using Frames = LatestFrames<TestFrame>;
 using Permits = LatestFrames<Permit>;
 
@@ -61,8 +56,7 @@ void end_bus(const std::string& bus, std::uint64_t causes = 0) {
   publish_permit(bus, causes);
 }
 
-class BusCleanup : public ::testing::Test {
- protected:
+struct BusCleanup : ::testing::Test {
   std::vector<std::string> removed() const { return remove_ended_buses(own_.name()); }
 
   ScopedBus own_;
@@ -197,5 +191,4 @@ TEST_F(BusCleanup, TenNodesThatStartAtOnceBesideAHalfDeadBusAllStartAndHarmNothi
   }
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -14,15 +14,13 @@
 #include "support/bus/scoped_bus.h"
 #include "support/bus/test_frame.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 using Frames = LatestFrames<TestFrame>;
 constexpr std::uint64_t kMutants = 3000;
 constexpr std::uint64_t kLockedMutants = 20;  // a reader gives a living writer's object 0.1 s to settle
 
-class BusDamageTest : public testing::Test {
- protected:
+struct BusDamageTest : testing::Test {
   BusDamageTest() {
     const OwnedChannel<Frames> writer(bus_.name(), ChannelNames::kState);
     publish(writer, 5);
@@ -114,5 +112,4 @@ TEST_F(BusDamageTest, WhatIsDamagedUnderALivingWriterIsMappedOrAnErrorThatNamesI
   }
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

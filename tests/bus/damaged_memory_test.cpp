@@ -11,8 +11,7 @@
 #include "support/bus/damage.h"
 #include "support/bus/test_frame.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 constexpr std::uint64_t kMutants = 100'000;
 constexpr std::uint64_t kDamagedRun = 7;
@@ -25,8 +24,7 @@ std::span<std::byte> bytes_of(Object& object) {
 
 /// Cycles 0 … 9 were published; a copy of that is damaged. It lies on the heap, where the address sanitizer detects an
 /// access beyond its end.
-class DamagedFrames : public testing::Test {
- protected:
+struct DamagedFrames : testing::Test {
   using Frames = LatestFrames<TestFrame>;
 
   DamagedFrames() {
@@ -145,5 +143,4 @@ TEST(DamagedRing, AReaderEndsAndAfterTheNextRowsItIsInStepAgain) {
   }
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

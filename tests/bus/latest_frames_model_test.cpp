@@ -8,8 +8,7 @@
 #include "bus/model/expectations.h"
 #include "bus/model/futex_stub.h"
 
-namespace robot_control::model {
-namespace {
+namespace robot_control::model::tests {
 
 constexpr std::size_t kSlots = 2;
 constexpr std::uint64_t kRun = 7;
@@ -20,8 +19,7 @@ struct Frame {
 };
 
 /// Publication 1, of cycle 1, exists before a reader starts.
-class LatestFramesModelTest : public testing::Test {
- protected:
+struct LatestFramesModelTest : testing::Test {
   LatestFramesModelTest() {
     model_.name(frames_.sequence.word(), "sequence");
     model_.name(frames_.newest.word(), "newest");
@@ -171,5 +169,4 @@ TEST_F(LatestFramesModelTest, EveryOrderAndEveryCheckIsNeeded) {
   EXPECT_GE(model_.mutants("latest_frames.h").size(), 15u);
 }
 
-}  // namespace
-}  // namespace robot_control::model
+}  // namespace robot_control::model::tests

@@ -10,8 +10,7 @@
 #include "support/processes/anonymous_memory.h"
 #include "support/processes/child_process.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 constexpr std::uint64_t kTorturedRun = 7;
 constexpr std::int64_t kDuration = 700'000'000;    // ns, at least
@@ -60,16 +59,6 @@ TEST(LatestFramesTorture, TwoThreadsSeeWholeFramesInOrder) {
   EXPECT_GE(read_and_check(memory.get()), kFrames);
   stop.store(true);
   writer.join();
-}
-
-TEST(LatestFramesTorture, TwoProcessesSeeWholeFramesInOrder) {
-  const AnonymousMemory<LatestFrames<TestFrame>> memory;
-  ChildProcess writer([&] {
-    const std::atomic<bool> never{false};
-    write_until(never, memory.get());
-    return 0;
-  });
-  EXPECT_GE(read_and_check(memory.get()), kFrames);
 }
 
 TEST(LatestFramesTorture, WritersKilledAnywhereLeaveWholeFrames) {
@@ -125,5 +114,4 @@ TEST(LatestFramesTorture, AReaderThatWaitsForEverMissesNoWakeUp) {
   EXPECT_EQ(echo.wait(), 0);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -6,8 +6,7 @@
 #include "bus/latest_value.h"
 #include "bus/model/expectations.h"
 
-namespace robot_control::model {
-namespace {
+namespace robot_control::model::tests {
 
 /// Both words are the number of the store.
 struct Pair {
@@ -15,8 +14,7 @@ struct Pair {
   std::uint64_t second = 0;
 };
 
-class LatestValueModelTest : public testing::Test {
- protected:
+struct LatestValueModelTest : testing::Test {
   LatestValueModelTest() {
     model_.name(0, "version");
     model_.name(1, "words");
@@ -73,5 +71,4 @@ TEST_F(LatestValueModelTest, SchedulesThatAreLeftOutShowNothingNew) {
   EXPECT_EQ(found_by(Schedules::kAll), (std::set<std::uint64_t>{0, 1, 99}));
 }
 
-}  // namespace
-}  // namespace robot_control::model
+}  // namespace robot_control::model::tests

@@ -7,8 +7,7 @@
 
 #include "rt/clock.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 struct Value {
   std::array<std::uint64_t, 60> words{};
@@ -70,5 +69,4 @@ TEST(LatestValue, IsNeverTornAndNeverGoesBack) {
   EXPECT_GE(loads, 100u);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -6,8 +6,7 @@
 
 #include "bus/latest_frames.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 struct SmallFrame {
   FrameHead head;
@@ -15,8 +14,7 @@ struct SmallFrame {
 };
 
 /// The same publications into shared memory and into the frames of one thread.
-class OwnFramesTest : public testing::Test {
- protected:
+struct OwnFramesTest : testing::Test {
   using Memory = LatestFrames<SmallFrame>;
   std::unique_ptr<Memory> shared_ = std::make_unique<Memory>();
   std::unique_ptr<Memory> memory_ = std::make_unique<Memory>();
@@ -81,12 +79,11 @@ TEST_F(OwnFramesTest, AFoundFrameIsWhereItsWriterHasPutIt) {
   EXPECT_EQ(found.frame, &own_->slots[3].frame);
 }
 
-TEST_F(OwnFramesTest, BeforeTheFirstPublicationEverythingIsMissing) {
+TEST_F(OwnFramesTest, FindsNothingBeforeTheFirstPublication) {
   SmallFrame buffer;
   EXPECT_EQ(own_reader_.find_newest(buffer).lookup, Lookup::kMissing);
   EXPECT_EQ(own_reader_.find_at(1, 0, buffer).lookup, Lookup::kMissing);
   EXPECT_EQ(own_reader_.last_whole(buffer), Lookup::kMissing);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

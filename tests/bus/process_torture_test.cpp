@@ -6,8 +6,7 @@
 #include "support/allocation_guard.h"
 #include "support/bus/torture.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 // A sanitizer observes one process at a time: there the wiring is tested.
 constexpr std::uint64_t kCount = AllocationGuard::kCounts ? 10'000'000 : 100'000;
@@ -28,5 +27,4 @@ TEST(ProcessTorture, EveryRowComesOnceWholeAndInOrder) {
   EXPECT_EQ(count.read, kCount);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

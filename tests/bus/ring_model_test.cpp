@@ -7,8 +7,7 @@
 #include "bus/model/futex_stub.h"
 #include "bus/ring.h"
 
-namespace robot_control::model {
-namespace {
+namespace robot_control::model::tests {
 
 constexpr std::size_t kRows = 2;
 
@@ -18,8 +17,7 @@ struct Row {
   std::uint64_t second = 0;
 };
 
-class RingModelTest : public testing::Test {
- protected:
+struct RingModelTest : testing::Test {
   RingModelTest() {
     model_.name(ring_.written.word(), "written");
     model_.name(ring_.dropped.word(), "dropped");
@@ -165,5 +163,4 @@ TEST_F(RingModelTest, EveryOrderAndEveryCheckIsNeeded) {
   EXPECT_GE(model_.mutants("ring.h").size(), 10u);
 }
 
-}  // namespace
-}  // namespace robot_control::model
+}  // namespace robot_control::model::tests

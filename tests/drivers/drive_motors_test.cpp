@@ -2,14 +2,11 @@
 
 #include "drivers/drive_motors.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include "drivers/driver.h"
+#include "support/matchers.h"
 #include "support/message_of.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 MachineModel machine(std::initializer_list<JointRole> roles) {
   MachineModel model;
@@ -26,20 +23,19 @@ std::string refusal(const MachineModel& model, std::size_t brakes) {
 TEST(DriveMotors, AreTheDrivenJointsOfAMachine) {
   using enum JointRole;
   const DriveMotors motors = drive_motors(machine({kDriven, kDriven, kPassive, kHeld}), std::vector<Brake>(2));
-  EXPECT_THAT(motors.joints, testing::ElementsAre("joint 0", "joint 1"));
-  EXPECT_THAT(motors.effort_limits, testing::ElementsAre(3, 3));
+  EXPECT_THAT(motors.joints, ElementsAre("joint 0", "joint 1"));
+  EXPECT_THAT(motors.effort_limits, ElementsAre(3, 3));
   EXPECT_EQ(motors.joint_count, 4u);
 }
 
 TEST(DriveMotors, RefuseAKindWithoutBrakes) {
-  EXPECT_THAT(refusal(machine({JointRole::kDriven}), 0), testing::HasSubstr("set robot.driver to mujoco"));
+  EXPECT_THAT(refusal(machine({JointRole::kDriven}), 0), HasSubstr("set robot.driver to mujoco"));
 }
 
 /// A driver moves the first joints: torque would reach another motor.
 TEST(DriveMotors, RefuseADrivenJointBehindAnother) {
   using enum JointRole;
-  EXPECT_THAT(refusal(machine({kDriven, kPassive, kDriven}), 2), testing::HasSubstr("'joint 1' is not driven"));
+  EXPECT_THAT(refusal(machine({kDriven, kPassive, kDriven}), 2), HasSubstr("'joint 1' is not driven"));
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

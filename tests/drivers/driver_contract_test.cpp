@@ -4,8 +4,7 @@
 #include "support/robots/diffbot_urdf.h"
 #include "support/robots/free_wheels.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 constexpr double kEffortLimit = 3.5;  // N·m, of diffbot's wheels
 
@@ -38,5 +37,4 @@ const MachineUnderTest kFreeWheels{.name = "FreeWheels",
 
 INSTANTIATE_TEST_SUITE_P(Machines, DriverContract, testing::Values(kSimulatedMachine, kFreeWheels), machine_name);
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -6,11 +6,9 @@
 
 #include "drivers/board/board_machine.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
-class ExternalImuTest : public testing::Test {
- protected:
+struct ExternalImuTest : testing::Test {
   SensorFrame read() {
     SensorFrame frame;
     machine_.read(frame);
@@ -59,5 +57,4 @@ TEST_F(ExternalImuTest, WhatIsNotFiniteOrNotMeasuredIsNotValid) {
   EXPECT_EQ(read().valid, kValidGyro);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

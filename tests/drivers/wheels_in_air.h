@@ -19,14 +19,7 @@ class WheelsInAir : public Driver {
   static constexpr Brake kBrake{.effort = 3, .hold_effort = 3, .damping = 3, .stiffness = 20, .hold_speed = 0.3};
 
   /// The contract begins with a machine that is ready.
-  void start() override {
-    driver_->start();
-    SensorFrame frame;
-    for (int i = 0; i < 50 && frame.driver_state != DriverState::kRunning; ++i) {
-      read(frame);
-      write(std::vector<JointCommand>(2));
-    }
-  }
+  void start() override { start(50); }
   void reset() noexcept override { driver_->reset(); }
   void read(SensorFrame& sensors) noexcept override { driver_->read(sensors); }
   void write(std::span<const JointCommand> commands) noexcept override {
@@ -38,6 +31,16 @@ class WheelsInAir : public Driver {
   bool measures(MachineInput input) const noexcept override { return driver_->measures(input); }
   std::string description() const override { return driver_->description(); }
   std::string warning() const override { return driver_->warning(); }
+
+  /// Runs `count` cycles with one command for both wheels; returns the last frame.
+  const SensorFrame& cycles(int count, const JointCommand& command = {}) {
+    for (int i = 0; i < count; ++i) {
+      read(frame_);
+      write(std::vector<JointCommand>(2, command));
+    }
+    return frame_;
+  }
+  const SensorFrame& frame() const { return frame_; }
 
   /// Runs the board without its driver.
   void run_board() {
@@ -56,7 +59,14 @@ class WheelsInAir : public Driver {
  protected:
   explicit WheelsInAir(double period) : period_(period) {}
 
+  void start(int max_cycles) {
+    driver_->start();
+    frame_ = {};
+    for (int i = 0; i < max_cycles && frame_.driver_state != DriverState::kRunning; ++i) cycles(1);
+  }
+
   double period_;
+  SensorFrame frame_;
   std::unique_ptr<Board> board_;
   std::unique_ptr<Inner> driver_;
 };

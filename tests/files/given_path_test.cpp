@@ -9,8 +9,7 @@
 #include <cstdlib>
 #include <optional>
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 /// Sets a variable of the environment, or removes it, until the end of the block.
 class Variable {
@@ -62,5 +61,4 @@ TEST(GivenPath, AnErrorSaysWhatWasGivenWhatItBecameAndWhy) {
   EXPECT_EQ(shown_path("plain"), "plain");
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -1,18 +1,13 @@
 #include "files/input_file.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 #include <sys/stat.h>
 
+#include "support/matchers.h"
 #include "support/temporary_folder.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
-using ::testing::HasSubstr;
-
-class AnInputFile : public ::testing::Test {
- protected:
+struct AnInputFile : ::testing::Test {
   TemporaryFolder folder_;
 };
 
@@ -28,12 +23,12 @@ TEST_F(AnInputFile, LargerThanTheLimitIsRefused) {
               HasSubstr("has 6 bytes, at most 5 are read"));
 }
 
-TEST_F(AnInputFile, WithoutASizeIsBoundedToo) {
+TEST_F(AnInputFile, IsBoundedWithoutASizeToo) {
   EXPECT_EQ(read_input_file("/proc/self/stat", 1000).problem, "");
   EXPECT_THAT(read_input_file("/proc/self/stat", 3).problem, HasSubstr("more than 3 bytes"));
 }
 
-TEST_F(AnInputFile, ThatIsNoRegularFileIsRefusedWithoutAWait) {
+TEST_F(AnInputFile, IsRefusedWithoutAWaitIfItIsNoRegularFile) {
   const std::string fifo = folder_.path() / "fifo";
   ASSERT_EQ(mkfifo(fifo.c_str(), 0600), 0);
   EXPECT_THAT(read_input_file(fifo, 10).problem, HasSubstr("is a FIFO"));
@@ -42,17 +37,16 @@ TEST_F(AnInputFile, ThatIsNoRegularFileIsRefusedWithoutAWait) {
   EXPECT_THAT(read_input_file(folder_.path(), 10).problem, HasSubstr("is a folder"));
 }
 
-TEST_F(AnInputFile, BehindALinkCountsAsWhatItIs) {
+TEST_F(AnInputFile, CountsAsWhatItIsBehindALink) {
   std::filesystem::create_symlink("/dev/zero", folder_.path() / "link");
   EXPECT_THAT(read_input_file(folder_.path() / "link", 10).problem, HasSubstr("is a device"));
   EXPECT_THAT(input_file_problem(folder_.path() / "link", 10), HasSubstr("is a device"));
 }
 
-TEST_F(AnInputFile, ThatIsNotThereIsRefusedInTheSystemsWords) {
+TEST_F(AnInputFile, IsRefusedInTheSystemsWordsIfItIsNotThere) {
   EXPECT_EQ(read_input_file(folder_.path() / "absent", 10).problem, "No such file or directory");
   EXPECT_EQ(read_input_file(std::string(5000, 'a'), 10).problem, "File name too long");
   EXPECT_THAT(read_input_file(std::string("a\0b", 3), 10).problem, HasSubstr("NUL"));
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -1,13 +1,8 @@
 #include "files/message_text.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
+#include "support/matchers.h"
 
-namespace robot_control {
-namespace {
-
-using ::testing::HasSubstr;
-using ::testing::Not;
+namespace robot_control::tests {
 
 TEST(MessageText, EscapesControlCharactersAndWhatIsNoUtf8) {
   EXPECT_EQ(printable(std::string_view("a\0b\x1b[2J\x7f", 8)), R"(a\x00b\x1b[2J\x7f)");
@@ -40,5 +35,4 @@ TEST(MessageText, BoundsTheSentenceAsAWhole) {
   EXPECT_THAT(fit_for_message(std::string("a\0b \x1b", 5)), Not(HasSubstr("\x1b")));
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

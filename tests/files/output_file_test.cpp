@@ -14,11 +14,9 @@
 #include "support/processes/child_process.h"
 #include "support/temporary_folder.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
-class AnOutputFile : public ::testing::Test {
- protected:
+struct AnOutputFile : ::testing::Test {
   std::string file(const std::string& name = "file") const { return folder_.path() / name; }
   static struct stat status(const std::string& path) {
     struct stat result {};
@@ -55,7 +53,7 @@ TEST_F(AnOutputFile, KeepsItsOwner) {
   EXPECT_EQ(status(file()).st_gid, 23456u);
 }
 
-TEST_F(AnOutputFile, OfAnotherOwnerIsOverwrittenInPlaceByAUserWhoMayWriteIt) {
+TEST_F(AnOutputFile, IsOverwrittenInPlaceByAUserWhoMayWriteThatOfAnotherOwner) {
   if (geteuid() != 0) GTEST_SKIP() << "only root may become another user";
   write_output_file(file(), "one and more");
   ASSERT_EQ(chmod(file().c_str(), 0666), 0);
@@ -71,7 +69,7 @@ TEST_F(AnOutputFile, OfAnotherOwnerIsOverwrittenInPlaceByAUserWhoMayWriteIt) {
   EXPECT_EQ(files_in_folder(), 1);
 }
 
-TEST_F(AnOutputFile, BehindALinkIsReplacedAndTheLinkStays) {
+TEST_F(AnOutputFile, IsReplacedBehindALinkAndTheLinkStays) {
   write_output_file(file("target"), "one");
   std::filesystem::create_symlink("target", file("link"));
   std::filesystem::create_symlink("not yet", file("dangling"));
@@ -83,7 +81,7 @@ TEST_F(AnOutputFile, BehindALinkIsReplacedAndTheLinkStays) {
   EXPECT_EQ(content(file("not yet")), "three");
 }
 
-TEST_F(AnOutputFile, ThatIsADeviceIsWrittenToAndStays) {
+TEST_F(AnOutputFile, IsWrittenToAndStaysIfItIsADevice) {
   if (mknod(file("null").c_str(), S_IFCHR | 0666, makedev(1, 3)) != 0) GTEST_SKIP() << "devices are not granted";
   const int opened = open(file("null").c_str(), O_WRONLY | O_CLOEXEC);
   if (opened < 0) GTEST_SKIP() << "this file system has no devices";
@@ -94,7 +92,7 @@ TEST_F(AnOutputFile, ThatIsADeviceIsWrittenToAndStays) {
   EXPECT_TRUE(S_ISCHR(status("/dev/full").st_mode));
 }
 
-TEST_F(AnOutputFile, ThatIsAFifoIsWrittenToAndStays) {
+TEST_F(AnOutputFile, IsWrittenToAndStaysIfItIsAFifo) {
   ASSERT_EQ(mkfifo(file("fifo").c_str(), 0600), 0);
   const int reader = open(file("fifo").c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
   write_output_file(file("fifo"), "text");
@@ -105,7 +103,7 @@ TEST_F(AnOutputFile, ThatIsAFifoIsWrittenToAndStays) {
   EXPECT_TRUE(S_ISFIFO(status(file("fifo")).st_mode));
 }
 
-TEST_F(AnOutputFile, BeyondTheLimitOnFileSizesFailsAndLeavesTheOldOne) {
+TEST_F(AnOutputFile, FailsBeyondTheLimitOnFileSizesAndLeavesTheOldOne) {
   write_output_file(file(), "old");
   ChildProcess child([this] {
     const rlimit limit{1000, 1000};
@@ -123,5 +121,4 @@ TEST_F(AnOutputFile, BeyondTheLimitOnFileSizesFailsAndLeavesTheOldOne) {
   EXPECT_EQ(files_in_folder(), 1);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -10,11 +10,9 @@
 #include "signals/names.h"
 #include "signals/wheeled/drive_tuning.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
-class SecondKind : public testing::Test {
- protected:
+struct SecondKind : testing::Test {
   static Parameters parameters() {
     Parameters parameters = default_parameters();
     parameters.robot = {};
@@ -168,5 +166,4 @@ TEST(SecondKindTwice, GivesTheSameBits) {
   EXPECT_EQ(digest(), digest());
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -4,8 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <csignal>
-#include <fstream>
 #include <functional>
 
 #include "kinds/pendulum.h"
@@ -18,8 +16,7 @@
 #include "support/processes/node_processes.h"
 #include "support/temporary_folder.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 constexpr double kPatience = 60;           // s
 constexpr std::uint64_t kStopWithin = 20;  // cycles
@@ -113,5 +110,4 @@ TEST(SecondKindProcesses, AControllerThatIsKilledIsFollowedByTheStopAction) {
   EXPECT_LT(std::abs(pole.sensors().joints[0].position), 0.05);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

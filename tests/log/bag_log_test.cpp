@@ -1,22 +1,15 @@
 #include "log/bag_log.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include <filesystem>
 
 #include "log/log_error.h"
 #include "log/trace_reader.h"
 #include "loop/log_header.h"
 #include "recorded_drive.h"
+#include "support/matchers.h"
 #include "support/temporary_folder.h"
 
-namespace robot_control {
-namespace {
-
-using ::testing::ElementsAre;
-using ::testing::HasSubstr;
-using ::testing::ThrowsMessage;
+namespace robot_control::tests {
 
 struct Found {
   std::vector<std::uint64_t> cycles = {};
@@ -109,7 +102,7 @@ TEST_F(ABagLog, HoldsEveryRowAndSnapshotAndItsHeader) {
   EXPECT_EQ(found.cut, "");
 }
 
-TEST_F(ABagLog, OfAKilledWriterIsReadToItsLastChunk) {
+TEST_F(ABagLog, IsReadToItsLastChunkIfItsWriterWasKilled) {
   open();
   drive_on(2500);
   const Found found = rows_of(path());
@@ -145,7 +138,7 @@ TEST_F(ABagLog, HoldsASnapshotAtAnyRate) {
   EXPECT_EQ(BagLog::before_ns(0.001), BagLog::kBeforeNs);
 }
 
-TEST_F(ABagLog, OnRequestHoldsWhatIsRequested) {
+TEST_F(ABagLog, HoldsWhatIsRequested) {
   parameters.telemetry.record = RecordMode::kRequest;
   open();
   drive_on(20'000);
@@ -155,7 +148,7 @@ TEST_F(ABagLog, OnRequestHoldsWhatIsRequested) {
   log->request(false);
   stand(5000);
   log->close();
-  EXPECT_THAT(log->rows(), testing::AllOf(testing::Ge(12'000u), testing::Le(16'000u)));
+  EXPECT_THAT(log->rows(), AllOf(testing::Ge(12'000u), testing::Le(16'000u)));
 }
 
 TEST_F(ABagLog, IsSplitBySizeAndLosesNothing) {
@@ -229,7 +222,7 @@ TEST_F(ABagLog, KeepsTheNewestOfItsQuota) {
   EXPECT_THAT(logs->take_removed(), testing::Contains(path("run.1.bag")));
 }
 
-TEST_F(ABagLog, WhoseFileWasRemovedSaysSoCountsAndBeginsAnother) {
+TEST_F(ABagLog, SaysThatItsFileWasRemovedCountsAndBeginsAnother) {
   open();
   drive_on(1500);
   std::filesystem::remove_all(folder.path() / "log");
@@ -249,7 +242,7 @@ TEST_F(ABagLog, WhoseFileWasRemovedSaysSoCountsAndBeginsAnother) {
   EXPECT_GE(log->unwritten(), 2000u);
 }
 
-TEST_F(ABagLog, WithoutAMessageIsRemovedAtTheEndAndNotKeptAfterACrash) {
+TEST_F(ABagLog, IsRemovedAtTheEndWithoutAMessageAndNotKeptAfterACrash) {
   parameters.telemetry.record = RecordMode::kRequest;
   open();
   std::filesystem::copy_file(path(), path("killed"));  // as after SIGKILL: it is not closed
@@ -278,5 +271,4 @@ TEST_F(ABagLog, NamesTheRowsThatWereLostBeforeIt) {
   EXPECT_EQ(found.lost[100], 17u);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

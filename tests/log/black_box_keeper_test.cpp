@@ -2,8 +2,6 @@
 
 #include "log/black_box/black_box_keeper.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 #include <sys/stat.h>
 
 #include <chrono>
@@ -15,15 +13,10 @@
 #include "log/trace_reader.h"
 #include "loop/log_header.h"
 #include "recorded_drive.h"
+#include "support/matchers.h"
 #include "support/temporary_folder.h"
 
-namespace robot_control {
-namespace {
-
-using ::testing::ElementsAre;
-using ::testing::HasSubstr;
-using ::testing::ThrowsMessage;
-using ::testing::UnorderedElementsAre;
+namespace robot_control::tests {
 
 struct ABlackBoxKeeper : testing::Test {
   static constexpr std::int64_t kSecond = 1'000'000'000;
@@ -170,7 +163,7 @@ TEST_F(ABlackBoxKeeper, SavesWhatWasBeforeAStopAndFiveSecondsAfterItAndKeepsTheN
   drive_on(*keeper, 500);
   for (const char* stop : {"stop.1.bag: ", "stop.2.bag: ", "stop.3.bag: "}) {
     stop_and_release(*keeper);
-    EXPECT_THAT(notes(*keeper, 1), ElementsAre(testing::AllOf(HasSubstr(stop), HasSubstr("e_stop"))));
+    EXPECT_THAT(notes(*keeper, 1), ElementsAre(AllOf(HasSubstr(stop), HasSubstr("e_stop"))));
     if (stop[5] == '1') {
       EXPECT_EQ(rows_of("stop.1.bag"), 5600u);
     }
@@ -204,7 +197,7 @@ TEST_F(ABlackBoxKeeper, SavesAtTheNextStartWhatATelemetryLeftThatWasKilled) {
   EXPECT_EQ(rows_of("crash.3.bag"), 300u);
 }
 
-TEST_F(ABlackBoxKeeper, AfterAnOrderlyEndIsKeptOnceAndSavesAStopThatWaited) {
+TEST_F(ABlackBoxKeeper, SavesAStopThatWaitedAtAnOrderlyEnd) {
   const auto first = start();
   drive_on(*first, 500);
   loop.e_stop();
@@ -215,7 +208,7 @@ TEST_F(ABlackBoxKeeper, AfterAnOrderlyEndIsKeptOnceAndSavesAStopThatWaited) {
 }
 
 /// Its thread gets little time on a busy machine.
-TEST_F(ABlackBoxKeeper, AtItsEndSavesWhatItsThreadIsSavingWithThePriorityOfItsCaller) {
+TEST_F(ABlackBoxKeeper, SavesAtItsEndWhatItsThreadIsSavingWithThePriorityOfItsCaller) {
   const auto keeper = start();
   drive_on(*keeper, 2000);
   loop.e_stop();
@@ -263,7 +256,7 @@ TEST_F(ABlackBoxKeeper, DoesNotKeepAnEmptyRing) {
   EXPECT_THAT(names(), ElementsAre("ring"));
 }
 
-TEST_F(ABlackBoxKeeper, WithoutIncidentsSavesNone) {
+TEST_F(ABlackBoxKeeper, SavesNoneWithoutIncidents) {
   drive_on(*start(0), 100);
   const auto keeper = start(0);
   drive_on(*keeper, 100);
@@ -290,5 +283,4 @@ TEST_F(ABlackBoxKeeper, SaysWhereAnIncidentCannotBeSaved) {
   EXPECT_THAT(keeper->take_notes(), ElementsAre(HasSubstr("not saved (e_stop_service): ")));
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

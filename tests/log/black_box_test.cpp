@@ -1,18 +1,12 @@
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include <algorithm>
 #include <filesystem>
 
 #include "black_box_fixture.h"
 #include "log/replay/replay.h"
+#include "support/matchers.h"
 #include "support/processes/child_process.h"
 
-namespace robot_control {
-namespace {
-
-using ::testing::HasSubstr;
-using ::testing::ThrowsMessage;
+namespace robot_control::tests {
 
 /// Every message of a log, as bits.
 std::vector<std::string> messages_of(const std::string& bag) {
@@ -88,7 +82,7 @@ TEST_F(ABlackBox, LeavesNoBagWhereverTheCallerGivesUp) {
 }
 
 /// A bag of rows that have one field.
-TEST_F(ABlackBox, OfAnotherVersionIsRefusedWithThatVersion) {
+TEST_F(ABlackBox, IsRefusedWithItsVersionIfThatIsAnother) {
   MessageType other = trace_type();
   other.definition = "uint64 cycle\n";
   const std::vector<WrittenConnection> connections{{.topic = "trace_header", .type = trace_header_type()},
@@ -129,5 +123,4 @@ TEST_F(ABlackBox, IsNothingElse) {
   EXPECT_THAT([&] { save(); }, ThrowsMessage<LogError>(HasSubstr("is no black box of this version")));
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

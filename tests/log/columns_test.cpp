@@ -1,16 +1,15 @@
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <set>
+#include <sstream>
 
 #include "log/fields/trace_fields.h"
 #include "log/rows/traces.h"
 #include "signals/wheeled/drive_tuning.h"
+#include "support/matchers.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 using ::testing::IsSupersetOf;
 
@@ -20,8 +19,12 @@ std::vector<std::string> names_of(const std::vector<TraceColumn>& columns) {
   return names;
 }
 
-class Columns : public ::testing::Test {
- protected:
+std::vector<std::string> words(const std::string& text) {
+  std::istringstream from(text);
+  return {std::istream_iterator<std::string>(from), {}};
+}
+
+struct Columns : ::testing::Test {
   Columns() {
     row.run = 2;
     row.cycle = 1234;
@@ -48,92 +51,22 @@ class Columns : public ::testing::Test {
 };
 
 TEST_F(Columns, HoldWhatReadersOfTheLogRelyOn) {
-  EXPECT_THAT(names_of(columns), IsSupersetOf({"run",
-                                               "cycle",
-                                               "time",
-                                               "truth_x",
-                                               "truth_y",
-                                               "truth_z",
-                                               "truth_yaw",
-                                               "truth_tilt",
-                                               "truth_linear",
-                                               "truth_lateral",
-                                               "truth_vertical",
-                                               "truth_angular",
-                                               "estimate_x",
-                                               "estimate_y",
-                                               "estimate_yaw",
-                                               "estimate_linear",
-                                               "estimate_angular",
-                                               "estimate_x_variance",
-                                               "estimate_y_variance",
-                                               "estimate_yaw_variance",
-                                               "confidence_left_encoder",
-                                               "confidence_right_encoder",
-                                               "confidence_gyro",
-                                               "confidence_accelerometer",
-                                               "estimate_xy_covariance",
-                                               "estimate_x_yaw_covariance",
-                                               "estimate_y_yaw_covariance",
-                                               "estimate_linear_variance",
-                                               "estimate_angular_variance",
-                                               "estimate_linear_angular_covariance",
-                                               "estimate_lateral",
-                                               "estimate_lateral_variance",
-                                               "estimate_z",
-                                               "estimate_roll",
-                                               "estimate_pitch",
-                                               "estimate_slip",
-                                               "confidence_lateral_contact",
-                                               "nis_gyro",
-                                               "nis_vertical_contact",
-                                               "rejected_left_encoder",
-                                               "radius_ratio",
-                                               "radius_ratio_deviation",
-                                               "wheel_base_factor",
-                                               "wheel_base_deviation",
-                                               "gyro_bias_x",
-                                               "gyro_bias_z_deviation",
-                                               "wheel_odom_x",
-                                               "wheel_odom_y",
-                                               "wheel_odom_yaw",
-                                               "estimate_flags",
-                                               "requested_linear",
-                                               "requested_angular",
-                                               "limited_linear",
-                                               "limited_angular",
-                                               "command_reasons",
-                                               "gyro_x",
-                                               "gyro_y",
-                                               "gyro_z",
-                                               "accel_x",
-                                               "accel_y",
-                                               "accel_z",
-                                               "permit_action",
-                                               "supervisor_state",
-                                               "permit_causes",
-                                               "permit_warnings",
-                                               "speed_limit",
-                                               "evidence_cause",
-                                               "evidence_value",
-                                               "evidence_limit",
-                                               "battery_voltage",
-                                               "gate_verdict",
-                                               "gate_reasons",
-                                               "gate_command_cycle",
-                                               "held",
-                                               "missed",
-                                               "driver_state",
-                                               "faults",
-                                               "stamp_ns",
-                                               "driver_woke_ns",
-                                               "sensors_published_ns",
-                                               "estimator_woke_ns",
-                                               "state_published_ns",
-                                               "command_published_ns",
-                                               "permit_published_ns",
-                                               "overruns",
-                                               "slipped_ns"}));
+  EXPECT_THAT(
+      names_of(columns),
+      IsSupersetOf(words(
+          "run cycle time truth_x truth_y truth_z truth_yaw truth_tilt truth_linear truth_lateral truth_vertical "
+          "truth_angular estimate_x estimate_y estimate_yaw estimate_linear estimate_angular estimate_x_variance "
+          "estimate_y_variance estimate_yaw_variance confidence_left_encoder confidence_right_encoder confidence_gyro "
+          "confidence_accelerometer estimate_xy_covariance estimate_x_yaw_covariance estimate_y_yaw_covariance "
+          "estimate_linear_variance estimate_angular_variance estimate_linear_angular_covariance estimate_lateral "
+          "estimate_lateral_variance estimate_z estimate_roll estimate_pitch estimate_slip confidence_lateral_contact "
+          "nis_gyro nis_vertical_contact rejected_left_encoder radius_ratio radius_ratio_deviation wheel_base_factor "
+          "wheel_base_deviation gyro_bias_x gyro_bias_z_deviation wheel_odom_x wheel_odom_y wheel_odom_yaw "
+          "estimate_flags requested_linear requested_angular limited_linear limited_angular command_reasons gyro_x "
+          "gyro_y gyro_z accel_x accel_y accel_z permit_action supervisor_state permit_causes permit_warnings "
+          "speed_limit evidence_cause evidence_value evidence_limit battery_voltage gate_verdict gate_reasons "
+          "gate_command_cycle held missed driver_state faults stamp_ns driver_woke_ns sensors_published_ns "
+          "estimator_woke_ns state_published_ns command_published_ns permit_published_ns overruns slipped_ns")));
   for (const std::string& joint : kJoints) {
     EXPECT_THAT(names_of(columns),
                 IsSupersetOf({joint + "_position", joint + "_velocity", joint + "_effort", joint + "_effort_command",
@@ -153,7 +86,7 @@ TEST_F(Columns, HaveAValueAndAMeaning) {
   }
 }
 
-TEST_F(Columns, OfTimeAreAllAndAloneAbsentFromLockstep) {
+TEST_F(Columns, OmitTimesInLockstep) {
   std::vector<std::string> physical;
   for (const TraceColumn& column : columns) {
     if (!column.timing) physical.push_back(column.name);
@@ -174,7 +107,7 @@ TEST_F(Columns, AreEmptyWhereTheNodeHasNoFrame) {
   EXPECT_FALSE(std::isnan(value("permit_action")));
 }
 
-TEST_F(Columns, OfTheRowNeedNoNode) {
+TEST_F(Columns, NeedNoNodeForTheRow) {
   row.driver = nullptr;
   row.estimator = nullptr;
   row.controller = nullptr;
@@ -237,33 +170,21 @@ TEST_F(Columns, TellWhatTheControllerWasSetTo) {
       .kp = 15, .ki = 16, .kd = 17, .model_inertia = 0, .inertia = 18, .damping = 19, .friction = 20};
   EXPECT_EQ(value("tuning"), 3);
   EXPECT_EQ(value("keep_curvature"), 1);
-  const char* const names[] = {"max_linear_speed",
-                               "max_linear_acceleration",
-                               "max_linear_deceleration",
-                               "max_linear_emergency_deceleration",
-                               "max_linear_jerk",
-                               "max_angular_speed",
-                               "max_angular_acceleration",
-                               "max_angular_deceleration",
-                               "max_angular_emergency_deceleration",
-                               "max_angular_jerk",
-                               "cmd_vel_timeout",
-                               "tracking_bandwidth",
-                               "feed_forward_mass",
-                               "feed_forward_yaw_inertia",
-                               "right_wheel_joint_pid_kp",
-                               "right_wheel_joint_pid_ki",
-                               "right_wheel_joint_pid_kd",
-                               "right_wheel_joint_feed_forward_inertia",
-                               "right_wheel_joint_feed_forward_damping",
-                               "right_wheel_joint_feed_forward_friction"};
   double expected = 0;
-  for (const char* name : names) EXPECT_EQ(value(name), ++expected) << name;
+  for (const std::string& name :
+       words("max_linear_speed max_linear_acceleration max_linear_deceleration max_linear_emergency_deceleration "
+             "max_linear_jerk max_angular_speed max_angular_acceleration max_angular_deceleration "
+             "max_angular_emergency_deceleration max_angular_jerk cmd_vel_timeout tracking_bandwidth feed_forward_mass "
+             "feed_forward_yaw_inertia right_wheel_joint_pid_kp right_wheel_joint_pid_ki right_wheel_joint_pid_kd "
+             "right_wheel_joint_feed_forward_inertia right_wheel_joint_feed_forward_damping "
+             "right_wheel_joint_feed_forward_friction")) {
+    EXPECT_EQ(value(name), ++expected) << name;
+  }
   EXPECT_EQ(value("left_wheel_joint_pid_kp"), 0);
 }
 
 // More joints than wheels may have loops: those of an arm have no such columns.
-TEST_F(Columns, OfGainsAreThoseOfWheels) {
+TEST_F(Columns, HaveGainsOfWheelsAlone) {
   std::vector<std::string> many;
   for (std::size_t i = 0; i < kMaxJoints; ++i) many.push_back("joint_" + std::to_string(i));
   const std::vector<std::string> names = names_of(log_columns(many, {}, false));
@@ -392,5 +313,4 @@ TEST_F(Columns, ShowTheInjectedFaultsAsOneOctalDigitPerComponent) {
   EXPECT_EQ(value("injected"), 0210);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -1,7 +1,5 @@
 /// A killed, damaged or cut black box gives its valid part, and reports the rest.
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 #include <sys/resource.h>
 
 #include <csignal>
@@ -10,12 +8,9 @@
 #include <random>
 
 #include "black_box_fixture.h"
+#include "support/matchers.h"
 
-namespace robot_control {
-namespace {
-
-using ::testing::HasSubstr;
-using ::testing::ThrowsMessage;
+namespace robot_control::tests {
 
 namespace fs = std::filesystem;
 
@@ -92,6 +87,15 @@ TEST_F(ADamagedBlackBox, LosesTheChunkThatIsDamagedAndNoOther) {
   EXPECT_THAT(reader.header().missing, HasSubstr("rows, in the cycles "));
 }
 
+TEST_F(ADamagedBlackBox, IsReadUpToWhereABagIsCutOff) {
+  fs::resize_file(bag(1), kBag / 2);
+  const std::vector<std::uint64_t> left = cycles_of_saved();
+  EXPECT_EQ(left.front(), 0u);
+  EXPECT_EQ(left.back(), 5999u);
+  EXPECT_LT(left.size(), all.size());
+  EXPECT_THAT(saved.missing, HasSubstr("bags that are cut off: 1 of 17; records are missing at 1 place"));
+}
+
 TEST_F(ADamagedBlackBox, IsReadAroundABagOfWhichNothingIsLeft) {
   overwrite(1, 0, std::string(kBag, 'x'));
   const std::vector<std::uint64_t> left = cycles_of_saved();
@@ -107,16 +111,7 @@ TEST_F(ADamagedBlackBox, IsReadAroundABagOfWhichNothingIsLeft) {
   EXPECT_THAT(saved.missing, HasSubstr("bags that are not there: 1 of 17"));
 }
 
-TEST_F(ADamagedBlackBox, IsReadUpToWhereABagIsCutOff) {
-  fs::resize_file(bag(1), kBag / 2);
-  const std::vector<std::uint64_t> left = cycles_of_saved();
-  EXPECT_EQ(left.front(), 0u);
-  EXPECT_EQ(left.back(), 5999u);
-  EXPECT_LT(left.size(), all.size());
-  EXPECT_THAT(saved.missing, HasSubstr("bags that are cut off: 1 of 17; records are missing at 1 place"));
-}
-
-TEST_F(ADamagedBlackBox, OfWhichNothingIsLeftIsRefusedByWhatIsMissing) {
+TEST_F(ADamagedBlackBox, IsRefusedByWhatIsMissingWhereNothingIsLeft) {
   for (std::size_t i = 0; i <= bags; ++i) overwrite(i, 0, std::string(kBag, 'x'));
   EXPECT_THAT([&] { save(); }, ThrowsMessage<LogError>(HasSubstr("no record that is whole: the black box is damaged")));
 }
@@ -165,5 +160,4 @@ TEST_F(ADamagedBlackBox, GivesWhatIsSoundAndCountsEveryGapWhateverIsDamaged) {
   }
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

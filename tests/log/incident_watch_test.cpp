@@ -2,8 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 /// A robot drives, nothing is latched.
 struct AnIncidentWatch : testing::Test {
@@ -40,5 +39,4 @@ TEST_F(AnIncidentWatch, SavesStopsThatFollowEachOtherTogetherButWithinHalfAMinut
   EXPECT_FALSE(watch.due(30 * kSecond - 1));
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

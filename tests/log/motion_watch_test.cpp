@@ -4,8 +4,7 @@
 
 #include "log/rows/traces.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 constexpr std::int64_t kSecond = 1'000'000'000;
 
@@ -63,5 +62,4 @@ TEST_F(AMotionWatch, EndsAWhileAfterTheMotion) {
   EXPECT_NEAR(static_cast<double>(now - begin), static_cast<double>(MotionWatch::kAfter), 2e6);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

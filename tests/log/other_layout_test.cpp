@@ -1,8 +1,5 @@
 /// A log whose messages have another layout is refused with the version that wrote it and the remedy.
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include <string>
 #include <utility>
 #include <vector>
@@ -11,11 +8,11 @@
 #include "log/messages/log_messages.h"
 #include "log/messages/trace_message.h"
 #include "log/trace_reader.h"
+#include "support/matchers.h"
 #include "support/message_of.h"
 #include "support/temporary_folder.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 /// A bag of a header of version 0.3.0, and of one message of `type`.
 std::string bag_with(const TemporaryFolder& folder, MessageType type, const std::string& message) {
@@ -32,7 +29,7 @@ std::string bag_with(const TemporaryFolder& folder, MessageType type, const std:
   return path;
 }
 
-TEST(ALogOfAnotherLayout, OfSnapshotsIsRefusedWithItsVersionAndTheRemedy) {
+TEST(ALogOfAnotherLayout, IsRefusedWithTheVersionOfItsSnapshotsAndTheRemedy) {
   const TemporaryFolder folder;
   MessageType other = snapshot_type();
   other.md5.front() = other.md5.front() == '0' ? '1' : '0';
@@ -42,11 +39,11 @@ TEST(ALogOfAnotherLayout, OfSnapshotsIsRefusedWithItsVersionAndTheRemedy) {
       message_of<TraceError>([&] { reader.read({.snapshot = [](const LawSnapshot&, std::int64_t) {}}); });
   for (const std::string& part : {path, package_version(), std::string("version 0.3.0, build gcc 9 wrote it"),
                                   std::string("replay with that build")}) {
-    EXPECT_THAT(message, testing::HasSubstr(part));
+    EXPECT_THAT(message, HasSubstr(part));
   }
 }
 
-TEST(ALogOfAnotherLayout, OfRowsIsNotOfThisVersion) {
+TEST(ALogOfAnotherLayout, HasRowsOfAnotherVersion) {
   const TemporaryFolder folder;
   MessageType other = trace_type();
   EXPECT_TRUE(TraceReader(bag_with(folder, other, "")).of_this_version());
@@ -54,5 +51,4 @@ TEST(ALogOfAnotherLayout, OfRowsIsNotOfThisVersion) {
   EXPECT_FALSE(TraceReader(bag_with(folder, other, "")).of_this_version());
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -9,8 +9,7 @@
 #include "recorded_drive.h"
 #include "support/temporary_folder.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 struct AReplayedLog : testing::Test {
   AReplayedLog() {
@@ -55,12 +54,12 @@ struct AReplayedLog : testing::Test {
   std::unique_ptr<BagLog> log;
 };
 
-TEST_F(AReplayedLog, OfADriveOverASnapshot) {
+TEST_F(AReplayedLog, IsExactOverASnapshot) {
   drive_on(11'000);
   expect_replayed_whole();
 }
 
-TEST_F(AReplayedLog, WithStopsResetsTuningAndANewRun) {
+TEST_F(AReplayedLog, IsExactOverStopsResetsTuningAndANewRun) {
   drive_on(1000);
   loop.e_stop();
   drive_on(800);
@@ -74,5 +73,4 @@ TEST_F(AReplayedLog, WithStopsResetsTuningAndANewRun) {
   expect_replayed_whole();
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -8,8 +8,7 @@
 #include "loop/log_header.h"
 #include "recorded_drive.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 /// Changes each byte of the message: it must be refused or not intact. Names the byte that is not detected.
 template <class Decode>
@@ -25,7 +24,7 @@ void expect_every_change_is_noticed(const std::string& message, std::size_t step
   }
 }
 
-TEST(SealedMessages, OfAHeaderShowEveryChange) {
+TEST(SealedMessages, ShowEveryChangeOfAHeader) {
   const Parameters parameters = drive_parameters();
   const ClosedLoop loop(parameters);
   LogHeader header = log_header(parameters, loop.robot());
@@ -37,7 +36,7 @@ TEST(SealedMessages, OfAHeaderShowEveryChange) {
   });
 }
 
-TEST(SealedMessages, OfASnapshotShowEveryChange) {
+TEST(SealedMessages, ShowEveryChangeOfASnapshot) {
   ClosedLoop loop(drive_parameters());
   loop.step();
   for (const LawSnapshot* snapshot : loop.snapshots()) {
@@ -49,5 +48,4 @@ TEST(SealedMessages, OfASnapshotShowEveryChange) {
   }
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

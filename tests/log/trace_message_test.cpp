@@ -1,8 +1,5 @@
 #include "log/messages/trace_message.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include <cmath>
 #include <cstring>
 
@@ -11,11 +8,9 @@
 #include "recorded_drive.h"
 #include "signals/names.h"
 #include "support/log_table.h"
+#include "support/matchers.h"
 
-namespace robot_control {
-namespace {
-
-using ::testing::HasSubstr;
+namespace robot_control::tests {
 
 struct TraceMessages : testing::Test {
   TraceMessages() : TraceMessages(drive_parameters()) {}
@@ -110,7 +105,7 @@ TEST_F(TraceMessages, HoldWholeFramesNearASnapshot) {
   EXPECT_TRUE(intact(read.monitor.permit));
 }
 
-TEST_F(TraceMessages, OfARowThatRepeatsACycleHoldTheLawAlone) {
+TEST_F(TraceMessages, HoldTheLawAloneOfARowThatRepeatsACycle) {
   loop.step();
   JoinedRow row{.run = 3, .cycle = 7};
   row.repeats = true;
@@ -125,7 +120,7 @@ TEST_F(TraceMessages, OfARowThatRepeatsACycleHoldTheLawAlone) {
   EXPECT_EQ(read.estimator.calls.law.output, row.laws.estimator->calls.law.output);
 }
 
-TEST_F(TraceMessages, ThatAreTooShortOrTooLongAreRefused) {
+TEST_F(TraceMessages, AreRefusedIfTheyAreTooShortOrTooLong) {
   each(1, [](const JoinedRow&, const JoinedRow&) {});
   const std::string whole = message;
   for (std::size_t size = 0; size < whole.size(); ++size) {
@@ -134,7 +129,7 @@ TEST_F(TraceMessages, ThatAreTooShortOrTooLongAreRefused) {
   EXPECT_THROW(decoder.decode(whole + "x", read), TraceError);
 }
 
-TEST_F(TraceMessages, OfAnotherVersionAreReadByTheNamesOfTheirFields) {
+TEST_F(TraceMessages, AreReadByTheNamesOfTheirFieldsInAnotherVersion) {
   const TraceDecoder other(
       "# an earlier version\nuint8 KIND=3\nfloat32[] of_another_version # m\nuint64 cycle\nuint32 run\n");
   std::string bytes;
@@ -150,12 +145,11 @@ TEST_F(TraceMessages, OfAnotherVersionAreReadByTheNamesOfTheirFields) {
   EXPECT_THAT(other.missing(), testing::Contains("gyro"));
 }
 
-TEST_F(TraceMessages, WithAListLongerThanItsMemberAreRefused) {
+TEST_F(TraceMessages, AreRefusedWithAListLongerThanItsMember) {
   const TraceDecoder list("float64[] joint_position\n");
   std::string bytes("\x21\0\0\0", 4);
   bytes.append(33 * 8, '\0');
   EXPECT_THAT([&] { list.decode(bytes, read); }, testing::ThrowsMessage<TraceError>(HasSubstr("joint_position")));
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -5,8 +5,7 @@
 
 #include "cycle_fixture.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 std::int64_t clock_ns = 0;  // of these tests
 std::int64_t virtual_clock() {
@@ -14,8 +13,7 @@ std::int64_t virtual_clock() {
 }
 
 /// A loop in READY whose monitor has a clock; one period passes in each cycle.
-class BlindMonitor : public ::testing::Test {
- protected:
+struct BlindMonitor : ::testing::Test {
   static constexpr std::uint64_t kLoss = 20;
 
   BlindMonitor() {
@@ -28,8 +26,7 @@ class BlindMonitor : public ::testing::Test {
   std::unique_ptr<MonitorCycle> make_monitor() {
     return std::make_unique<MonitorCycle>(
         std::make_unique<MonitorOf<SafetyMonitor>>(SafetyParameters{}, loop.robot, kPeriod), loop.robot.hash, kLossNs,
-        MonitorCycle::Channels{&loop.sensors.reader, &loop.state.reader, &loop.command.reader, loop.permit.writer},
-        CommandScript(), virtual_clock);
+        loop.of_monitor(), CommandScript(), virtual_clock);
   }
 
   /// The driver publishes and wakes the monitor in every period.
@@ -121,14 +118,9 @@ TEST_F(BlindMonitor, ADriverThatEndedAndIsStartedAgainIsLost) {
 
 // Before the first sensor frame.
 
-class MonitorWithoutDriver : public BlindMonitor {
- protected:
+struct MonitorWithoutDriver : BlindMonitor {
   MonitorWithoutDriver() {
-    loop.permit.memory = std::make_unique<LatestFrames<Permit>>();
-    loop.permit.writer = FrameWriter<Permit>(loop.permit.memory.get());
-    loop.permit.reader.remap(loop.permit.memory.get());
-    loop.sensors.memory = std::make_unique<LatestFrames<SensorFrame>>();
-    loop.sensors.reader.remap(loop.sensors.memory.get());
+    static_cast<TestChannels&>(loop) = {};
     loop.monitor = make_monitor();
   }
 };
@@ -159,8 +151,7 @@ TEST_F(MonitorWithoutDriver, RefusesAReset) {
 
 // A latch outlives its processes.
 
-class LatchedLoop : public BlindMonitor {
- protected:
+struct LatchedLoop : BlindMonitor {
   LatchedLoop() {
     e_stop();
     cycles(3);
@@ -202,5 +193,4 @@ TEST_F(LatchedLoop, IsLatchedWhereNoPermitIsWhole) {
   EXPECT_NE(causes() & kCauseLatchUnreadable, 0u);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

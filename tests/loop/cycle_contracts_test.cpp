@@ -2,13 +2,10 @@
 
 #include <gtest/gtest.h>
 
-#include <vector>
-
 #include "cycle_fixture.h"
 #include "loop/build_id.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 constexpr std::uint64_t kHash = 7;
 constexpr std::uint64_t kRun = 5;
@@ -80,7 +77,7 @@ struct NotedMonitor final : Saved<MonitorLaw> {
 };
 
 /// The channels of a loop whose driver is the test.
-struct Bench : testing::Test {
+struct Bench : testing::Test, TestChannels {
   Bench() {
     now_ns = 1'000'000'000;
     attach(kRun);
@@ -113,11 +110,6 @@ struct Bench : testing::Test {
     frame.head.checksum += 1;
     channel.writer.store(frame);
   }
-
-  TestChannel<SensorFrame> sensors;
-  TestChannel<StateFrame> state;
-  TestChannel<CommandFrame> command;
-  TestChannel<Permit> permit;
 };
 
 using CycleClockTest = Bench;
@@ -214,18 +206,12 @@ TEST(LawSnapshots, AreTakenInTheFirstTwoRowsInANewRunAndEveryKSnapshotCycles) {
   EXPECT_EQ(copy.bytes, 1u);
 }
 
-class EstimatorCycleTest : public Bench {
- protected:
+struct EstimatorCycleTest : Bench {
   EstimatorCycleTest() { start(); }
   void start(Now clock = nullptr) {
     auto law = std::make_unique<NotedEstimator>();
     law_ = law.get();
     cycle_ = std::make_unique<EstimatorCycle>(std::move(law), kHash, sensors.reader, state.writer, clock);
-  }
-  StateFrame newest() const {
-    StateFrame frame;
-    state.reader.newest(frame);
-    return frame;
   }
   NotedEstimator* law_ = nullptr;
   std::unique_ptr<EstimatorCycle> cycle_;
@@ -237,9 +223,9 @@ TEST_F(EstimatorCycleTest, ResumesFromTheLastFrameOfTheSameRunAlone) {
   ASSERT_TRUE(cycle_->step());
   EXPECT_EQ(law_->runs, 1);
   EXPECT_EQ(law_->resumed, 9u);
-  EXPECT_EQ(newest().first_cycle, 10u);
-  EXPECT_EQ(newest().head.cycle, 10u);
-  EXPECT_EQ(newest().head.stamp_ns, stamp(10));
+  EXPECT_EQ(state.newest().first_cycle, 10u);
+  EXPECT_EQ(state.newest().head.cycle, 10u);
+  EXPECT_EQ(state.newest().head.stamp_ns, stamp(10));
 
   attach(kRun + 1);
   law_->resumed.reset();
@@ -247,8 +233,8 @@ TEST_F(EstimatorCycleTest, ResumesFromTheLastFrameOfTheSameRunAlone) {
   ASSERT_TRUE(cycle_->step());
   EXPECT_EQ(law_->runs, 2);
   EXPECT_EQ(law_->resumed, std::nullopt) << "of another run";
-  EXPECT_EQ(newest().first_cycle, 0u);
-  EXPECT_EQ(newest().head.run, kRun + 1);
+  EXPECT_EQ(state.newest().first_cycle, 0u);
+  EXPECT_EQ(state.newest().head.run, kRun + 1);
 }
 
 TEST_F(EstimatorCycleTest, ResumesFromNoTokenAndNoCorruptFrame) {
@@ -308,16 +294,12 @@ TEST_F(EstimatorCycleTest, NotesItsTimesAndProcess) {
   EXPECT_EQ(cycle_->snapshot()->head.cycle, 1u);
 }
 
-class ControllerCycleTest : public Bench {
- protected:
+struct ControllerCycleTest : Bench {
   ControllerCycleTest() { start(); }
   void start(CommandScript script = {}, Now clock = nullptr) {
     auto law = std::make_unique<NotedController>();
     law_ = law.get();
-    cycle_ = std::make_unique<ControllerCycle>(
-        std::move(law), kHash,
-        ControllerCycle::Channels{&sensors.reader, &state.reader, &permit.reader, command.writer}, std::move(script),
-        clock);
+    cycle_ = std::make_unique<ControllerCycle>(std::move(law), kHash, of_controller(), std::move(script), clock);
   }
   bool step(std::uint64_t cycle) {
     sense(cycle);
@@ -426,9 +408,7 @@ TEST_F(ControllerCycleTest, HandsOnTheInboxAsItIs) {
   ASSERT_NE(law_->input.sensors, nullptr);
   EXPECT_EQ(law_->input.sensors->head.cycle, 1u);
   EXPECT_EQ(law_->input.state->head.cycle, 1u);
-  StateFrame published;
-  state.reader.newest(published);
-  EXPECT_EQ(cycle_->trace().calls.state, published.head.checksum);
+  EXPECT_EQ(cycle_->trace().calls.state, state.newest().head.checksum);
 }
 
 TEST_F(ControllerCycleTest, EntersARunWithWhatIsInTheInboxThen) {
@@ -511,25 +491,18 @@ TEST_F(ControllerCycleTest, NotesItsTimesAndProcess) {
   EXPECT_EQ(cycle_->snapshot()->head.cycle, 1u);
 }
 
-class MonitorCycleTest : public Bench {
- protected:
+struct MonitorCycleTest : Bench {
   MonitorCycleTest() { start(); }
-  void start(CommandScript script = {}, Now clock = nullptr, InheritedLatch latch = {}) {
+  void start(CommandScript script = {}, Now clock = nullptr, InheritedLatch latch = {}, std::uint64_t causes = 0) {
     auto law = std::make_unique<NotedMonitor>();
+    law->causes = causes;
     law_ = law.get();
-    cycle_ = std::make_unique<MonitorCycle>(
-        std::move(law), kHash, kLossNs,
-        MonitorCycle::Channels{&sensors.reader, &state.reader, &command.reader, permit.writer}, std::move(script),
-        clock, latch);
+    cycle_ =
+        std::make_unique<MonitorCycle>(std::move(law), kHash, kLossNs, of_monitor(), std::move(script), clock, latch);
   }
   bool step(std::uint64_t cycle) {
     sense(cycle);
     return cycle_->step();
-  }
-  Permit newest() const {
-    Permit frame;
-    permit.reader.newest(frame);
-    return frame;
   }
   NotedMonitor* law_ = nullptr;
   std::unique_ptr<MonitorCycle> cycle_;
@@ -582,14 +555,11 @@ TEST_F(MonitorCycleTest, AddsUpEveryInputOfTheOperatorAndTheScript) {
   expect(1, 0);
   step(1);
   expect(1, 0);
-  operator_input = {.e_stop_level = 1,
-                    .e_stop_messages = 4,
-                    .e_stop_triggers = 6,
-                    .e_stop_services = 8,
-                    .resets = 10,
-                    .heartbeats = 12,
-                    .clearances = 14,
-                    .clearance = 0.8};
+  for (std::uint64_t* counted :
+       {&operator_input.e_stop_messages, &operator_input.e_stop_triggers, &operator_input.e_stop_services,
+        &operator_input.resets, &operator_input.heartbeats, &operator_input.clearances}) {
+    *counted *= 2;
+  }
   cycle_->inbox().store(operator_input);
   step(3);
   expect(2, 1);
@@ -671,15 +641,15 @@ TEST_F(MonitorCycleTest, PublishesPermitsOfTheRunOfTheSensors) {
   EXPECT_EQ(cycle_->published_run(), 0u);
   step(6);
   EXPECT_EQ(cycle_->published_run(), kRun);
-  EXPECT_EQ(newest().head.run, kRun);
-  EXPECT_EQ(newest().head.cycle, 6u);
-  EXPECT_EQ(newest().head.stamp_ns, stamp(6));
+  EXPECT_EQ(permit.newest().head.run, kRun);
+  EXPECT_EQ(permit.newest().head.cycle, 6u);
+  EXPECT_EQ(permit.newest().head.stamp_ns, stamp(6));
   EXPECT_FALSE(step(6));
   sense(7, kRun + 1);
   EXPECT_FALSE(cycle_->step()) << "the driver is in another run";
   EXPECT_TRUE(step(8));
   EXPECT_EQ(cycle_->trace().calls.law.new_run, 0u);
-  EXPECT_EQ(newest().head.cycle, 8u);
+  EXPECT_EQ(permit.newest().head.cycle, 8u);
 }
 
 TEST_F(MonitorCycleTest, LatchesBeforeTheFirstFrameInARunThatNoGateUses) {
@@ -690,19 +660,14 @@ TEST_F(MonitorCycleTest, LatchesBeforeTheFirstFrameInARunThatNoGateUses) {
   EXPECT_EQ(law_->steps, 2);
   EXPECT_EQ(law_->input.silence, SensorSilence::kNone);
   EXPECT_EQ(cycle_->published_run(), MonitorCycle::kRunBeforeDriver);
-  EXPECT_EQ(newest().head.run, 1u);
+  EXPECT_EQ(permit.newest().head.run, 1u);
 }
 
 TEST_F(MonitorCycleTest, PublishesAnInheritedStopBeforeTheFirstFrameOnce) {
   publish(permit, 3);
-  auto law = std::make_unique<NotedMonitor>();
-  law->causes = kCauseEmergencyStopService;
-  law_ = law.get();
-  cycle_ = std::make_unique<MonitorCycle>(
-      std::move(law), kHash, kLossNs,
-      MonitorCycle::Channels{&sensors.reader, &state.reader, &command.reader, permit.writer}, CommandScript(), nullptr);
+  start({}, nullptr, {}, kCauseEmergencyStopService);
   cycle_->idle();
-  EXPECT_EQ(newest().causes, std::uint64_t{kCauseEmergencyStopService});
+  EXPECT_EQ(permit.newest().causes, std::uint64_t{kCauseEmergencyStopService});
   EXPECT_EQ(cycle_->published_run(), MonitorCycle::kRunBeforeDriver);
   const int steps = law_->steps;
   cycle_->idle();
@@ -721,7 +686,7 @@ TEST_F(MonitorCycleTest, StepsWithoutAFrameForEachRequestOfTheOperator) {
     EXPECT_EQ(law_->steps, ++steps);
     EXPECT_FALSE(cycle_->idle());
     EXPECT_EQ(cycle_->trace().calls.law.sensors, 0u);
-    EXPECT_EQ(newest().head.cycle, 0u) << "of the last frame";
+    EXPECT_EQ(permit.newest().head.cycle, 0u) << "of the last frame";
   }
 }
 
@@ -793,42 +758,33 @@ TEST_F(MonitorCycleTest, NeverTimesOutBeforeItsFirstFrame) {
   EXPECT_EQ(law_->steps, 1);
 }
 
-class DriverCycleTest : public Bench {
- protected:
+struct DriverCycleTest : Bench {
   DriverCycleTest() {
     driver_.set_driver_instance(99);
     driver_.begin_run(kRun);
-  }
-  SensorFrame newest() const {
-    SensorFrame frame;
-    sensors.reader.newest(frame);
-    return frame;
   }
   void steps(int count) {
     for (int i = 0; i < count; ++i) driver_.step();
   }
   DriveTrain robot_ = two_wheels();
   StandingMachine machine_;
-  TestChannel<TruthFrame> truth_;
-  DriverCycle driver_{
-      machine_, robot_, {sensors.writer, truth_.writer, &command.reader, &permit.reader}, kPeriodNs, test_clock};
+  DriverCycle driver_{machine_, robot_, of_driver(), kPeriodNs, test_clock};
 };
 
 TEST_F(DriverCycleTest, StampsItsCyclesFromTheStart) {
   driver_.set_start(700);
   steps(3);
-  EXPECT_EQ(newest().head.run, kRun);
-  EXPECT_EQ(newest().head.cycle, 2u);
-  EXPECT_EQ(newest().head.stamp_ns, 700 + 2 * kPeriodNs);
-  EXPECT_EQ(newest().driver_instance, 99u);
+  EXPECT_EQ(sensors.newest().head.run, kRun);
+  EXPECT_EQ(sensors.newest().head.cycle, 2u);
+  EXPECT_EQ(sensors.newest().head.stamp_ns, 700 + 2 * kPeriodNs);
+  EXPECT_EQ(sensors.newest().driver_instance, 99u);
   EXPECT_EQ(driver_.run(), kRun);
   EXPECT_EQ(driver_.trace().timing.woke_ns, now_ns - 700 - 2 * kPeriodNs);
   EXPECT_EQ(driver_.trace().timing.published_ns, now_ns - 700 - 2 * kPeriodNs);
-  TruthFrame truth;
-  EXPECT_EQ(truth_.reader.newest(truth), Lookup::kFrame);
-  EXPECT_EQ(truth.head.cycle, 2u);
-  EXPECT_EQ(truth.head.run, kRun);
-  EXPECT_EQ(truth.head.stamp_ns, 700 + 2 * kPeriodNs);
+  const TruthFrame seen = truth.newest();
+  EXPECT_EQ(seen.head.cycle, 2u);
+  EXPECT_EQ(seen.head.run, kRun);
+  EXPECT_EQ(seen.head.stamp_ns, 700 + 2 * kPeriodNs);
 }
 
 TEST_F(DriverCycleTest, CountsOverrunsSlipHoldsAndResumes) {
@@ -840,18 +796,18 @@ TEST_F(DriverCycleTest, CountsOverrunsSlipHoldsAndResumes) {
   driver_.count_resume();
   driver_.set_due(4 * kPeriodNs + 1500);
   driver_.step();
-  EXPECT_EQ(newest().overruns, 1u);
-  EXPECT_EQ(newest().slipped_ns, 1000u);
-  EXPECT_EQ(newest().resumes, 1u);
-  EXPECT_EQ(newest().held_ns, 500u) << "the part of its lag that has not slipped";
+  EXPECT_EQ(sensors.newest().overruns, 1u);
+  EXPECT_EQ(sensors.newest().slipped_ns, 1000u);
+  EXPECT_EQ(sensors.newest().resumes, 1u);
+  EXPECT_EQ(sensors.newest().held_ns, 500u) << "the part of its lag that has not slipped";
   driver_.count_slip(5 * kPeriodNs - 1000);
   EXPECT_DOUBLE_EQ(driver_.real_time_factor(), 0.5);
   driver_.begin_run(kRun + 1);
   driver_.step();
-  EXPECT_EQ(newest().head.cycle, 0u);
-  EXPECT_EQ(newest().overruns, 0u);
-  EXPECT_EQ(newest().slipped_ns, 0u);
-  EXPECT_EQ(newest().resumes, 1u);
+  EXPECT_EQ(sensors.newest().head.cycle, 0u);
+  EXPECT_EQ(sensors.newest().overruns, 0u);
+  EXPECT_EQ(sensors.newest().slipped_ns, 0u);
+  EXPECT_EQ(sensors.newest().resumes, 1u);
   EXPECT_EQ(driver_.trace().calls.law.new_run, 1u);
 }
 
@@ -866,17 +822,17 @@ TEST_F(DriverCycleTest, AnnouncesARunAndWakesItsReaders) {
 
 TEST_F(DriverCycleTest, RepeatsItsLastFrameAsPausedOrEndedButKeepsAFault) {
   driver_.publish_paused();
-  EXPECT_EQ(newest().head.run, 0u) << "nothing before the first tick";
+  EXPECT_EQ(sensors.newest().head.run, 0u) << "nothing before the first tick";
   driver_.step();
   driver_.publish_paused();
-  EXPECT_EQ(newest().driver_state, DriverState::kPaused);
+  EXPECT_EQ(sensors.newest().driver_state, DriverState::kPaused);
   driver_.publish_ended();
-  EXPECT_EQ(newest().driver_state, DriverState::kEnded);
-  EXPECT_EQ(newest().head.cycle, 0u);
+  EXPECT_EQ(sensors.newest().driver_state, DriverState::kEnded);
+  EXPECT_EQ(sensors.newest().head.cycle, 0u);
   machine_.state = DriverState::kFault;
   driver_.step();
   driver_.publish_ended();
-  EXPECT_EQ(newest().driver_state, DriverState::kFault);
+  EXPECT_EQ(sensors.newest().driver_state, DriverState::kFault);
 }
 
 TEST_F(DriverCycleTest, UsesCommandAndPermitOfTheLastCyclesOfThisRun) {
@@ -936,15 +892,14 @@ TEST_F(DriverCycleTest, WritesTheRowOfItsGate) {
   const GateCalls& calls = driver_.trace().calls;
   EXPECT_EQ(calls.law.number, 1u);
   EXPECT_EQ(calls.law.process, 99u);
-  EXPECT_EQ(calls.law.sensors, newest().head.checksum);
+  EXPECT_EQ(calls.law.sensors, sensors.newest().head.checksum);
   EXPECT_EQ(machine_.mode, JointMode::kBrake);
   ASSERT_NE(driver_.snapshot(), nullptr) << "of the first two cycles";
   EXPECT_EQ(driver_.snapshot()->law, LawName::kGate);
   const GateReport report = driver_.trace().gate;
   driver_.step();
-  EXPECT_EQ(newest().gate.verdict, report.verdict) << "the report of the tick before";
-  EXPECT_EQ(newest().gate.reasons, report.reasons);
+  EXPECT_EQ(sensors.newest().gate.verdict, report.verdict) << "the report of the tick before";
+  EXPECT_EQ(sensors.newest().gate.reasons, report.reasons);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

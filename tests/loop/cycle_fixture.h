@@ -2,8 +2,6 @@
 /// Four cycles on channels in private memory, around a machine that only stores the reports it receives.
 
 #include <memory>
-#include <string>
-#include <vector>
 
 #include "control/wheeled/drive_controller.h"
 #include "drivers/driver.h"
@@ -70,6 +68,27 @@ struct TestChannel {
   std::unique_ptr<LatestFrames<Frame>> memory = std::make_unique<LatestFrames<Frame>>();
   FrameWriter<Frame> writer{memory.get()};
   FrameReader<Frame> reader{memory.get()};
+
+  Frame newest() const {
+    Frame frame;
+    reader.newest(frame);
+    return frame;
+  }
+};
+
+/// The channels of a robot.
+struct TestChannels {
+  DriverCycle::Channels of_driver() const { return {sensors.writer, truth.writer, &command.reader, &permit.reader}; }
+  ControllerCycle::Channels of_controller() const {
+    return {&sensors.reader, &state.reader, &permit.reader, command.writer};
+  }
+  MonitorCycle::Channels of_monitor() const { return {&sensors.reader, &state.reader, &command.reader, permit.writer}; }
+
+  TestChannel<SensorFrame> sensors;
+  TestChannel<TruthFrame> truth;
+  TestChannel<StateFrame> state;
+  TestChannel<CommandFrame> command;
+  TestChannel<Permit> permit;
 };
 
 /// Each run begins with a zero request, which releases it at once.
@@ -79,7 +98,7 @@ inline CommandScript script_with_zero() {
   return script;
 }
 
-struct Loop {
+struct Loop : TestChannels {
   Loop() {
     driver.set_driver_instance(99);
     driver.begin_run(1);
@@ -97,14 +116,12 @@ struct Loop {
   void restart_controller() {
     controller = std::make_unique<ControllerCycle>(
         std::make_unique<ControllerOf<DriveController>>(DriveControllerParameters{}, robot, kPeriod), robot.hash,
-        ControllerCycle::Channels{&sensors.reader, &state.reader, &permit.reader, command.writer}, script_with_zero(),
-        nullptr);
+        of_controller(), script_with_zero(), nullptr);
   }
   void restart_monitor() {
-    monitor = std::make_unique<MonitorCycle>(
-        std::make_unique<MonitorOf<SafetyMonitor>>(SafetyParameters{}, robot, kPeriod), robot.hash, kLossNs,
-        MonitorCycle::Channels{&sensors.reader, &state.reader, &command.reader, permit.writer}, CommandScript(),
-        nullptr);
+    monitor =
+        std::make_unique<MonitorCycle>(std::make_unique<MonitorOf<SafetyMonitor>>(SafetyParameters{}, robot, kPeriod),
+                                       robot.hash, kLossNs, of_monitor(), CommandScript(), nullptr);
   }
 
   /// Runs one cycle of a node, and applies an injected fault to its output, as ClosedLoop does; null: it has no row.
@@ -129,32 +146,21 @@ struct Loop {
     for (int i = 0; i < count; ++i) step();
   }
 
-  Permit newest_permit() const {
-    Permit out;
-    permit.reader.newest(out);
-    return out;
+  /// Begins to drive with a standing command; one from before the run would be dropped.
+  void drive() {
+    step();
+    controller->inbox().store({.content = {.twist = kAhead}, .count = 1});
+    steps(20);
   }
-  CommandFrame newest_command() const {
-    CommandFrame out;
-    command.reader.newest(out);
-    return out;
-  }
-  StateFrame newest_state() const {
-    StateFrame out;
-    state.reader.newest(out);
-    return out;
-  }
+
+  Permit newest_permit() const { return permit.newest(); }
+  CommandFrame newest_command() const { return command.newest(); }
+  StateFrame newest_state() const { return state.newest(); }
   const GateReport& gate() const { return driver.trace().gate; }
 
   DriveTrain robot = two_wheels();
   StandingMachine machine;
-  TestChannel<SensorFrame> sensors;
-  TestChannel<TruthFrame> truth;
-  TestChannel<StateFrame> state;
-  TestChannel<CommandFrame> command;
-  TestChannel<Permit> permit;
-  DriverCycle driver{
-      machine, robot, {sensors.writer, truth.writer, &command.reader, &permit.reader}, kPeriodNs, nullptr};
+  DriverCycle driver{machine, robot, of_driver(), kPeriodNs, nullptr};
   std::unique_ptr<EstimatorCycle> estimator;
   std::unique_ptr<ControllerCycle> controller;
   std::unique_ptr<MonitorCycle> monitor;

@@ -13,8 +13,7 @@
 #include "rt/futex.h"
 #include "support/bus/scoped_bus.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 constexpr std::int64_t kMoment = 1'000'000;  // ns
 
@@ -48,8 +47,7 @@ class SlowMachine final : public Simulator {
   std::atomic<bool>& again_;
 };
 
-class DriverProcessTest : public testing::Test {
- protected:
+struct DriverProcessTest : testing::Test {
   DriverProcessTest() { parameters_.loop.realtime = RealtimePolicy::kOff; }
 
   DriverProcess& opened() {
@@ -118,5 +116,4 @@ TEST_F(DriverProcessTest, AResetAfterTheEndSaysThatItHasEnded) {
   EXPECT_EQ(answer.message, "the run has ended");
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -11,13 +11,11 @@
 #include "support/file_content.h"
 #include "support/temporary_folder.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 constexpr std::uint64_t kStops = kCauseEmergencyStopService | kCauseStall;
 
-class LatchFileTest : public testing::Test {
- protected:
+struct LatchFileTest : testing::Test {
   void keep(std::uint64_t causes, std::uint64_t first = kCauseStall) {
     LatchFile file(path);
     file.finish(causes, causes == 0 ? 0 : first);
@@ -119,12 +117,11 @@ TEST_F(LatchFileTest, ALinkToNothingIsALatchForItsDiskMayNotBeMounted) {
   EXPECT_EQ(found().causes, 0u) << "after a reset, once it is there";
 }
 
-TEST(LatchPath, OfAFolderIsAFileNamedAfterHostAndNamespace) {
+TEST(LatchPath, IsAFileNamedAfterHostAndNamespaceInAFolder) {
   EXPECT_EQ(latch_path("/var/stop", "arm", "/robot2"), "/var/stop");
   EXPECT_EQ(latch_path("/var/stops/", "arm", "/"), "/var/stops/latch.arm");
   EXPECT_EQ(latch_path("/var/stops/", "arm", "/fleet/robot2"), "/var/stops/latch.arm.fleet.robot2");
   EXPECT_EQ(latch_path("", "arm", "/"), "");
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

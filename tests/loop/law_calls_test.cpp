@@ -6,8 +6,7 @@
 #include "cycle_fixture.h"
 #include "signals/names.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 struct LawCalls : testing::Test {
   LawCalls() { loop.steps(10); }
@@ -37,13 +36,6 @@ TEST_F(LawCalls, NameTheFramesThatWereUsed) {
   EXPECT_EQ(controller().permit.cycle, permit.head.cycle);
 }
 
-TEST_F(LawCalls, NumberTheRowsOfAProcess) {
-  EXPECT_EQ(gate().law.number, 9u);
-  EXPECT_EQ(estimator().law.number, 9u);
-  EXPECT_EQ(controller().law.number, 9u);
-  EXPECT_EQ(monitor().law.number, 9u);
-}
-
 TEST_F(LawCalls, GiveTheOutputOfAHealthyNode) {
   EXPECT_EQ(estimator().law.output, loop.newest_state().head.checksum);
   EXPECT_EQ(controller().law.output, loop.newest_command().head.checksum);
@@ -66,20 +58,6 @@ TEST_F(LawCalls, HaveARowWhereAFaultSuppressesTheFrame) {
   EXPECT_EQ(estimator().law.number, 10u);
 }
 
-TEST_F(LawCalls, NoteAPoseAndANewRunOnce) {
-  loop.estimator->request_pose({1, 2, 3});
-  loop.driver.begin_run(2);
-  loop.step();
-  EXPECT_EQ(estimator().pose_set, 1u);
-  EXPECT_EQ(estimator().pose[2], 3.0);
-  EXPECT_EQ(estimator().law.new_run, 1u);
-  EXPECT_EQ(gate().law.new_run, 1u);
-  EXPECT_EQ(controller().law.new_run, 1u);
-  loop.step();
-  EXPECT_EQ(estimator().pose_set, 0u);
-  EXPECT_EQ(estimator().law.new_run, 0u);
-}
-
 TEST_F(LawCalls, HaveARowForEachStepOfTheMonitorWithoutAFrame) {
   EXPECT_NE(monitor().law.sensors, 0u);
   ASSERT_TRUE(loop.monitor->time_out());
@@ -95,5 +73,4 @@ TEST_F(LawCalls, HaveARowForEachStepOfTheMonitorWithoutAFrame) {
   EXPECT_EQ(monitor().operator_input.resets, 1u);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -2,8 +2,7 @@
 
 #include "loop/cycle_fixture.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 // Exactly, and in the very next cycle: a program that sets a pose may compare with ==.
 TEST(PoseRequest, HoldsExactlyFromTheNextCycleOn) {
@@ -20,7 +19,7 @@ TEST(PoseRequest, HoldsExactlyFromTheNextCycleOn) {
   EXPECT_EQ(state.base.pose_covariance[35], 0);
 }
 
-TEST(PoseRequest, OfTwoInOneCycleTheLastHolds) {
+TEST(PoseRequest, IsTheLastOfTwoInOneCycle) {
   Loop loop;
   loop.steps(10);
   loop.estimator->request_pose({1, 1, 1});
@@ -30,5 +29,4 @@ TEST(PoseRequest, OfTwoInOneCycleTheLastHolds) {
   EXPECT_EQ(loop.newest_state().base.pose_odom.position[1], 3);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

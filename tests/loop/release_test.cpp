@@ -4,8 +4,7 @@
 
 #include "loop/release_sequences.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 constexpr std::uint64_t kSlower = 5;  // one thread, ten times slower
@@ -55,5 +54,4 @@ INSTANTIATE_TEST_SUITE_P(Nightly, MotionReleaseSequences,
 INSTANTIATE_TEST_SUITE_P(EveryDay, WalkingReleaseSequences, testing::Values(5));
 INSTANTIATE_TEST_SUITE_P(Nightly, WalkingReleaseSequences, testing::Values(10));
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -1,19 +1,15 @@
 #include "loop/processes/telemetry_process.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include "cycle_fixture.h"
 #include "loop/cycles/trace_sink.h"
 #include "robots/differential_drive.h"
 #include "support/bus/scoped_bus.h"
+#include "support/matchers.h"
 #include "support/temporary_folder.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
-class TelemetryProcessTest : public testing::Test {
- protected:
+struct TelemetryProcessTest : testing::Test {
   using Channel = OwnedChannel<Ring<DriverTrace>>;
 
   Channel claim() const { return {bus_.name(), kTraceChannels[0]}; }
@@ -76,5 +72,4 @@ TEST_F(TelemetryProcessTest, TakesWhatALivingWriterWroteBeforeOnceItWritesAgain)
   EXPECT_EQ(telemetry.drain(), 6u);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -8,15 +8,13 @@
 
 #include "support/bus/scoped_bus.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 struct Row {
   std::uint64_t number = 0;
 };
 
-class TraceSinkTest : public testing::Test {
- protected:
+struct TraceSinkTest : testing::Test {
   static constexpr TraceRing kRing = TraceRing::kController;
 
   std::string bus() const { return bus_.name(); }
@@ -136,5 +134,4 @@ TEST_F(TraceSinkTest, HandsOnSnapshotsAndItsThread) {
   EXPECT_EQ(telemetry.thread(), 42U);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

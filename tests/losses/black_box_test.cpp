@@ -12,11 +12,9 @@
 #include "log/trace_reader.h"
 #include "losses_fixture.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
-class ABlackBox : public Losses {
- protected:
+struct ABlackBox : Losses {
   /// ns; ten milliseconds are promised if telemetry's thread precedes others. Otherwise up to 144 were measured.
   static constexpr std::int64_t kMaxMissing = 1'000'000'000;
 
@@ -139,5 +137,4 @@ TEST_F(ABlackBox, HarmsNothingWhereTheDiskHasNoRoomAndTelemetrySaysSo) {
   expect_undisturbed();
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -12,8 +12,7 @@
 #include "log/trace_reader.h"
 #include "losses_fixture.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 constexpr rlim_t kLimit = 768 * 1024;  // bytes: room for one chunk of a second, not for two
 
@@ -23,8 +22,7 @@ bool mount_small_disk(const std::string& folder) {
          mount("tmpfs", folder.c_str(), "tmpfs", MS_NOSUID | MS_NODEV, "size=512k") == 0;
 }
 
-class AFullDisk : public Losses {
- protected:
+struct AFullDisk : Losses {
   AFullDisk() : folder_(nodes().folder() / "log") {
     std::filesystem::create_directories(folder_);
     nodes().log_into(folder_);
@@ -61,7 +59,7 @@ TEST_F(NightlyFullDisk, HarmsNothingAndItsLossesAreReportedAndCounted) {
   expect_reported_and_counted("No space left on device");
 }
 
-TEST_F(AFullDisk, OrALimitOnTheFileHarmsNothingIsReportedAndTheLogIsReadToItsLastWholeChunk) {
+TEST_F(AFullDisk, HarmsNothingAsALimitOnTheFileIsReportedAndTheLogIsReadToItsLastWholeChunk) {
   nodes().prepare(LoopNode::kTelemetry, [] {
     std::signal(SIGXFSZ, SIG_IGN);
     const rlimit limit{kLimit, kLimit};
@@ -73,7 +71,7 @@ TEST_F(AFullDisk, OrALimitOnTheFileHarmsNothingIsReportedAndTheLogIsReadToItsLas
   EXPECT_GT(rows, 500u);
 }
 
-TEST_F(NightlyFullDisk, OrAFolderThatIsRemovedIsReportedAndCountedToo) {
+TEST_F(NightlyFullDisk, IsReportedAndCountedAsAFolderThatIsRemoved) {
   nodes().start(LoopNode::kTelemetry);
   expect_drives_on(1500);
   std::filesystem::remove_all(folder_);
@@ -86,7 +84,7 @@ TEST_F(NightlyFullDisk, OrAFolderThatIsRemovedIsReportedAndCountedToo) {
 
 /// A file system cannot be made read-only while a log on it is open. But a read-only one may be mounted over the
 /// folder: no other process can then read what is written on.
-TEST_F(NightlyFullDisk, OrAReadOnlyOneOverTheFolderIsReportedAndCountedAndTheLogsGoOnAfterwards) {
+TEST_F(NightlyFullDisk, IsReportedAndCountedAsAReadOnlyOneAndTheLogsGoOnAfterwards) {
   if (ChildProcess([this] { return mount_small_disk(folder_) ? 0 : 1; }).wait() != 0) {
     GTEST_SKIP() << "mounting is not granted";
   }
@@ -114,5 +112,4 @@ TEST_F(NightlyFullDisk, OrAReadOnlyOneOverTheFolderIsReportedAndCountedAndTheLog
   EXPECT_TRUE(robot_.await([&] { return std::filesystem::exists(folder_ / "run.1.bag"); }, 60));
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

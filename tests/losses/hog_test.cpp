@@ -4,11 +4,9 @@
 
 #include "losses_fixture.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
-class AHog : public Losses {
- protected:
+struct AHog : Losses {
   static Parameters on_one_core() {
     Parameters parameters = DrivingRobot::quick(kParams);
     parameters.loop.core = 0;
@@ -23,7 +21,7 @@ class AHog : public Losses {
   OffTheChain off_;
 };
 
-TEST_F(AHog, AtTheControllersPriorityStarvesItAndTheRobotBrakes) {
+TEST_F(AHog, StarvesTheControllerAtItsPriorityAndTheRobotBrakes) {
   Hog hog(static_cast<int>(LoopPriority::kController), 0);
   robot_.poll();
   log().forget();
@@ -58,5 +56,4 @@ TEST_F(AHog, AboveTheDriverStopsEverythingAndAfterItNothingJumps) {
   expect_undisturbed();
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

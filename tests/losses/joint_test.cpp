@@ -6,8 +6,7 @@
 #include "losses_fixture.h"
 #include "support/temporary_folder.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 /// 17 kg on four wheels of 0.1 m.
 std::string four_wheels() {
@@ -48,12 +47,11 @@ struct FailingJoint {
   std::uint64_t cycles;  ///< from the sample to the brake, beyond those of the monitor and the gate
 };
 
-class AJoint : public Losses, public ::testing::WithParamInterface<FailingJoint> {
- protected:
+struct AJoint : Losses, ::testing::WithParamInterface<FailingJoint> {
   AJoint() : Losses(with_four_wheels()) {}
 };
 
-TEST_P(AJoint, ThatFailsStopsTheRobotAndIsNamed) {
+TEST_P(AJoint, StopsTheRobotAndIsNamedIfItFails) {
   const FailingJoint& failing = GetParam();
   ASSERT_EQ(nodes().robot().joints.size(), 4u);
   SpoilRequest& request = nodes().controls().spoil;
@@ -76,5 +74,4 @@ INSTANTIATE_TEST_SUITE_P(OfFour, AJoint,
                                            FailingJoint{"Faulty", Spoiled::kFaulty, kCauseDriverFault, 1}),
                          [](const auto& each) { return std::string(each.param.name); });
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

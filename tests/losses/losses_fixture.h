@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <csignal>
 #include <cstdint>
-#include <cstdio>
 #include <string>
 
 #include "support/processes/driving_robot.h"
@@ -23,8 +22,7 @@ inline std::string name_of_signal(int number) {
   return number == SIGSTOP ? "SIGSTOP" : number == SIGKILL ? "SIGKILL" : "SIGSEGV";
 }
 
-class Losses : public ::testing::Test {
- protected:
+struct Losses : ::testing::Test {
   explicit Losses(const Parameters& parameters = DrivingRobot::quick(kParams)) : robot_(parameters) {
     robot_.drive_at_full_speed();
   }

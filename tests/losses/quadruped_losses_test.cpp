@@ -12,8 +12,7 @@
 #include "robots/quadruped.h"
 #include "support/processes/stop_trials.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 constexpr int kTrials = 20;
 constexpr double kUpright = 0.15;            // rad
@@ -29,8 +28,7 @@ Parameters of_quadbot() {
   return parameters;
 }
 
-class LossOfQuadbot : public ::testing::Test {
- protected:
+struct LossOfQuadbot : ::testing::Test {
   explicit LossOfQuadbot(const Parameters& parameters = of_quadbot())
       : robot_(parameters,
                std::make_shared<Quadruped>(parameters, read_legs(load_description(parameters.urdf), {}, {}))) {}
@@ -178,8 +176,7 @@ INSTANTIATE_TEST_SUITE_P(OfTheChain, NightlyLateNode,
                          ::testing::Values(LoopNode::kController, LoopNode::kEstimator, LoopNode::kMonitor));
 
 /// The chain runs on core 0, the test elsewhere.
-class HogOfATrottingQuadbot : public LossOfQuadbot {
- protected:
+struct HogOfATrottingQuadbot : LossOfQuadbot {
   static Parameters on_one_core() {
     Parameters parameters = of_quadbot();
     parameters.loop.core = 0;
@@ -194,7 +191,7 @@ class HogOfATrottingQuadbot : public LossOfQuadbot {
   OffTheChain off_;
 };
 
-TEST_F(HogOfATrottingQuadbot, NightlyAtTheControllersPriorityStarvesItAndTheRobotLiesUpright) {
+TEST_F(HogOfATrottingQuadbot, NightlyStarvesTheControllerAtItsPriorityAndTheRobotLiesUpright) {
   repeat([&] {
     Hog hog(static_cast<int>(LoopPriority::kController), 0);
     if (!trot()) return false;
@@ -210,5 +207,4 @@ TEST_F(HogOfATrottingQuadbot, NightlyAtTheControllersPriorityStarvesItAndTheRobo
   });
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

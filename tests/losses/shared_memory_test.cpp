@@ -13,8 +13,7 @@
 
 #include "losses_fixture.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 using enum LoopNode;
 
@@ -52,8 +51,7 @@ void PrintTo(const Channel& channel, std::ostream* out) {
   *out << channel.name;
 }
 
-class AWoundedChannel : public Losses, public ::testing::WithParamInterface<Channel> {
- protected:
+struct AWoundedChannel : Losses, ::testing::WithParamInterface<Channel> {
   const char* channel() const { return GetParam().name; }
   std::filesystem::path file() { return "/dev/shm" + bus_object_name(nodes().bus(), channel()); }
   bool maps(LoopNode node) const { return (GetParam().mapped & bits({node})) != 0; }
@@ -143,5 +141,4 @@ INSTANTIATE_TEST_SUITE_P(Each, AWoundedChannel, ::testing::ValuesIn(kChannels),
 INSTANTIATE_TEST_SUITE_P(Nightly, AWoundedChannel, ::testing::ValuesIn(kNightlyChannels),
                          [](const auto& each) { return std::string(each.param.name); });
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -5,8 +5,7 @@
 #include "log/trace_reader.h"
 #include "losses_fixture.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 struct Row {
   LoopNode node;
@@ -89,8 +88,7 @@ INSTANTIATE_TEST_SUITE_P(Each, ALostPlant, ::testing::Values(SIGSTOP, SIGKILL, S
                          [](const auto& each) { return name_of_signal(each.param); });
 
 /// The plant was absent for some milliseconds, or its absence could not be detected: time proves nothing.
-class APlantStartedAgain : public Losses {
- protected:
+struct APlantStartedAgain : Losses {
   void start_again() {
     nodes().end(LoopNode::kPlant);
     log().forget();
@@ -103,18 +101,18 @@ class APlantStartedAgain : public Losses {
   }
 };
 
-TEST_F(APlantStartedAgain, AtOnceIsLost) {
+TEST_F(APlantStartedAgain, IsLost) {
   start_again();
   expect_lost();
 }
 
-TEST_F(APlantStartedAgain, WithAnotherObjectOfItsSensorsIsLost) {
+TEST_F(APlantStartedAgain, IsLostWithAnotherObjectOfItsSensors) {
   std::filesystem::remove("/dev/shm" + bus_object_name(nodes().bus(), ChannelNames::kSensors));
   start_again();
   expect_lost();
 }
 
-TEST_F(APlantStartedAgain, BesideAMonitorThatSleptMeanwhileIsLost) {
+TEST_F(APlantStartedAgain, IsLostBesideAMonitorThatSleptMeanwhile) {
   nodes().process(LoopNode::kMonitor).send(SIGSTOP);
   const std::uint64_t before = robot_.sensors().head.run;
   start_again();
@@ -168,5 +166,4 @@ INSTANTIATE_TEST_SUITE_P(Each, ALostTelemetry, ::testing::Values(SIGSTOP),
 INSTANTIATE_TEST_SUITE_P(Nightly, ALostTelemetry, ::testing::Values(SIGKILL, SIGSEGV),
                          [](const auto& each) { return name_of_signal(each.param); });
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -6,13 +6,11 @@
 
 #include "losses_fixture.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 constexpr std::int64_t kSpellNs = 100'000'000;
 
-class Witness : public ::testing::Test {
- protected:
+struct Witness : ::testing::Test {
   Witness() {
     while (witness_.longest_gap_ns(0) == 0) sleep_ns(1'000'000);
     began_ns_ = monotonic_ns();
@@ -32,12 +30,10 @@ TEST_F(Witness, SeesThatItWasStoppedAndForgetsItWhereALaterTimeIsAskedFor) {
   EXPECT_LT(witness_.longest_gap_ns(monotonic_ns() - kSpellNs / 2), kSpellNs);
 }
 
-}  // namespace
-
 /// The stop is the loop's own: a node that computes without end is no stall of the machine.
 using AStop = Losses;
 
-TEST_F(AStop, WithoutAStallIsNoStall) {
+TEST_F(AStop, IsNoStallByItself) {
   nodes().process(LoopNode::kController).stop_with(SIGSTOP);
   EXPECT_TRUE(robot_.await([&] { return robot_.permit().causes != 0; })) << robot_.situation();
   EXPECT_EQ(robot_.permit().causes & ~kStallCauses, 0u) << robot_.situation();
@@ -45,4 +41,4 @@ TEST_F(AStop, WithoutAStallIsNoStall) {
   nodes().process(LoopNode::kController).send(SIGCONT);
 }
 
-}  // namespace robot_control
+}  // namespace robot_control::tests

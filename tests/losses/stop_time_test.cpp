@@ -6,8 +6,7 @@
 #include "losses_fixture.h"
 #include "support/processes/stop_trials.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 using CellTrials = std::tuple<LossCell, int>;  // how often
 
@@ -29,5 +28,4 @@ std::string name_of_cell(const ::testing::TestParamInfo<CellTrials>& each) {
 INSTANTIATE_TEST_SUITE_P(Nightly, StopTime, ::testing::Combine(::testing::ValuesIn(kLossCells), ::testing::Values(20)),
                          name_of_cell);
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -1,19 +1,12 @@
 /// Joints between the body and the floor: legs that fold are refused, robots that only look like them stand.
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include <tuple>
 
 #include "machine/random_text.h"
 #include "machine/urdf_text.h"
+#include "support/matchers.h"
 
-namespace robot_control {
-namespace {
-
-using testing::AllOf;
-using testing::HasSubstr;
-using testing::Not;
+namespace robot_control::tests {
 
 struct Leg {
   std::string name = "";
@@ -65,7 +58,7 @@ std::string quadruped(Leg each) {
   return text;
 }
 
-TEST(BearingJoints, OfALegThatNothingHoldsAreNamedAndRefused) {
+TEST(BearingJoints, AreNamedAndRefusedInALegThatNothingHolds) {
   const std::string endless = "<limit effort=\"24\" velocity=\"20\"/>";
   for (const bool abduction : {true, false}) {
     for (const double bent : {0.0, 0.3, -0.7}) {
@@ -83,7 +76,7 @@ TEST(BearingJoints, OfALegThatNothingHoldsAreNamedAndRefused) {
   }
 }
 
-TEST(BearingJoints, ThatAreFixedOrMoveLittleOrRubHardAreAccepted) {
+TEST(BearingJoints, AreAcceptedIfTheyAreFixedOrMoveLittleOrRubHard) {
   Leg fixed{.limits = "", .type = "fixed"};
   EXPECT_EQ(refusal_of(robot_of(quadruped(fixed))), "accepted");
   Leg little{.limits = "<limit lower=\"-0.02\" upper=\"0.02\" effort=\"24\" velocity=\"20\"/>"};
@@ -123,7 +116,7 @@ std::string foot(const std::string& name, const std::string& place) {
          joint({.name = name + "_joint", .child = name, .xyz = place, .type = "fixed", .axis = ""});
 }
 
-TEST(BearingJoints, ThatTheRobotStandsWithoutAreAccepted) {
+TEST(BearingJoints, AreAcceptedIfTheRobotStandsWithoutThem) {
   const std::string rear = foot("rear", "-0.25 0 -0.08");
   const std::string front = foot("fl", "0.25 0.15 -0.08") + foot("fr", "0.25 -0.15 -0.08");
   EXPECT_THAT(refusal_of(robot_of(swing_arms(rear))), AllOf(HasSubstr("left_arm_joint"), HasSubstr("right_arm_joint")));
@@ -162,12 +155,12 @@ std::string on_a_foot(const std::string& effort) {
                 .rest = "<limit lower=\"-0.3\" upper=\"0.3\" effort=\"" + effort + "\" velocity=\"1\"/>"});
 }
 
-TEST(BearingJoints, ThatAreTooWeakForAnEqualShareOfTheWeightAreRefused) {
+TEST(BearingJoints, AreRefusedIfTheyAreTooWeakForAnEqualShareOfTheWeight) {
   EXPECT_THAT(refusal_of(robot_of(on_a_foot("40"))), HasSubstr("leg"));
   EXPECT_EQ(refusal_of(robot_of(on_a_foot("50"))), "accepted") << "13 kg on three";
 }
 
-TEST(BearingJoints, OfALiftBelowTheBodyAreRefusedAndThoseOfASuspensionAreNot) {
+TEST(BearingJoints, AreRefusedInALiftBelowTheBodyAndNotInASuspension) {
   const auto limits = [](const std::string& upper) {
     return "<limit lower=\"0\" upper=\"" + upper + "\" effort=\"1000\" velocity=\"0.1\"/>";
   };
@@ -185,7 +178,7 @@ std::string scissor_between() {
   return text + link("arm", inertial("1")) + joint({.name = "scissor", .child = "arm", .xyz = "-0.2 0 -0.1"});
 }
 
-TEST(BearingJoints, OfAScissorLiftAreRefusedBelowTheBodyAndAcceptedAboveIt) {
+TEST(BearingJoints, AreRefusedInAScissorLiftBelowTheBodyAndAcceptedAboveIt) {
   EXPECT_THAT(refusal_of(robot_of(scissor_between())), AllOf(HasSubstr("holds: scissor;"), Not(HasSubstr("column"))))
       << "the carriage's own hinge is balanced";
   const std::string arms = link("arm", inertial("1")) + joint({.name = "scissor", .child = "arm", .xyz = "0 0 0.1"}) +
@@ -194,7 +187,7 @@ TEST(BearingJoints, OfAScissorLiftAreRefusedBelowTheBodyAndAcceptedAboveIt) {
   EXPECT_EQ(refusal_of(robot_of(two_wheels() + foot("rear", "-0.25 0 -0.08") + arms)), "accepted");
 }
 
-TEST(BearingJoints, OfAMastThatTiltsAreNoneOfThem) {
+TEST(BearingJoints, DoNotIncludeThoseOfAMastThatTilts) {
   for (const std::string type : {"revolute", "prismatic"}) {
     const std::string mast = link("mast", inertial("3") + collision("<box size=\"0.05 0.05 1\"/>", "xyz=\"0 0 0.5\"")) +
                              joint({.name = "tilt",
@@ -223,7 +216,7 @@ std::string rocker_bogie(const std::string& side, double y) {
   return text;
 }
 
-TEST(BearingJoints, ThatAreBalancedAreAccepted) {
+TEST(BearingJoints, AreAcceptedIfTheyAreBalanced) {
   EXPECT_EQ(refusal_of(robot_of(base() + rocker_bogie("left", 0.25) + rocker_bogie("right", -0.25))), "accepted");
   // A front axle pivots about x, as a tractor's does.
   const std::string pivot =
@@ -245,5 +238,4 @@ TEST(BearingJoints, AreNotTheAxlesOfWhatIsNearlyRound) {
   EXPECT_EQ(refusal_of(robot_of(two_wheels() + roller)), "accepted");
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

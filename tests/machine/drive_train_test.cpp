@@ -8,8 +8,7 @@
 #include "machine/urdf_text.h"
 #include "support/robots/diffbot_urdf.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 // Decimal numbers of the file, a few dozen operations: rounding only.
 
@@ -60,9 +59,7 @@ TEST(DriveTrain, WheelsAreMeasuredAtTheirCollisionCylinders) {
 
 TEST(DriveTrain, WheelsComeFirstInTheOrderOfJoints) {
   const std::string arm =
-      "<link name=\"a\"><inertial><mass value=\"1\"/><inertia ixx=\"1\" iyy=\"1\" izz=\"1\" ixy=\"0\" ixz=\"0\" "
-      "iyz=\"0\"/></inertial></link><joint name=\"a_joint\" type=\"continuous\"><parent link=\"base_link\"/>"
-      "<child link=\"a\"/><axis xyz=\"0 0 1\"/></joint>";
+      link("a", inertial("1")) + joint({.name = "a_joint", .child = "a", .axis = "<axis xyz=\"0 0 1\"/>"});
   const DriveTrain robot =
       read_drive_train(diffbot_with("<robot", "<link name=\"base_link\">", arm + "<link name=\"base_link\">"), {});
   ASSERT_EQ(robot.joints.size(), 3u);
@@ -250,7 +247,7 @@ TEST(DriveTrain, AnImuAlmostWhereTheUrdfSaysIsNotNoted) {
   EXPECT_EQ(robot.notes.size(), read_drive_train(diffbot_urdf(), {}).notes.size());
 }
 
-TEST(DriveTrain, WithoutAnImuLinkTheImuIsInTheBase) {
+TEST(DriveTrain, TheImuIsInTheBaseWithoutAnImuLink) {
   RobotDescription description = diffbot_with("<robot", "<link name=\"imu_link\">", "<link name=\"box_link\">");
   description.text = replaced(description.text, "<robot", "<child link=\"imu_link\"/>", "<child link=\"box_link\"/>");
   const DriveTrain robot = read_drive_train(description, {});
@@ -261,16 +258,10 @@ TEST(DriveTrain, WithoutAnImuLinkTheImuIsInTheBase) {
 
 // Steiner: two point-like masses m at ±d on x have m·d² each about y and z, wherever they are.
 TEST(RigidBodies, FixedLinksAreLumpedByTheParallelAxisTheorem) {
-  const auto link = [](const std::string& name) {
-    return "<link name=\"" + name +
-           "\"><inertial><mass value=\"2\"/><inertia ixx=\"0.1\" iyy=\"0.1\" izz=\"0.1\" ixy=\"0\" ixz=\"0\" "
-           "iyz=\"0\"/></inertial></link>";
-  };
-  const RigidBodies robot = read_rigid_bodies({"<robot name=\"r\">" + link("a") + link("b") +
-                                                   "<joint name=\"j\" type=\"fixed\"><parent link=\"a\"/><child "
-                                                   "link=\"b\"/><origin xyz=\"1 0 0\" rpy=\"0 0 1\"/>"
-                                                   "</joint></robot>",
-                                               "r.urdf"});
+  const std::string mass = inertial("2", "ixx=\"0.1\" iyy=\"0.1\" izz=\"0.1\" ixy=\"0\" ixz=\"0\" iyz=\"0\"");
+  const std::string fixed =
+      joint({.name = "j", .child = "b", .xyz = "1 0 0", .type = "fixed", .parent = "a", .rpy = "0 0 1"});
+  const RigidBodies robot = read_rigid_bodies(robot_of(link("a", mass) + link("b", mass) + fixed));
   ASSERT_EQ(robot.bodies.size(), 1u);
   const RigidBody& body = robot.bodies[0];
   EXPECT_NEAR(body.mass, 4, kRounding);
@@ -279,5 +270,4 @@ TEST(RigidBodies, FixedLinksAreLumpedByTheParallelAxisTheorem) {
   EXPECT_NEAR((body.inertia - expected).norm(), 0, kRounding);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

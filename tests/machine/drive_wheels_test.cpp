@@ -1,16 +1,9 @@
 /// Selects the drive wheels by position, shape and axis; by name only if the user names them.
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include "machine/urdf_text.h"
+#include "support/matchers.h"
 
-namespace robot_control {
-namespace {
-
-using testing::AllOf;
-using testing::HasSubstr;
-using testing::Not;
+namespace robot_control::tests {
 
 std::string joint_name(const DriveTrain& robot, std::size_t wheel) {
   return robot.joints[robot.wheels[wheel].joint].name;
@@ -193,7 +186,7 @@ TEST(DriveWheels, AWheelWithoutItsCounterpartIsNotGuessed) {
   EXPECT_THAT(refusal_of(robot_of(two_wheels() + wheel("third", "-0.3 0.25 0"))), HasSubstr("2 on the left, 1 on"));
 }
 
-TEST(DriveWheels, WithoutWheelsEachReasonIsReported) {
+TEST(DriveWheels, EachReasonIsReportedWithoutWheels) {
   const std::string fixed = link("f", inertial("1") + tyre("0.1")) +
                             joint({.name = "fixed_wheel", .child = "f", .xyz = "0 0.25 0", .type = "fixed"});
   const std::string forward = link("x", inertial("1") + tyre("0.1")) +
@@ -242,5 +235,4 @@ TEST(DriveWheels, AlmostOneRadiusOnEitherSideIsOneRadius) {
             "accepted");
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

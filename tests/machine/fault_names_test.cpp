@@ -10,8 +10,7 @@
 
 #include "signals/names.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 void add_joint(MachineModel& machine, const std::string& name) {
   machine.joints.emplace_back();
@@ -28,8 +27,7 @@ MachineModel three_wheels() {
   return machine;
 }
 
-class FaultNames : public testing::Test {
- protected:
+struct FaultNames : testing::Test {
   std::string set(const std::string& component, const std::string& kind) {
     return set_fault(faults_, machine_, component, kind);
   }
@@ -59,7 +57,7 @@ TEST_F(FaultNames, SetTheFaultThatTheyNameAndReadBack) {
   EXPECT_EQ(names(), "none");
 }
 
-TEST_F(FaultNames, OfAGroupMeanEachOfItsJoints) {
+TEST_F(FaultNames, MeanEachJointOfAGroup) {
   EXPECT_EQ(set("left_encoder", "stuck"), "");
   EXPECT_EQ(of(FaultComponent::kEncoder, 0), FaultKind::kStuck);
   EXPECT_EQ(of(FaultComponent::kEncoder, 1), FaultKind::kStuck);
@@ -68,7 +66,7 @@ TEST_F(FaultNames, OfAGroupMeanEachOfItsJoints) {
   EXPECT_EQ(names(), "left_encoder stuck");
 }
 
-TEST_F(FaultNames, OfAJointMeanItAlone) {
+TEST_F(FaultNames, MeanAJointAlone) {
   EXPECT_EQ(set("rear_motor", "off"), "");
   EXPECT_EQ(of(FaultComponent::kMotor, 0), FaultKind::kOk);
   EXPECT_EQ(of(FaultComponent::kMotor, 1), FaultKind::kOff);
@@ -79,7 +77,7 @@ TEST_F(FaultNames, OfAJointMeanItAlone) {
   EXPECT_EQ(faults_, InjectedFaults{});
 }
 
-TEST_F(FaultNames, OfEveryComponentAndKindReadBack) {
+TEST_F(FaultNames, ReadBackForEveryComponentAndKind) {
   for (const std::string_view component : kFaultComponentNames) {
     const bool joint = component == "encoder" || component == "motor";
     const std::string word = joint ? "right_" + std::string(component) : std::string(component);
@@ -103,7 +101,7 @@ TEST_F(FaultNames, AreListedOnceEachAndAllTaken) {
   EXPECT_EQ(std::ranges::count(words, "swivel_motor"), 0);
 }
 
-TEST_F(FaultNames, OfAJointWithTheNameOfAGroupMeanTheJoint) {
+TEST_F(FaultNames, MeanTheJointThatHasTheNameOfAGroup) {
   MachineModel machine = three_wheels();
   machine.joints[4].name = "left";
   for (const char* word : {"left_encoder", "front_encoder", "rear_encoder"}) {
@@ -159,5 +157,4 @@ TEST_F(FaultNames, RefuseMoreThanTheListHolds) {
   EXPECT_EQ(faults_, InjectedFaults{});
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -1,20 +1,13 @@
 /// Parts that end at the height of the wheels, or almost.
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include <cmath>
 
 #include "machine/bodies/rigid_bodies.h"
 #include "machine/random_text.h"
 #include "machine/urdf_text.h"
+#include "support/matchers.h"
 
-namespace robot_control {
-namespace {
-
-using testing::AllOf;
-using testing::HasSubstr;
-using testing::Not;
+namespace robot_control::tests {
 
 constexpr double kFloor = -0.1;  // m, of two_wheels()
 
@@ -39,7 +32,7 @@ double end_of(const DriveTrain& robot, const std::string& link) {
   return end;
 }
 
-TEST(Feet, WithinAMillimetreAreLevelledWithANote) {
+TEST(Feet, AreLevelledWithANoteWithinAMillimetre) {
   for (unsigned seed = 0; seed < 40; ++seed) {
     SCOPED_TRACE(seed);
     Random random(seed);
@@ -107,7 +100,7 @@ TEST(Feet, AThinBoxOnTheFootprintAtFloorHeightIsNoPart) {
 }
 
 // The kobuki's is an example: it has nothing but the chassis there.
-TEST(Feet, OfAFootprintThatCarriesTheRobotStay) {
+TEST(Feet, StayIfTheyAreAFootprintThatCarriesTheRobot) {
   const std::string skid = collision("<sphere radius=\"0.01\"/>", "xyz=\"0.2 0 0.01\"");
   const std::string text = two_wheels() + link("base_footprint", skid) +
                            joint({.name = "up",
@@ -119,5 +112,4 @@ TEST(Feet, OfAFootprintThatCarriesTheRobotStay) {
   EXPECT_NEAR(end_of(read_drive_train(robot_of(text), {}), "base_footprint"), 0, 1e-9);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -1,10 +1,7 @@
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include "machine/urdf_text.h"
+#include "support/matchers.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 /// The healthy robot with one more joint, with these limits.
 JointModel with_joint(const std::string& type, const std::string& limit) {
@@ -73,7 +70,7 @@ TEST(JointRanges, TheUsersEffortRateHoldsForEveryWheel) {
 TEST(JointRanges, AnEffortRateOfZeroIsRefused) {
   DriveTrainParameters parameters;
   parameters.wheel_effort_rate = 0;
-  EXPECT_THAT(refusal_of(robot_of(two_wheels()), parameters), testing::HasSubstr("robot/wheel_effort_rate"));
+  EXPECT_THAT(refusal_of(robot_of(two_wheels()), parameters), HasSubstr("robot/wheel_effort_rate"));
 }
 
 TEST(JointRanges, NothingLimitsTheEffortRateOfOtherJoints) {
@@ -116,10 +113,9 @@ TEST(JointRanges, AFollowerRestsWhereItsLeaderPutsItAndHasNoEndStops) {
 TEST(JointRanges, WhatDoesNotRestAtZeroIsNotedAndMovesTheCentreOfGravity) {
   const DriveTrain robot = read_drive_train(robot_of(lift_and_follower()), {});
   const std::string notes = notes_of(robot, RobotNote::Kind::kAssumed);
-  EXPECT_THAT(notes, testing::HasSubstr("<joint name=\"lift_joint\">: rests at 0.3 m: its range from 0.3 to 0.9 m"));
-  EXPECT_THAT(notes, testing::HasSubstr("<joint name=\"arm_joint\">: rests at 1.1 rad: the joint that it follows"));
+  EXPECT_THAT(notes, HasSubstr("<joint name=\"lift_joint\">: rests at 0.3 m: its range from 0.3 to 0.9 m"));
+  EXPECT_THAT(notes, HasSubstr("<joint name=\"arm_joint\">: rests at 1.1 rad: the joint that it follows"));
   EXPECT_NEAR(robot.centre_of_gravity_base[2], 0.3 * 11 / 23, kRounding);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

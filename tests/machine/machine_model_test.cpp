@@ -9,8 +9,7 @@
 #include "machine/quadruped_urdf.h"
 #include "support/message_of.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 std::string refusal_of_machine(const std::string& content) {
   return message_of<RobotError>([&] { read_machine(robot_of(content), {}); }, "accepted");
@@ -73,7 +72,7 @@ TEST(AMachineOfAnyKind, TakesTheValuesOfTheUser) {
   EXPECT_EQ(overridden("robot/imu_position"), 1);
 }
 
-TEST(AMachineOfAnyKind, WithoutDriveWheelsIsRefusedByTheWheeledKindAlone) {
+TEST(AMachineOfAnyKind, IsRefusedByTheWheeledKindAloneWithoutDriveWheels) {
   EXPECT_EQ(refusal_of_machine(small_quadruped()), "accepted");
   const std::string refusal = refusal_of(robot_of(small_quadruped()));
   EXPECT_NE(refusal.find("no drive wheels found: front_right_hip_joint: its axis is 90° off the lateral (y) axis"),
@@ -82,7 +81,7 @@ TEST(AMachineOfAnyKind, WithoutDriveWheelsIsRefusedByTheWheeledKindAlone) {
   EXPECT_NE(refusal.find("front_right_calf_joint: it turns only from -2.7 to -0.9 rad"), std::string::npos) << refusal;
 }
 
-TEST(AMachineOfAnyKind, OnWheelsIsTheMachineOfItsDriveTrain) {
+TEST(AMachineOfAnyKind, IsTheMachineOfItsDriveTrainOnWheels) {
   const RobotDescription robot = robot_of(two_wheels());
   const MachineModel machine = read_machine(robot, {});
   const DriveTrain train = read_drive_train(robot, {});
@@ -102,5 +101,4 @@ TEST(AMachineOfAnyKind, HasNoMoreJointsThanAFrame) {
   EXPECT_NE(refusal_of_machine(content).find("33 moving joints. At most 32 are supported"), std::string::npos);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -1,19 +1,13 @@
 /// Wheels whose collision meshes are not quite round.
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include <cmath>
 
 #include "machine/random_text.h"
 #include "machine/urdf_text.h"
+#include "support/matchers.h"
 #include "support/temporary_folder.h"
 
-namespace robot_control {
-namespace {
-
-using testing::HasSubstr;
-using testing::Not;
+namespace robot_control::tests {
 
 /// OBJ: a prism about z, 0.03 long, with the corner of the angle φ at the radius reach(φ).
 template <typename Reach>
@@ -59,7 +53,7 @@ RobotDescription with_meshes(const TemporaryFolder& folder, double radius) {
   return {robot_of(text).text, (folder.path() / ("r" + metres(radius) + ".urdf")).string()};
 }
 
-TEST(OutOfRound, ByAMillimetreAWheelIsAWheelFoundOrNamed) {
+TEST(OutOfRound, IsAWheelFoundOrNamedByAMillimetre) {
   DriveTrainParameters named;
   named.left_wheel_joints = {"left"};
   named.right_wheel_joints = {"right"};
@@ -104,5 +98,4 @@ TEST(OutOfRound, ABoxAndASlabAreNoWheels) {
   }
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

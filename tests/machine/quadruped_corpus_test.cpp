@@ -9,8 +9,7 @@
 #include "support/message_of.h"
 #include "support/robots/corpus.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 constexpr double kDigits = 1e-5;  // of the masses in FACTS.json
 
@@ -25,8 +24,7 @@ std::vector<std::string> quadruped_names() {
   return names;
 }
 
-class QuadrupedCorpus : public testing::TestWithParam<std::string> {
- protected:
+struct QuadrupedCorpus : testing::TestWithParam<std::string> {
   void SetUp() override {
     if (quadrupeds().empty()) GTEST_SKIP() << kNoQuadrupeds;
     facts_ = facts()[GetParam()];
@@ -75,5 +73,4 @@ TEST_P(QuadrupedCorpus, IsRefusedByTheWheeledKindWithWhatItLookedFor) {
 INSTANTIATE_TEST_SUITE_P(Robots, QuadrupedCorpus, testing::ValuesIn(quadruped_names()),
                          [](const auto& robot) { return robot.param; });
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

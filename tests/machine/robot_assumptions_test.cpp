@@ -1,21 +1,14 @@
 /// A URDF omits or misstates values; the reader replaces them, and each replacement is noted.
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include <Eigen/Eigenvalues>
 #include <cmath>
 
 #include "machine/bodies/link_inertia.h"
 #include "machine/bodies/rigid_bodies.h"
 #include "machine/urdf_text.h"
+#include "support/matchers.h"
 
-namespace robot_control {
-namespace {
-
-using testing::AllOf;
-using testing::HasSubstr;
-using testing::Not;
+namespace robot_control::tests {
 
 const JointModel& joint_of(const DriveTrain& robot, const std::string& name) {
   for (const JointModel& each : robot.joints) {
@@ -107,7 +100,7 @@ TEST(RobotAssumptions, APossibleInertiaStaysBitForBit) {
   EXPECT_EQ(possible_inertia(given, 3), given);
 }
 
-TEST(RobotAssumptions, WhateverIsGivenTheRepairedInertiaIsOneOfABody) {
+TEST(RobotAssumptions, TheRepairedInertiaIsOneOfABodyWhateverIsGiven) {
   for (unsigned seed = 0; seed < 200; ++seed) {
     std::srand(seed);
     Eigen::Matrix3d given = Eigen::Matrix3d::Random();
@@ -165,7 +158,7 @@ TEST(RobotAssumptions, AWheelWithoutInertialTakesItsMassFromTheBase) {
   EXPECT_THAT(assumed(robot), HasSubstr("taken from \"base_link\""));
 }
 
-TEST(RobotAssumptions, WithoutAnyCollisionTheVisualShapesCount) {
+TEST(RobotAssumptions, TheVisualShapesCountWithoutAnyCollision) {
   std::string text = robot_of(two_wheels()).text;
   for (std::size_t at = text.find("collision"); at != std::string::npos; at = text.find("collision")) {
     text.replace(at, 9, "visual");
@@ -251,7 +244,7 @@ TEST(RobotAssumptions, TheImuIsFoundByAWordOfItsName) {
   EXPECT_THAT(refusal_of(robot_of(two_wheels()), parameters), HasSubstr("no link \"nowhere\""));
 }
 
-TEST(NegativeNumbers, OfAJointAreTakenAsNotGivenAndNoted) {
+TEST(NegativeNumbers, AreTakenAsNotGivenAndNoted) {
   for (const std::string rest : {"<limit effort=\"-5\" velocity=\"9\"/>", "<limit effort=\"5\" velocity=\"-9\"/>",
                                  "<dynamics damping=\"-5\"/>", "<dynamics friction=\"-5\"/>"}) {
     const std::string text = base() + wheel("left", "0 0.25 0", "0.1", rest) + wheel("right", "0 -0.25 0");
@@ -260,5 +253,4 @@ TEST(NegativeNumbers, OfAJointAreTakenAsNotGivenAndNoted) {
   }
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -10,8 +10,7 @@
 #include "support/message_of.h"
 #include "support/robots/corpus.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 namespace fs = std::filesystem;
 
@@ -26,8 +25,7 @@ std::vector<std::string> robots() {
   return names;
 }
 
-class RobotCorpus : public testing::TestWithParam<std::string> {
- protected:
+struct RobotCorpus : testing::TestWithParam<std::string> {
   void SetUp() override {
     if (corpus().empty()) GTEST_SKIP() << kNoCorpus;
     truth_ = YAML::LoadFile((corpus() / "TRUTH.json").string())[GetParam()];
@@ -119,5 +117,4 @@ TEST(RobotCorpusRefusals, WheelsOnFixedJointsAreNone) {
   EXPECT_NE(refusal_of_robot("p3dx_amr").find("left_wheel_joint: it is fixed"), std::string::npos);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -4,8 +4,6 @@
 
 #include <chrono>
 #include <cmath>
-#include <cstdlib>
-#include <filesystem>
 
 #include "machine/bodies/rigid_bodies.h"
 #include "machine/random_text.h"
@@ -13,8 +11,7 @@
 #include "signals/joint.h"
 #include "support/robots/diffbot_urdf.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 // A reading takes about 0.3 ms, ten times that in a sanitizer build: the time ends the test, not the count.
 constexpr int kRounds = 4000;
@@ -138,5 +135,4 @@ TEST(RobotFuzz, AMutatedUrdfIsARobotOrAMessage) {
   RecordProperty("refused", refused);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

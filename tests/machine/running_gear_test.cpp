@@ -1,19 +1,13 @@
 /// The parts that carry a robot besides its drive wheels: casters with and without a swivel, rockers, many axles,
 /// tracks.
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include <cmath>
 
 #include "machine/bodies/rigid_bodies.h"
 #include "machine/urdf_text.h"
+#include "support/matchers.h"
 
-namespace robot_control {
-namespace {
-
-using testing::HasSubstr;
-using testing::Not;
+namespace robot_control::tests {
 
 /// A wheel of 0.1 m below an upright swivel, which it follows by `trail`.
 std::string swivel(const std::string& trail) {
@@ -23,7 +17,7 @@ std::string swivel(const std::string& trail) {
          joint({.name = "caster", .child = "roller", .xyz = trail, .parent = "fork"});
 }
 
-TEST(Caster, ThatFollowsItsSwivelRollsWhereItIsTurned) {
+TEST(Caster, RollsWhereItIsTurnedIfItFollowsItsSwivel) {
   const DriveTrain robot = read_drive_train(robot_of(two_wheels() + swivel("-0.03 0 0")), {});
   ASSERT_EQ(robot.casters.size(), 1u);
   EXPECT_FALSE(robot.casters[0].omni);
@@ -38,7 +32,7 @@ TEST(Caster, BelowItsSwivelSlides) {
   }
 }
 
-TEST(Caster, WithoutASwivelIsAnOmniWheel) {
+TEST(Caster, IsAnOmniWheelWithoutASwivel) {
   const DriveTrain robot = read_drive_train(robot_of(two_wheels() + wheel("rear", "-0.3 0 0")), {});
   ASSERT_EQ(robot.casters.size(), 1u);
   EXPECT_TRUE(robot.casters[0].omni);
@@ -76,13 +70,13 @@ TEST(Rockers, AreJoinedByADifferential) {
   EXPECT_THAT(notes_of(robot, RobotNote::Kind::kAssumed), HasSubstr("a differential"));
 }
 
-TEST(Rockers, WithOppositeAxesTurnTheSameWay) {
+TEST(Rockers, TurnTheSameWayWithOppositeAxes) {
   const DriveTrain robot =
       read_drive_train(robot_of(base() + rocker("left", "0.25", "0 -1 0") + rocker("right", "-0.25")), {});
   EXPECT_EQ(right_rocker(robot).mimic_multiplier, 1);
 }
 
-TEST(Rockers, ThatTheUrdfTiesItselfAreLeftAlone) {
+TEST(Rockers, AreLeftAloneIfTheUrdfTiesThem) {
   const std::string mimic = "<mimic joint=\"left\" multiplier=\"-0.5\"/>";
   const DriveTrain robot =
       read_drive_train(robot_of(base() + rocker("left", "0.25") + rocker("right", "-0.25", "0 1 0", mimic)), {});
@@ -91,7 +85,7 @@ TEST(Rockers, ThatTheUrdfTiesItselfAreLeftAlone) {
 }
 
 // 10 g with 1 kg·m² give 10 m. The robot is the box about body and wheels.
-TEST(Inertia, BeyondTheRobotsOwnSizeIsScaledDownToIt) {
+TEST(Inertia, IsScaledDownToTheRobotsSize) {
   const std::string tensor = "ixx=\"1\" iyy=\"0.01\" izz=\"1\" ixy=\"0\" ixz=\"0\" iyz=\"0\"";
   const std::string sensor = link("sensor", inertial("0.01", tensor)) +
                              joint({.name = "mount", .child = "sensor", .type = "fixed", .axis = ""});
@@ -110,7 +104,7 @@ std::string axles(const std::vector<std::string>& positions) {
 }
 
 // b = 0.5, x = 0.3, 0, −0.3: with s the slip, b/2 (1 + 2 s/√(s² + x²)) = 2 x²/√(s² + x²).
-TEST(ScrubMultiplier, OfThreeAxlesBalancesTheirMoments) {
+TEST(ScrubMultiplier, BalancesTheMomentsOfThreeAxles) {
   const DriveTrain robot = read_drive_train(robot_of(axles({"0.3", "0", "-0.3"})), {});
   const double slip = (robot.wheel_base_multiplier - 1) * 0.5 / 2;
   const double speed = std::hypot(slip, 0.3);
@@ -119,11 +113,11 @@ TEST(ScrubMultiplier, OfThreeAxlesBalancesTheirMoments) {
 }
 
 // The middle axle alone outweighs the outer two, 1 cm away: b/2 > 2 · 0.01.
-TEST(ScrubMultiplier, OfAxlesThatStandCloseIsOne) {
+TEST(ScrubMultiplier, IsOneForAxlesThatStandClose) {
   EXPECT_NEAR(read_drive_train(robot_of(axles({"0.01", "0", "-0.01"})), {}).wheel_base_multiplier, 1, kRounding);
 }
 
-TEST(ScrubMultiplier, OfUnequalLoadsIsDoubtful) {
+TEST(ScrubMultiplier, IsDoubtfulForUnequalLoads) {
   const std::string load =
       "<inertial><origin xyz=\"0 -0.1 0\"/><mass value=\"10\"/><inertia " + kBall + "/></inertial>";
   const std::string text = axles({"0.2", "-0.2"}) + link("cargo", load) +
@@ -140,11 +134,10 @@ TEST(Tracks, AreRefusedForTheirManyRollers) {
               HasSubstr("10 wheels roll, and nothing says which of them drive: tracks are not supported"));
 }
 
-TEST(Tracks, WhoseDrivenWheelsAreGivenDriveOnThem) {
+TEST(Tracks, DriveOnTheWheelsThatAreGiven) {
   EXPECT_EQ(
       refusal_of(robot_of(axles({"0.4", "0.2", "0", "-0.2", "-0.4"}) + transmission("left0") + transmission("right0"))),
       "accepted");
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -5,10 +5,8 @@
 #include <gtest/gtest.h>
 
 #include <array>
-#include <cmath>
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 /// 20 kg on four wheels of 0.1 m, axles 0.4 m apart, 0.5 m wide; left joints mirrored.
 DriveTrain skid_steer() {
@@ -29,7 +27,7 @@ DriveTrain skid_steer() {
 /// A quarter of 20 kg at friction 1 is 49 N, of which the rolling direction takes 0.16/√(0.16² + 0.2²).
 constexpr double kTorque = 0.1 * 5 * 9.81 * 0.6247;
 
-TEST(Scrub, OnTheSpotIsCoulombFrictionOfTheTreads) {
+TEST(Scrub, IsCoulombFrictionOfTheTreadsOnTheSpot) {
   const Scrub scrub(skid_steer());
   for (const double angular : {0.5, 2.0}) {
     const auto efforts = scrub.efforts(0, angular);
@@ -64,8 +62,7 @@ TEST(Scrub, IsThatOfTheTwistOfTheWheels) {
   for (std::size_t i = 0; i < 4; ++i) EXPECT_NEAR(efforts[i], wanted[i], 1e-12);
 }
 
-class Strain : public testing::Test {
- protected:
+struct Strain : testing::Test {
   const Scrub scrub_{skid_steer()};
   std::array<double, kMaxWheels> efforts_{};
 
@@ -129,5 +126,4 @@ TEST(Scrub, IsNoneOfOneWheelASide) {
   EXPECT_EQ(scrub.max_effort(1), 0);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

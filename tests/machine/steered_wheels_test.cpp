@@ -1,22 +1,14 @@
 /// Machines without differential drive: omni wheels, rollers, steered wheels, a drive that the file names.
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include <array>
 #include <cmath>
 
 #include "machine/bodies/rigid_bodies.h"
 #include "machine/random_text.h"
 #include "machine/urdf_text.h"
+#include "support/matchers.h"
 
-namespace robot_control {
-namespace {
-
-using testing::AllOf;
-using testing::AnyOf;
-using testing::HasSubstr;
-using testing::Not;
+namespace robot_control::tests {
 
 std::string four_wheels() {
   return two_wheels() + wheel("rear_left", "-0.3 0.25 0") + wheel("rear_right", "-0.3 -0.25 0");
@@ -83,7 +75,7 @@ TEST(HolonomicDrive, RollersOnTheWheelsAreRefusedWithTheReason) {
   }
 }
 
-TEST(DriveWheel, ThatHangsOnAnotherOneIsRefused) {
+TEST(DriveWheel, IsRefusedIfItHangsOnAnotherOne) {
   const std::string text = base() + wheel("left", "0 0.25 0") + link("right_link", inertial("1") + tyre("0.1")) +
                            joint({.name = "right", .child = "right_link", .xyz = "0 -0.5 0", .parent = "left_link"});
   DriveTrainParameters named;
@@ -254,7 +246,7 @@ TEST(SteeredWheels, AreRefusedWithTheReason) {
   }
 }
 
-TEST(SteeredWheels, BesideWheelsThatAreNamedAreNoted) {
+TEST(SteeredWheels, AreNotedBesideWheelsThatAreNamed) {
   DriveTrainParameters named;
   named.left_wheel_joints = {"left"};
   named.right_wheel_joints = {"right"};
@@ -327,5 +319,4 @@ TEST(NamedDrive, WheelsThatFollowOthersByMimicAreDrivenWithANote) {
   EXPECT_THAT(notes_of(read_drive_train(robot_of(pair), {}), RobotNote::Kind::kSuspicious), HasSubstr("<mimic joint"));
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

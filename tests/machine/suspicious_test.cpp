@@ -1,20 +1,13 @@
 /// A value of a file that cannot be intended is noted as suspicious.
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include <cmath>
 
 #include "machine/random_text.h"
 #include "machine/urdf_text.h"
+#include "support/matchers.h"
 #include "support/temporary_folder.h"
 
-namespace robot_control {
-namespace {
-
-using testing::AllOf;
-using testing::HasSubstr;
-using testing::Not;
+namespace robot_control::tests {
 
 struct Made {
   double unit = 1;   ///< m, factor on all lengths
@@ -257,8 +250,7 @@ TEST(Suspicious, AWorldThatTheRobotIsFixedToFarAway) {
   EXPECT_THAT(suspicion(world(50)), HasSubstr("<link name=\"world\">: it lies 50"));
 }
 
-class Files : public testing::Test {
- protected:
+struct Files : testing::Test {
   RobotDescription with(const std::string& text) {
     return load_description(folder_.write("r.urdf", robot_of(text).text).string());
   }
@@ -345,5 +337,4 @@ TEST(Suspicious, AnArmWhoseTipWheelCountsAsACastersBecauseNothingHoldsIt) {
               Not(HasSubstr("nothing holds it, because")));
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -1,20 +1,14 @@
 /// XML that ROS accepts is accepted here, too, and so are meshes as shapes.
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include <cmath>
 
 #include "machine/bodies/rigid_bodies.h"
 #include "machine/urdf_text.h"
+#include "support/matchers.h"
 #include "support/quiet_refusal.h"
 #include "support/temporary_folder.h"
 
-namespace robot_control {
-namespace {
-
-using testing::AllOf;
-using testing::HasSubstr;
+namespace robot_control::tests {
 
 std::string refusal(const std::string& content) {
   return quiet_refusal<RobotError>([&] { read_drive_train(robot_of(content), {}); });
@@ -130,8 +124,7 @@ std::string prism(double radius) {
   return vertices + faces;
 }
 
-class MeshShapes : public testing::Test {
- protected:
+struct MeshShapes : testing::Test {
   MeshShapes() { folder_.write("wheel.obj", prism(1)); }
 
   RobotDescription with_wheel_mesh(const std::string& mesh) const {
@@ -185,5 +178,4 @@ TEST_F(MeshShapes, TheFirstOfTwoMeshesCounts) {
             "accepted");
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -4,8 +4,7 @@
 
 #include "navigation/house.h"
 
-namespace robot_control::navigation {
-namespace {
+namespace robot_control::navigation::tests {
 
 using testing_house::diffbot;
 
@@ -45,5 +44,4 @@ TEST(FreeWayTest, APointInsideTheOutlineIsAPartOfTheRobot) {
   EXPECT_TRUE(std::isinf(free_of({{0.05, 0.05}}, {0.5, 0})));
 }
 
-}  // namespace
-}  // namespace robot_control::navigation
+}  // namespace robot_control::navigation::tests

@@ -1,6 +1,5 @@
 #include "navigation/map_file.h"
 
-#include <gmock/gmock.h>
 #include <unistd.h>
 
 #include <filesystem>
@@ -8,12 +7,12 @@
 #include <iterator>
 #include <vector>
 
-namespace robot_control::navigation {
-namespace {
+#include "support/matchers.h"
+
+namespace robot_control::navigation::tests {
 
 /// A map of 3 × 2 cells, as map_server's map_saver writes it.
-class MapFileTest : public testing::Test {
- protected:
+struct MapFileTest : testing::Test {
   void SetUp() override {
     std::filesystem::create_directories(folder_);
     write("house.pgm", "P5\n# CREATOR: map_saver.cpp 0.050 m/pix\n3 2\n255\n" + std::string("\xfe\xcd\0\xfe\xfe\0", 6));
@@ -52,7 +51,7 @@ TEST_F(MapFileTest, TheLowestRowOfThePictureIsTheFirstOfTheGrid) {
   EXPECT_EQ(grid.rows, 2);
   EXPECT_EQ(grid.origin_x, -7);
   EXPECT_EQ(grid.origin_y, -5.5);
-  EXPECT_THAT(grid.cells, testing::ElementsAre(0, 0, 100, 0, -1, 100));
+  EXPECT_THAT(grid.cells, ElementsAre(0, 0, 100, 0, -1, 100));
   EXPECT_EQ(grid.cell_at(-6.94, -5.44), (Cell{1, 1}));
 }
 
@@ -110,7 +109,7 @@ TEST_F(MapFileTest, TheFilesOfPublicMapPackagesAreRead) {
     write("house.yaml", yaml);
     write("house.pgm", picture + pixels);
     const bool unknown_is_free = yaml.find("free_thresh: 0.25") != std::string::npos;  // 205 is 19.6 % black
-    EXPECT_THAT(read().cells, testing::ElementsAre(0, 0, 100, 0, unknown_is_free ? 0 : -1, 100)) << what;
+    EXPECT_THAT(read().cells, ElementsAre(0, 0, 100, 0, unknown_is_free ? 0 : -1, 100)) << what;
   }
 }
 
@@ -129,7 +128,7 @@ TEST_F(MapFileTest, AWrittenMapIsAFileOfMapServer) {
 
 TEST_F(MapFileTest, NegateSwapsFreeAndOccupied) {
   EXPECT_EQ(refusal("negate: 0", "negate: 1"), "it was read");
-  EXPECT_THAT(read().cells, testing::ElementsAre(100, 100, 0, 100, 100, 0));
+  EXPECT_THAT(read().cells, ElementsAre(100, 100, 0, 100, 100, 0));
 }
 
 TEST_F(MapFileTest, EachWrongHeadIsRefusedWithItsValue) {
@@ -163,5 +162,4 @@ TEST_F(MapFileTest, EachWrongPictureIsRefused) {
   EXPECT_THAT(refused(""), HasSubstr("is not a binary PGM (P5)"));
 }
 
-}  // namespace
-}  // namespace robot_control::navigation
+}  // namespace robot_control::navigation::tests

@@ -5,16 +5,14 @@
 #include "navigation/guard.h"
 #include "navigation/house.h"
 
-namespace robot_control::navigation {
-namespace {
+namespace robot_control::navigation::tests {
 
 using namespace testing_house;
 
 constexpr double kScanPeriod = 0.1;  // s
 
 /// An empty hall of 10 m, 5 m ahead of its lower left corner the laser, and a box of 0.5 m in it.
-class MoversTest : public testing::Test {
- protected:
+struct MoversTest : testing::Test {
   Scan seen(Point box) const {
     Grid world;
     world.columns = world.rows = 100, world.resolution = kCell;
@@ -101,5 +99,4 @@ TEST(FreeWayAmongMoversTest, TheRobotDrivesOnOutOfTheWayOfOneThatWouldTouchIt) {
   EXPECT_TRUE(std::isinf(free_way(diffbot(), {}, {0.5, 0}, from_the_side)));
 }
 
-}  // namespace
-}  // namespace robot_control::navigation
+}  // namespace robot_control::navigation::tests

@@ -1,23 +1,19 @@
 #include "navigation/navigator.h"
 
-#include <gmock/gmock.h>
-
 #include "navigation/guard.h"
 #include "navigation/house.h"
+#include "support/matchers.h"
 
-namespace robot_control::navigation {
-namespace {
+namespace robot_control::navigation::tests {
 
 using namespace testing_house;
-using testing::HasSubstr;
 using State = NavigatorState;
 
 constexpr double kPeriod = 0.1;  // s
 constexpr double kSpeed = 0.5;   // m/s
 
 /// A robot in two rooms with a door, which follows paths exactly and at once, with a laser of 10 Hz in virtual time.
-class NavigatorTest : public testing::Test {
- protected:
+struct NavigatorTest : testing::Test {
   void box(int column, int row, std::int8_t cell = kOccupiedCell) {
     for (int i = -2; i <= 2; ++i) {
       for (int j = -2; j <= 2; ++j) world_.cells[world_.index({column + i, row + j})] = cell;
@@ -155,7 +151,7 @@ TEST_F(NavigatorTest, AGoalWithoutALaserIsRefusedAfterTheStartPatience) {
   EXPECT_EQ(paths_, 0);
 }
 
-TEST_F(NavigatorTest, WhileTheLaserIsSilentNothingIsDriven) {
+TEST_F(NavigatorTest, DrivesNothingWhileTheLaserIsSilent) {
   navigator_.begin({4.7, 1.6, 0}, now_);
   run(1);
   problem_ = "scan is silent";
@@ -207,5 +203,4 @@ TEST_F(NavigatorTest, AStartTooNearToAWallIsLeftOnOnePath) {
   EXPECT_EQ(paths_, 1);
 }
 
-}  // namespace
-}  // namespace robot_control::navigation
+}  // namespace robot_control::navigation::tests

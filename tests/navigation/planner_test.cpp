@@ -1,19 +1,16 @@
 #include "navigation/planner.h"
 
-#include <gmock/gmock.h>
-
 #include <fstream>
 #include <iterator>
 #include <random>
 
 #include "navigation/house.h"
 #include "navigation/map_consistency.h"
+#include "support/matchers.h"
 
-namespace robot_control::navigation {
-namespace {
+namespace robot_control::navigation::tests {
 
 using namespace testing_house;
-using testing::HasSubstr;
 
 constexpr PlanarPose kLeft{1.6, 1.6, 0}, kRight{4.7, 1.6, 0};
 
@@ -253,5 +250,4 @@ TEST(PlannerTest, TheDistanceToWhatBlocksThePathFallsAsTheRobotMoves) {
   EXPECT_NEAR(free_distance(costmap, plan.poses, {2.1, 1.6, 0}, passed), far - 0.5, 0.11);
 }
 
-}  // namespace
-}  // namespace robot_control::navigation
+}  // namespace robot_control::navigation::tests

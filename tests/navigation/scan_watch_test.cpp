@@ -1,17 +1,13 @@
 #include "navigation/scan_watch.h"
 
-#include <gmock/gmock.h>
-
 #include <functional>
 
-namespace robot_control::navigation {
-namespace {
+#include "support/matchers.h"
 
-using testing::HasSubstr;
+namespace robot_control::navigation::tests {
 
 /// A laser of 360 rays; each test breaks one thing.
-class ScanWatchTest : public testing::Test {
- protected:
+struct ScanWatchTest : testing::Test {
   static Scan healthy(float range = 2) { return {-M_PI, 2 * M_PI / 360, 0.05, 8.0, std::vector<float>(360, range)}; }
   std::string refusal(const std::function<void(Scan&)>& broken) {
     Scan scan = healthy();
@@ -68,7 +64,7 @@ TEST_F(ScanWatchTest, ASecondPublisherAndTimeThatGoesBackAreRefused) {
   EXPECT_EQ(watch_.receive(healthy(), "rear", 12, 12, 0), "");
 }
 
-TEST_F(ScanWatchTest, AfterOneWrongStampOrAClockThatWasSetBackTheLaserIsTakenAgain) {
+TEST_F(ScanWatchTest, TakesTheLaserAgainAfterOneWrongStampOrAClockThatWasSetBack) {
   EXPECT_EQ(watch_.receive(healthy(), "laser", 3610, 10, 0), "");
   EXPECT_THAT(watch_.receive(healthy(), "laser", 10.1, 10.1, 0), HasSubstr("go back by 3599.900 s"));
   EXPECT_EQ(watch_.receive(healthy(), "laser", 11.1, 11.1, 0), "");
@@ -95,5 +91,4 @@ TEST_F(ScanWatchTest, AnOpenFieldIsNotFrozenAndACoveredLaserIsBlind) {
   EXPECT_THAT(watch_.problem(10.2), HasSubstr("no range that was measured"));
 }
 
-}  // namespace
-}  // namespace robot_control::navigation
+}  // namespace robot_control::navigation::tests

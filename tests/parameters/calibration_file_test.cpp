@@ -1,7 +1,5 @@
 #include "configuration/wheeled/calibration_file.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 #include <unistd.h>
 
 #include <fstream>
@@ -9,18 +7,14 @@
 #include <sstream>
 
 #include "configuration/parameters.h"
+#include "support/matchers.h"
 #include "support/message_of.h"
 #include "support/temporary_folder.h"
 
-namespace robot_control {
-namespace {
-
-using ::testing::AllOf;
-using ::testing::HasSubstr;
+namespace robot_control::tests {
 
 /// The healthy case is the calibration of a robot after an hour. Each test spoils one thing.
-class CalibrationFile : public ::testing::Test {
- protected:
+struct CalibrationFile : ::testing::Test {
   CalibrationFile() {
     robot_.name = "diff\"bot\\";
     robot_.wheels.resize(2);
@@ -72,12 +66,12 @@ TEST_F(CalibrationFile, ComesBackToTheLastBit) {
   EXPECT_EQ(back.gyro_bias_deviation, learned_.gyro_bias_deviation);
 }
 
-TEST_F(CalibrationFile, ThatIsNotThereYetIsNone) {
+TEST_F(CalibrationFile, IsNoneIfItIsNotThereYet) {
   EXPECT_FALSE(read());
 }
 
 // A robot keeps it on another partition.
-TEST_F(CalibrationFile, BehindALinkIsKeptWhereTheLinkLeadsTo) {
+TEST_F(CalibrationFile, IsKeptWhereALinkLeadsTo) {
   std::filesystem::create_symlink("elsewhere.yaml", path());
   EXPECT_FALSE(read());
   write();
@@ -86,7 +80,7 @@ TEST_F(CalibrationFile, BehindALinkIsKeptWhereTheLinkLeadsTo) {
   EXPECT_TRUE(read());
 }
 
-TEST_F(CalibrationFile, ThatIsNoRegularFileIsRefused) {
+TEST_F(CalibrationFile, IsRefusedIfItIsNoRegularFile) {
   std::filesystem::create_symlink("/dev/zero", path());
   EXPECT_THAT(refusal(), AllOf(HasSubstr("1 problem"), HasSubstr("is a device; only a regular file is read")));
 }
@@ -99,7 +93,7 @@ TEST_F(CalibrationFile, LeavesNothingBesideItself) {
   EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder_.path()), {}), 1);
 }
 
-TEST_F(CalibrationFile, OfAnotherRobotIsRefusedWithAllThatDiffers) {
+TEST_F(CalibrationFile, IsRefusedWithAllThatDiffersOfAnotherRobot) {
   write();
   robot_.name = "other";
   robot_.wheels[1].radius = 0.12;
@@ -112,13 +106,13 @@ TEST_F(CalibrationFile, OfAnotherRobotIsRefusedWithAllThatDiffers) {
 }
 
 // A radius_ratio that was measured and set again is intended: an old file must not override it silently.
-TEST_F(CalibrationFile, OfOtherInitialValuesIsRefused) {
+TEST_F(CalibrationFile, IsRefusedWithOtherInitialValues) {
   write();
   parameters_.calibration.radius_ratio = 1.004;
   EXPECT_THAT(refusal(), AllOf(HasSubstr("calibration.initial_radius_ratio = 1:"), HasSubstr("1.004 holds here")));
 }
 
-TEST_F(CalibrationFile, BeyondTheBoundsIsRefused) {
+TEST_F(CalibrationFile, IsRefusedBeyondTheBounds) {
   const auto with = [&](const std::string& old, const std::string& by) {
     write();
     replace(old, by);
@@ -133,7 +127,7 @@ TEST_F(CalibrationFile, BeyondTheBoundsIsRefused) {
   EXPECT_THAT(with("gyro_bias: [0.001,", "gyro_bias: [1.1,"), HasSubstr("each of -1 … 1 rad/s"));
 }
 
-TEST_F(CalibrationFile, ThatIsBrokenIsRefusedWhereItIs) {
+TEST_F(CalibrationFile, IsRefusedWhereItIsBroken) {
   const auto with = [&](const std::string& old, const std::string& by) {
     write();
     replace(old, by);
@@ -162,7 +156,7 @@ TEST_F(CalibrationFile, CutAnywhereIsRefusedOrWhole) {
   }
 }
 
-TEST_F(CalibrationFile, InAFolderThatIsNotThereIsRefusedAtStart) {
+TEST_F(CalibrationFile, IsRefusedAtStartInAFolderThatIsNotThere) {
   const std::string nowhere = folder_.path() / "none" / "learned.yaml";
   EXPECT_THROW(read_calibration(nowhere, robot_, parameters_), ParameterError);
   EXPECT_THROW(write_calibration(nowhere, learned_, robot_, parameters_), std::system_error);
@@ -255,5 +249,4 @@ TEST_F(CalibrationFile, KeepsNoNonsense) {
   EXPECT_FALSE(keeps([](LearnedCalibration& c) { c.gyro_bias_deviation[0] = kNan; }));
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

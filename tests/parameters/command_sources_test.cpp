@@ -1,24 +1,16 @@
 #include "configuration/command_sources.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include <fstream>
 
 #include "configuration/parameters.h"
-#include "files/message_text.h"
 #include "parameters/problem_list.h"
+#include "support/matchers.h"
 #include "support/message_of.h"
 #include "support/temporary_folder.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
-using ::testing::AllOf;
-using ::testing::HasSubstr;
-
-class CommandSources : public ::testing::Test {
- protected:
+struct CommandSources : ::testing::Test {
   CommandSourceList read(const std::string& text) {
     const std::string path = folder_.path() / "sources.yaml";
     std::ofstream(path) << text;
@@ -36,7 +28,7 @@ TEST_F(CommandSources, TheShippedListIsTakenHighestPriorityFirst) {
   const CommandSourceList list = read_command_sources(std::string(PROJECT_DIRECTORY) + "/config/command_sources.yaml");
   std::vector<std::string> names;
   for (const CommandSource& source : list.sources) names.push_back(source.name);
-  EXPECT_THAT(names, ::testing::ElementsAre("joy_vel", "key_vel", "console_vel", "cmd_vel", "path_vel"));
+  EXPECT_THAT(names, ElementsAre("joy_vel", "key_vel", "console_vel", "cmd_vel", "path_vel"));
   EXPECT_EQ(list.sources[0].priority, 40);
   EXPECT_TRUE(list.sources[0].stamped);
   EXPECT_FALSE(list.sources[3].stamped);
@@ -75,5 +67,4 @@ TEST_F(CommandSources, WhatIsNoListIsRefused) {
   EXPECT_THROW(read_command_sources("/nowhere/sources.yaml"), ParameterError);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -1,23 +1,13 @@
 // Conditions of the safety monitor: maps of limit, persistence and reaction.
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
-
 #include "configuration/parameters.h"
 #include "parameters/parameter_file.h"
 #include "parameters/suggestion.h"
+#include "support/matchers.h"
 
-namespace robot_control {
-namespace {
-
-using ::testing::HasSubstr;
-using ::testing::Not;
-using ::testing::Optional;
+namespace robot_control::tests {
 
 /// The healthy case is a copy of the shipped file. Each test spoils one thing.
-class ReadConditions : public ::testing::Test {
- protected:
+struct ReadConditions : ::testing::Test {
   std::string at(const std::string& group) const {
     return "[" + file.path() + ":" + std::to_string(file.line_of("  " + group + ":")) + "]";
   }
@@ -199,5 +189,4 @@ TEST(ConditionPaths, NameConditionAndKey) {
   EXPECT_THAT(paths, Not(::testing::Contains("safety_monitor.imu_lost.limit")));
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -5,40 +5,12 @@
 
 #include "configuration/parameters.h"
 #include "parameters/parameter_file.h"
+#include "support/damaged_text.h"
 
-namespace robot_control {
-namespace {
-
-std::string damaged(std::string text, std::mt19937& random) {
-  const auto pick = [&](std::size_t bound) {
-    return std::uniform_int_distribution<std::size_t>(0, bound == 0 ? 0 : bound - 1)(random);
-  };
-  const std::string_view marks = ":#-[]{}\"'\n \t,!&*|>%@?.~\0\xff";
-  for (std::size_t count = 1 + pick(8); count > 0; --count) {
-    const std::size_t place = pick(text.size());
-    switch (pick(5)) {
-      case 0:
-        text.erase(place, pick(40));
-        break;
-      case 1:
-        text.insert(place, 1, marks[pick(marks.size())]);
-        break;
-      case 2:
-        text.insert(place, text.substr(pick(text.size()), pick(80)));
-        break;
-      case 3:
-        if (!text.empty()) text[place] = static_cast<char>(pick(256));
-        break;
-      default:
-        text.insert(place, std::string(pick(600), marks[pick(marks.size())]));
-    }
-  }
-  return text;
-}
+namespace robot_control::tests {
 
 /// First seed, and last seed + 1.
-class ReadParametersFuzz : public testing::TestWithParam<std::pair<unsigned, unsigned>> {
- protected:
+struct ReadParametersFuzz : testing::TestWithParam<std::pair<unsigned, unsigned>> {
   /// `read(seed, random)` may throw a ParameterError, and nothing else.
   template <class Read>
   static void expect_read_or_refused(Read read) {
@@ -85,5 +57,4 @@ TEST_P(ReadParametersFuzz, ReadsOrRefusesWhateverAnOverlaySays) {
   });
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

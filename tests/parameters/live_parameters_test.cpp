@@ -1,29 +1,20 @@
 // A request changes values while a node runs: it is accepted as a whole, or refused with every reason.
 #include "configuration/live_parameters.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include <chrono>
 #include <random>
 
 #include "parameters/parameter_file.h"
 #include "parameters/parameter_tree.h"
 #include "parameters/schema.h"
+#include "support/matchers.h"
 
-namespace robot_control {
-namespace {
-
-using ::testing::AllOf;
-using ::testing::ElementsAre;
-using ::testing::HasSubstr;
-using ::testing::IsEmpty;
+namespace robot_control::tests {
 
 const std::string kBlock = "diff_drive_controller";
 
 /// The healthy case has the shipped values in force. Each test spoils one thing of a request.
-class LiveParameters : public ::testing::Test {
- protected:
+struct LiveParameters : ::testing::Test {
   LiveChange read(const std::string& request) const { return read_live(base, kBlock, request); }
 
   /// The only problem, if it is the only one.
@@ -200,5 +191,4 @@ TEST_P(LiveParametersFuzz, AreTakenOrRefusedWhateverStandsInTheRequest) {
   EXPECT_GT(refused, static_cast<int>(GetParam() / 3));
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -1,19 +1,12 @@
 // Gaits of the user's own: maps gait_1 … gait_4 of the leg controller.
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include "control/legged/gait.h"
 #include "parameters/parameter_file.h"
+#include "support/matchers.h"
 
-namespace robot_control {
-namespace {
-
-using ::testing::ElementsAre;
-using ::testing::HasSubstr;
+namespace robot_control::tests {
 
 /// The healthy case is the shipped file with one gait. Each test spoils one thing.
-class OwnGaitsTest : public ::testing::Test {
- protected:
+struct OwnGaitsTest : ::testing::Test {
   Parameters read(const std::vector<Overlay>& changes = {}) const {
     return read_parameters(file.path(), laid(changes));
   }
@@ -81,7 +74,7 @@ std::string gait_of(const std::string& phases, double period, double alone) {
          ", phases: " + phases + ", lift: 0.05}";
 }
 
-TEST_F(OwnGaitsTest, ThatTipOverAreRefused) {
+TEST_F(OwnGaitsTest, AreRefusedIfTheyTipOver) {
   const std::string pace = "[0.5, 0, 0.5, 0]", bound = "[0, 0, 0.5, 0.5]", trot = "[0.5, 0, 0, 0.5]";
   struct Case {
     std::string phases;
@@ -110,5 +103,4 @@ TEST_F(OwnGaitsTest, ThatTipOverAreRefused) {
                 "most 0.122 s, and time · part of the period at most 0.07 s"));
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -3,8 +3,7 @@
 #include "configuration/parameters.h"
 #include "parameter_file.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 TEST(ParametersText, IsReadBackAsTheSameValues) {
   const std::vector<Overlay> unusual{{"robot.rate", "333.3333333333333", "test"},
@@ -29,5 +28,4 @@ TEST(ParametersText, IsReadBackAsTheSameValues) {
   EXPECT_EQ(again.telemetry.record, RecordMode::kRequest);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -1,14 +1,9 @@
 #include "configuration/rate_notes.h"
 
-#include <gmock/gmock.h>
-
 #include "parameters/parameter_file.h"
+#include "support/matchers.h"
 
-namespace robot_control {
-namespace {
-
-using ::testing::ElementsAre;
-using ::testing::IsEmpty;
+namespace robot_control::tests {
 
 std::vector<std::string> notes_at(const std::string& rate, std::string_view block) {
   return rate_notes(read_parameters(shipped_path(), {{"robot.rate", rate, "test"}}), block);
@@ -32,5 +27,4 @@ TEST(RateNotes, NameTheTimeFromALossToTheBrake) {
                   "node of the loop has stopped: lower the speed limits, or raise robot.rate"));
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

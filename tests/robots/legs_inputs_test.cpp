@@ -5,25 +5,12 @@
 #include "control/legged/gait.h"
 #include "robots/quadruped_fixture.h"
 
-namespace robot_control {
-namespace {
-
-Request walk(double linear, std::uint64_t mode = kStanceStay) {
-  return {.twist = {.linear = {linear, 0, 0}, .angular = {}}, .posture = {}, .mode = mode};
-}
-
-QuadrupedLoop walking() {
-  QuadrupedLoop robot = loop_of("quadbot");
-  robot.wait(0.3);
-  robot.run(4.5, walk(0.5));
-  return robot;
-}
+namespace robot_control::tests {
 
 TEST(LegsInputs, AnUnknownGaitMovesNothing) {
   for (const std::uint64_t mode : {std::uint64_t{kStanceGait}, kStanceGait + kGaits.size(), ~std::uint64_t{0}}) {
     QuadrupedLoop robot = loop_of("quadbot");
-    robot.wait(0.3);
-    robot.run(1.0, walk(0.5, mode));
+    robot.run(1.0, walk(0.5, 0, 0, mode));
     EXPECT_EQ(robot.command().legged.phase, LegPhase::kLying) << mode;
     EXPECT_NE(robot.command().reasons & kReasonPartIgnored, 0u) << mode;
   }
@@ -50,7 +37,7 @@ TEST(LegsInputs, ATwistBeyondEveryLimitIsLimited) {
 TEST(LegsInputs, GaitsThatSwitchInEveryCycleDoNotStopTheWalk) {
   QuadrupedLoop robot = walking();
   for (std::uint64_t k = 0; k < 2000; ++k) {
-    robot.loop.request(walk(0.3, kStanceGait + 1 + k % 3));
+    robot.loop.request(walk(0.3, 0, 0, kStanceGait + 1 + k % 3));
     robot.step();
   }
   EXPECT_EQ(robot.command().legged.phase, LegPhase::kWalking);
@@ -64,8 +51,7 @@ TEST(LegsInputs, NothingThatNeverTimesOutMovesAnythingAfterAStopAndItsReset) {
   for (const Request& request : {stance(kStanceStand), walk(0.3), joints}) {
     Parameters parameters = QuadrupedLoop::parameters(0, ErrorLevel::kIdeal);
     parameters.leg_control.request_timeout = 0;
-    QuadrupedLoop robot(legged_robot("quadbot"), parameters);
-    robot.wait(0.3);
+    QuadrupedLoop robot = loop_of(parameters);
     robot.run(1.0, request);
     robot.fold();
     for (int seconds = 0; seconds < 3; ++seconds) {
@@ -83,17 +69,4 @@ TEST(LegsInputs, NothingThatNeverTimesOutMovesAnythingAfterAStopAndItsReset) {
   }
 }
 
-TEST(LegsInputs, ATwistWhileAFootIsInTheAirSetsItDownFirst) {
-  QuadrupedLoop robot = loop_of("quadbot");
-  robot.wait(0.3);
-  robot.run(2.5, stance(kStanceStand));
-  robot.run(2.0, stance(kStanceLift));
-  robot.run(0.1, walk(0.3));
-  EXPECT_EQ(robot.command().legged.phase, LegPhase::kStanding);
-  robot.run(3.0, walk(0.3));
-  EXPECT_EQ(robot.command().legged.phase, LegPhase::kWalking);
-  EXPECT_EQ(robot.permit().causes, 0u) << robot.causes();
-}
-
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

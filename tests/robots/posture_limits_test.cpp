@@ -3,8 +3,7 @@
 #include "robots/quadruped_fixture.h"
 #include "support/robots/quadruped_trials.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 Parameters field_parameters(std::uint64_t seed) {
   Parameters parameters = QuadrupedLoop::parameters(seed, ErrorLevel::kDataSheet);
@@ -52,5 +51,4 @@ TEST_P(PostureLimits, HipsThatCarryTheWeightLimitTheTwist) {
 INSTANTIATE_TEST_SUITE_P(Robots, PostureLimits, testing::ValuesIn(legged_robots(true)), robot_name);
 INSTANTIATE_TEST_SUITE_P(Nightly, PostureLimits, testing::ValuesIn(legged_robots(false)), robot_name);
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -8,8 +8,7 @@
 #include "loop/cycle_fixture.h"
 #include "safety/derived_limits.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 constexpr double kRounding = 1e-12;
 
@@ -76,5 +75,4 @@ TEST(SafetyLimits, ASerialBoardMayBeSilentForTwelveCyclesAndNoLongerThanItsWatch
   EXPECT_EQ(safety_limits(parameters, two_wheels()).encoders_lost.persistence, 0.1) << "a longer one stays";
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -1,17 +1,10 @@
 #include "robots/wheeled/slow_loop.h"
 
-#include <gmock/gmock.h>
-
-#include "control/wheeled/wheel_loops/feed_forward.h"
 #include "gate/wheeled/wheel_stop.h"
+#include "support/matchers.h"
 #include "support/robots/diffbot_urdf.h"
 
-namespace robot_control {
-namespace {
-
-using ::testing::ElementsAre;
-using ::testing::HasSubstr;
-using ::testing::IsEmpty;
+namespace robot_control::tests {
 
 constexpr Role kRoles4[] = {Role::kDriver, Role::kEstimator, Role::kController, Role::kMonitor};
 
@@ -42,7 +35,7 @@ TEST(SlowLoop, CorrectsAndBrakesInAnInverseProportionToTheRate) {
   EXPECT_NEAR(brake_time(robot, 0.05), straight_inertia(robot, robot.wheels[0]) / damping, 1e-12);
 }
 
-TEST(SlowLoop, OfADriverIsNotedWhereTorquesBrake) {
+TEST(SlowLoop, IsNotedOfADriverWhereTorquesBrake) {
   Parameters parameters = at(20);
   EXPECT_THAT(wheeled_rate_notes(parameters, diffbot(), Role::kDriver), IsEmpty()) << "the simulator brakes by itself";
   parameters.drives = "odrive.yaml";
@@ -50,5 +43,4 @@ TEST(SlowLoop, OfADriverIsNotedWhereTorquesBrake) {
               ElementsAre(HasSubstr("brake the robot with a time constant of")));
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

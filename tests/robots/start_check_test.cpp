@@ -11,8 +11,7 @@
 #include "loop/cycle_fixture.h"
 #include "loop/machine_identity.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 TEST(Identity, DiffersByRateAndClock) {
   LoopParameters loop;
@@ -49,5 +48,4 @@ TEST(NoteOnSlowDriving, IsNoneOfFineEncoders) {
   EXPECT_EQ(note_on_slow_driving(Parameters(), two_wheels()), "");
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -3,12 +3,7 @@
 #include "control/legged/gait.h"
 #include "robots/quadruped_fixture.h"
 
-namespace robot_control {
-namespace {
-
-Request walk(double linear, double lateral, double angular, std::uint64_t mode = kStanceStay) {
-  return {.twist = {.linear = {linear, lateral, 0}, .angular = {0, 0, angular}}, .posture = {}, .mode = mode};
-}
+namespace robot_control::tests {
 
 std::uint64_t gait(GaitName name) {
   return kStanceGait + static_cast<std::uint64_t>(name);
@@ -48,7 +43,6 @@ class WalkingOf : public testing::TestWithParam<std::string> {};
 
 TEST_P(WalkingOf, ATwistLetsALyingRobotStandUpAndWalkAndAZeroLetsItStand) {
   QuadrupedLoop robot = loop_of(GetParam());
-  robot.wait(0.3);
   robot.run(3.0, walk(0.5, 0, 0));
   expect_walk(robot, walk(0.5, 0, 0), 0.03, 0.1);
   double stood = 0;
@@ -75,7 +69,6 @@ class WalkOfQuadbot : public testing::TestWithParam<Walk> {};
 
 TEST_P(WalkOfQuadbot, FollowsTheTwist) {
   QuadrupedLoop robot = loop_of("quadbot");
-  robot.wait(0.3);
   robot.run(3.0, GetParam().request);
   expect_walk(robot, GetParam().request, GetParam().part, GetParam().tilt);
 }
@@ -115,26 +108,16 @@ TEST(Walking, AGaitOfOnesOwnCarriesTheRobotAndIsLimitedByItsLegs) {
 TEST(Walking, GoesOverTilesOfUpTo40Millimetres) {
   Parameters parameters = QuadrupedLoop::parameters(0, ErrorLevel::kIdeal);
   parameters.plant.scene = PROJECT_DIRECTORY "/urdf/scenes/tiles.xml";
-  QuadrupedLoop robot(legged_robot("quadbot"), parameters);
-  robot.wait(0.3);
+  QuadrupedLoop robot = loop_of(parameters);
   robot.run(10.0, walk(0.4, 0, 0, gait(GaitName::kWalkingTrot)));
   EXPECT_GT(robot.truth().pose_world.position[0], 2.5);
   EXPECT_LE(robot.tilt, 0.11);
   EXPECT_EQ(robot.permit().causes, 0u) << robot.causes();
 }
 
-/// Returns quadbot that walks with 0.5 m/s.
-QuadrupedLoop walking() {
-  QuadrupedLoop robot = loop_of("quadbot");
-  robot.wait(0.3);
-  robot.run(4.5, walk(0.5, 0, 0));
-  return robot;
-}
-
 TEST(Walking, AnEmergencyStopFoldsFromAnyPhaseOfTheGait) {
   for (int phase = 0; phase < 4; ++phase) {
     QuadrupedLoop robot = loop_of("quadbot");
-    robot.wait(0.3);
     robot.run(4.5 + 0.0475 * phase, walk(1.0, 0, 0));
     const auto [cycles, rest_at] = robot.fold();
     EXPECT_LE(cycles, 3) << phase;
@@ -143,67 +126,11 @@ TEST(Walking, AnEmergencyStopFoldsFromAnyPhaseOfTheGait) {
   }
 }
 
-TEST(Walking, AZeroEndsAtTheEndOfTheStepWithAllFeetDown) {
-  QuadrupedLoop robot = walking();
-  while (robot.command().legged.phase == LegPhase::kWalking) robot.run(0.001, {});
-  EXPECT_EQ(robot.command().contact_schedule, (ContactSchedule{0.5, 0.5, 0.5, 0.5}));
-}
-
-TEST(Walking, LiesDownOnlyAfterTheWalkHasEnded) {
-  QuadrupedLoop robot = walking();
-  robot.run(0.1, stance(kStanceLie));
-  EXPECT_EQ(robot.command().legged.phase, LegPhase::kWalking);
-  robot.run(5.0, stance(kStanceLie));
-  EXPECT_EQ(robot.command().legged.phase, LegPhase::kLying);
-  EXPECT_EQ(robot.permit().causes, 0u) << robot.causes();
-}
-
-TEST(Walking, WalksWithAnotherGaitFromTheEndOfTheCycleOn) {
-  QuadrupedLoop robot = walking();
-  const auto crawl = static_cast<std::uint64_t>(GaitName::kCrawl);
-  double phase = robot.command().legged.gait_phase;
-  while (robot.command().legged.gait != crawl) {
-    phase = robot.command().legged.gait_phase;
-    robot.run(0.001, walk(0.2, 0, 0, kStanceGait + crawl));
-  }
-  EXPECT_GT(phase, 0.99);
-  robot.run(2.0, walk(0.2, 0, 0, kStanceGait + crawl));
-  EXPECT_EQ(robot.permit().causes, 0u) << robot.causes();
-}
-
-TEST(Walking, ChoosesTheGaitByTheSpeedWithAHysteresisUnlessOneIsRequested) {
-  QuadrupedLoop robot = loop_of("quadbot");
-  robot.wait(0.3);
-  const auto gait_at = [&](double speed, std::uint64_t mode) {
-    robot.run(2.0, walk(speed, 0, 0, mode));
-    return static_cast<GaitName>(robot.command().legged.gait);
-  };
-  robot.run(2.5, walk(0.2, 0, 0));
-  EXPECT_EQ(gait_at(0.2, kStanceStay), GaitName::kWalkingTrot);
-  EXPECT_EQ(gait_at(0.35, kStanceStay), GaitName::kWalkingTrot);
-  EXPECT_EQ(gait_at(0.45, kStanceStay), GaitName::kTrot);
-  EXPECT_EQ(gait_at(0.35, kStanceStay), GaitName::kTrot);
-  EXPECT_EQ(gait_at(0.25, kStanceStay), GaitName::kWalkingTrot);
-  EXPECT_EQ(gait_at(0.25, gait(GaitName::kTrot)), GaitName::kTrot);
-  EXPECT_EQ(robot.permit().causes, 0u) << robot.causes();
-}
-
-TEST(Walking, EndsWithFeetOnTheirPlacesSoThatTheRobotCanLieDown) {
-  QuadrupedLoop robot = loop_of("quadbot");
-  robot.wait(0.3);
-  robot.run(6.0, walk(0.2, 0, 0, gait(GaitName::kCrawl)));
-  robot.run(5.0, {.mode = kStanceLie});
-  EXPECT_EQ(robot.command().legged.phase, LegPhase::kLying);
-  EXPECT_EQ(robot.permit().causes, 0u) << robot.causes();
-}
-
 /// Returns a robot with the sensors of data sheets and without force sensors at its feet.
 QuadrupedLoop with_errors(const std::string& name, std::uint64_t seed) {
   Parameters parameters = QuadrupedLoop::parameters(seed, ErrorLevel::kDataSheet);
   parameters.plant.contact_sensors = false;
-  QuadrupedLoop robot(legged_robot(name), parameters);
-  robot.wait(0.3);
-  return robot;
+  return loop_of(parameters, name);
 }
 
 TEST(Walking, KeepsItsBodyParallelToTheGroundWhateverTheErrorOfTheTilt) {
@@ -235,7 +162,6 @@ TEST(Walking, AFootThatIsStillInTheAirIsNotPushedFasterThanItsJointsTurn) {
 
 TEST(Walking, DoesNotBecomeFasterThanRequestedWhenItStarts) {
   QuadrupedLoop robot = loop_of("quadbot");
-  robot.wait(0.3);
   robot.run(3.0, walk(0.01, 0, 0));
   double fastest = 0;
   for (int steps = 0; steps < 8; ++steps)
@@ -253,8 +179,7 @@ TEST(Walking, IsNotStoppedForATiltThatOnlyABiasOfTheGyroShows) {
   Parameters parameters = QuadrupedLoop::parameters(13, ErrorLevel::kField);
   parameters.plant.contact_sensors = false;
   parameters.plant.gyro_bias = 0.02;
-  QuadrupedLoop robot(legged_robot("quadbot"), parameters);
-  robot.wait(0.3);
+  QuadrupedLoop robot = loop_of(parameters);
   robot.run(20.0, walk(0.5, 0, 0));
   EXPECT_EQ(robot.permit().causes, 0u) << robot.causes();
   EXPECT_LT(robot.tilt, 0.1);
@@ -262,7 +187,6 @@ TEST(Walking, IsNotStoppedForATiltThatOnlyABiasOfTheGyroShows) {
 
 TEST(Walking, GoesOnWhenATrotBecomesACrawlThatIsRequestedFaster) {
   QuadrupedLoop robot = loop_of("quadbot");
-  robot.wait(0.3);
   robot.run(5.0, walk(1.0, 0, 0, gait(GaitName::kTrot)));
   robot.run(3.0, walk(0.55, 0, 0, gait(GaitName::kCrawl)));
   EXPECT_EQ(robot.command().legged.gait, static_cast<std::uint64_t>(GaitName::kCrawl));
@@ -275,7 +199,6 @@ TEST(Walking, GoesOnWhenATrotBecomesACrawlThatIsRequestedFaster) {
 TEST(Walking, DoesNotRunAheadWhereACrawlBecomesATrot) {
   for (const GaitName next : {GaitName::kTrot, GaitName::kWalkingTrot}) {
     QuadrupedLoop robot = loop_of("quadbot");
-    robot.wait(0.3);
     robot.run(6.0, walk(0.13, 0, 0, gait(GaitName::kCrawl)));
     while (robot.command().legged.gait != static_cast<std::uint64_t>(next))
       robot.run(0.001, walk(0.13, 0, 0, gait(next)));
@@ -296,8 +219,7 @@ TEST(Walking, IsStoppedByAFaultThatIsNamedBeforeItFalls) {
         Fault{"gyro", "garbage", "imu_jump"}, Fault{"gyro", "wrong", "body_turn"},
         Fault{"accelerometer", "wrong", "imu_reversed"}, Fault{"estimator", "wrong", "wrong_state"}}) {
     SCOPED_TRACE(fault.component);
-    QuadrupedLoop robot(legged_robot("quadbot"), 0, ErrorLevel::kDataSheet);
-    robot.wait(0.3);
+    QuadrupedLoop robot = loop_of("quadbot", 0, ErrorLevel::kDataSheet);
     robot.run(4.0, walk(0.5, 0, 0));
     robot.loop.inject_fault(fault.component, fault.kind);
     robot.run(0.3, walk(0.5, 0, 0));
@@ -312,8 +234,7 @@ TEST(Walking, IsStoppedUprightWhereItsFeetSlip) {
   for (const std::uint64_t seed : {0, 1}) {
     Parameters parameters = QuadrupedLoop::parameters(seed, ErrorLevel::kDataSheet);
     parameters.plant.ground_friction = 0.1;
-    QuadrupedLoop robot(legged_robot("quadbot"), parameters);
-    robot.wait(0.3);
+    QuadrupedLoop robot = loop_of(parameters);
     robot.run(8.0, walk(0.2, 0, 0, gait(GaitName::kCrawl)));
     EXPECT_EQ(names_of(kStopCauseNames, robot.permit().first_cause), "foot_slip");
     EXPECT_LT(robot.tilt, 0.25);
@@ -337,29 +258,4 @@ TEST(Walking, AThighWhoseEncoderTurnsRoundInMidSwingIsNamedInThatSwing) {
   EXPECT_LT(robot.tilt, 0.2);
 }
 
-TEST(Walking, IsLimitedInItsSpeed) {
-  Parameters parameters = QuadrupedLoop::parameters(0, ErrorLevel::kIdeal);
-  parameters.leg_control.max_linear_speed = 0.3;
-  QuadrupedLoop robot(legged_robot("quadbot"), parameters);
-  robot.wait(0.3);
-  robot.run(5.0, walk(1.0, 0, 0));
-  EXPECT_NE(robot.command().reasons & kReasonSpeedLimited, 0u);
-  EXPECT_NEAR(robot.command().twist_limited.linear[0], 0.3, 1e-9);
-}
-
-TEST(Walking, NamesTheLegsWhoseSpeedLimitsTheBody) {
-  Parameters parameters = QuadrupedLoop::parameters(0, ErrorLevel::kIdeal);
-  parameters.leg_control.max_linear_speed = 20;
-  QuadrupedLoop robot(legged_robot("quadbot"), parameters);
-  robot.wait(0.3);
-  robot.run(2.6, walk(20, 0, 0));
-  EXPECT_NE(robot.command().reasons & kReasonLegSpeed, 0u);
-}
-
-TEST(Walking, IsTheSameBitForBit) {
-  QuadrupedLoop a = walking(), b = walking();
-  EXPECT_EQ(a.truth().pose_world.position, b.truth().pose_world.position);
-}
-
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

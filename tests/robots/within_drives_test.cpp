@@ -1,24 +1,16 @@
 #include "robots/wheeled/within_drives.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include <filesystem>
 #include <fstream>
 
 #include "machine/wheeled/drive_train.h"
+#include "support/matchers.h"
 #include "support/robots/diffbot_urdf.h"
 
-namespace robot_control {
-namespace {
-
-using ::testing::ElementsAre;
-using ::testing::HasSubstr;
-using ::testing::IsEmpty;
+namespace robot_control::tests {
 
 /// Diffbot has 3.5 N·m and 30 rad/s, and no torque rate of its own.
-class WithinDrives : public ::testing::Test {
- protected:
+struct WithinDrives : ::testing::Test {
   Parameters limited(const std::string& left, const std::string& right = "") {
     std::ofstream(path_) << "bus: {dialect: cia402}\n"
                          << "every_joint: {torque_limit: 4, velocity_limit: 30, gear: 2}\n"
@@ -64,5 +56,4 @@ TEST_F(WithinDrives, ASecondTimeChangesNothing) {
   EXPECT_EQ(twice.warnings, once.warnings);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

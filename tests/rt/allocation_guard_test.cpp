@@ -7,8 +7,7 @@
 #include <thread>
 #include <vector>
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 struct Aligned {
   alignas(64) double value = 0;
@@ -19,8 +18,7 @@ void keep(const void* memory) {
   asm volatile("" : : "g"(memory) : "memory");
 }
 
-class AllocationGuardTest : public testing::Test {
- protected:
+struct AllocationGuardTest : testing::Test {
   void SetUp() override {
     if (!AllocationGuard::kCounts) GTEST_SKIP() << "the sanitizer owns the allocator";
   }
@@ -74,5 +72,4 @@ TEST_F(AllocationGuardTest, IgnoresOtherThreads) {
   EXPECT_LE(here, 1u);  // join may release the thread's state, once
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -3,8 +3,6 @@
 #include "rt/crash_report.h"
 
 #include <fcntl.h>
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 #include <sys/mman.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
@@ -23,14 +21,9 @@
 #include <vector>
 
 #include "rt/realtime_thread.h"
+#include "support/matchers.h"
 
-namespace robot_control {
-namespace {
-
-using testing::AllOf;
-using testing::HasSubstr;
-using testing::Not;
-using testing::StartsWith;
+namespace robot_control::tests {
 
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 constexpr bool kSanitized = true;
@@ -114,48 +107,27 @@ TEST(CrashReport, TruncatedSharedMemoryIsNamedWithItsRemedyAndTheConsequence) {
                     HasSubstr("the process ends, the motors brake without it"), HasSubstr("remedy: look at 'df")));
 }
 
-TEST(CrashReport, AnAddressThatIsNotItsOwnIsReported) {
-  const Death death = death_of(write_nowhere);
-  EXPECT_EQ(death.signal, SIGSEGV);
-  EXPECT_EQ(lines_of(death.words), 1);
-  EXPECT_THAT(death.words, AllOf(StartsWith("some_node: SIGSEGV at 0x10: "), HasSubstr("core dump")));
-}
-
-TEST(CrashReport, AnImpossibleInstructionIsReported) {
-  const Death death = death_of([] { __builtin_trap(); });
-  EXPECT_EQ(death.signal, SIGILL);
-  EXPECT_THAT(death.words, StartsWith("some_node: SIGILL at 0x"));
-}
-
-TEST(CrashReport, ADivisionByZeroIsReported) {
-  const Death death = death_of([] { raise(SIGFPE); });
-  EXPECT_EQ(death.signal, SIGFPE);
-  EXPECT_THAT(death.words, StartsWith("some_node: SIGFPE: it divided"));
-}
-
-TEST(CrashReport, AnAbortIsReported) {
-  const Death death = death_of([] { std::abort(); });
-  EXPECT_EQ(death.signal, SIGABRT);
-  EXPECT_EQ(lines_of(death.words), 1);
-  EXPECT_THAT(death.words, StartsWith("some_node: SIGABRT: it gave up"));
-}
-
-TEST(CrashReport, ASignalFromAnotherProcessIsReported) {
-  const Death death = death_of([] { kill(getpid(), SIGSEGV); });
-  EXPECT_EQ(death.signal, SIGSEGV);
-  EXPECT_THAT(death.words, StartsWith("some_node: SIGSEGV from another process: "));
+TEST(CrashReport, NamesTheSignalAndItsReasonInOneLine) {
+  const std::vector<std::tuple<std::function<void()>, int, std::string>> crashes{
+      {write_nowhere, SIGSEGV, "SIGSEGV at 0x10: "},
+      {[] { __builtin_trap(); }, SIGILL, "SIGILL at 0x"},
+      {[] { raise(SIGFPE); }, SIGFPE, "SIGFPE: it divided"},
+      {[] { std::abort(); }, SIGABRT, "SIGABRT: it gave up"},
+      {[] { kill(getpid(), SIGSEGV); }, SIGSEGV, "SIGSEGV from another process: "},
+      {[] { std::thread(read_truncated).join(); }, SIGBUS, "SIGBUS at 0x"}};
+  for (const auto& [body, signal, words] : crashes) {
+    const Death death = death_of(body);
+    EXPECT_EQ(death.signal, signal) << words;
+    EXPECT_EQ(lines_of(death.words), 1) << words;
+    EXPECT_THAT(death.words,
+                AllOf(StartsWith("some_node: " + words), HasSubstr(signal == SIGBUS ? "remedy: " : "core dump")));
+  }
 }
 
 TEST(CrashReport, ALivingProcessReportsNothing) {
   const Death death = death_of([] {});
   EXPECT_EQ(death.signal, 0);
   EXPECT_EQ(death.words, "");
-}
-
-TEST(CrashReport, AnyThreadMayWriteIt) {
-  const Death death = death_of([] { std::thread(read_truncated).join(); });
-  EXPECT_EQ(death.signal, SIGBUS);
-  EXPECT_THAT(death.words, StartsWith("some_node: SIGBUS at 0x"));
 }
 
 TEST(CrashReport, ThreadsThatCrashTogetherReportOnce) {
@@ -176,21 +148,16 @@ TEST(CrashReport, ThreadsThatCrashTogetherReportOnce) {
   }
 }
 
-TEST(CrashReport, AStackOverflowIsReported) {
+TEST(CrashReport, AStackOverflowOfAnyThreadIsReported) {
   if (kSanitized) GTEST_SKIP() << "the sanitizer's frames are too large for it";
-  const Death death = death_of([] { overflow(0); });
-  EXPECT_EQ(death.signal, SIGSEGV);
-  EXPECT_THAT(death.words, StartsWith("some_node: SIGSEGV at 0x"));
-}
-
-TEST(CrashReport, AStackOverflowOfARealtimeThreadIsReported) {
-  if (kSanitized) GTEST_SKIP() << "the sanitizer's frames are too large for it";
-  const Death death = death_of([] {
-    RealtimeThread thread({.policy = RealtimePolicy::kOff}, [] { overflow(0); });
-    thread.join();
-  });
-  EXPECT_EQ(death.signal, SIGSEGV);
-  EXPECT_THAT(death.words, StartsWith("some_node: SIGSEGV at 0x"));
+  for (const bool realtime : {false, true}) {
+    const Death death = death_of([realtime] {
+      if (!realtime) overflow(0);
+      RealtimeThread({.policy = RealtimePolicy::kOff}, [] { overflow(0); }).join();
+    });
+    EXPECT_EQ(death.signal, SIGSEGV);
+    EXPECT_THAT(death.words, StartsWith("some_node: SIGSEGV at 0x"));
+  }
 }
 
 // Otherwise it would hang in the write, and with it this test.
@@ -200,7 +167,7 @@ TEST(CrashReport, AReaderThatHasStoppedDoesNotKeepItAlive) {
   EXPECT_THAT(death.words, Not(HasSubstr("some_node")));
 }
 
-TEST(CrashReport, WithoutAStderrTheProcessEndsByTheSameSignal) {
+TEST(CrashReport, EndsTheProcessByTheSameSignalWithoutAStderr) {
   const Death death = death_of([] {
     close(STDERR_FILENO);
     write_nowhere();
@@ -220,5 +187,4 @@ TEST(CrashReport, ALongNameIsCutOff) {
   EXPECT_THAT(death.words, HasSubstr("remedy: "));
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

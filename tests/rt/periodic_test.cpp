@@ -4,14 +4,12 @@
 
 #include <vector>
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 constexpr std::int64_t kStart = 5'000'000'000;
 constexpr std::int64_t kPeriod = 1'000'000;
 
-class PeriodicTest : public testing::Test {
- protected:
+struct PeriodicTest : testing::Test {
   Periodic schedule_{kStart, kPeriod};
 };
 
@@ -86,7 +84,7 @@ TEST_F(PeriodicTest, TheDeadlineIsStartPlusCyclesPlusSlip) {
   }
 }
 
-TEST_F(PeriodicTest, OnHardwareTheGridStaysAndTheCycleJumps) {
+TEST_F(PeriodicTest, TheGridStaysOnHardwareAndTheCycleJumps) {
   Periodic hardware(kStart, kPeriod, WhenLate::kSkip);
   EXPECT_EQ(hardware.begin(kStart + 7 * kPeriod + 300), 7);
   EXPECT_EQ(hardware.missed(), 7);
@@ -96,5 +94,4 @@ TEST_F(PeriodicTest, OnHardwareTheGridStaysAndTheCycleJumps) {
   EXPECT_EQ(hardware.begin(kStart + 8 * kPeriod), 0);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -5,8 +5,7 @@
 
 #include "support/processes/child_process.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 /// Returns 0 without a problem, 1 with one that names the limit and the remedy.
 int verdict_with(rlim_t soft, rlim_t hard) {
@@ -32,5 +31,4 @@ TEST(ProcessLimits, ASoftLimitOnDescriptorsIsRaised) {
   EXPECT_EQ(verdict_with(64, 64), 0);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -22,8 +22,7 @@
 #include "support/processes/child_process.h"
 #include "support/temporary_folder.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 int first_core() {
   cpu_set_t cores;
@@ -337,5 +336,4 @@ TEST(PrepareProcess, SaysTheSameEachTime) {
   });
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

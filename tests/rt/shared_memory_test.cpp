@@ -12,14 +12,12 @@
 #include "rt/futex.h"
 #include "support/processes/child_process.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 constexpr std::size_t kBytes = 8192;
 
 /// An object of kBytes, mapped by its creator.
-class SharedMemoryTest : public testing::Test {
- protected:
+struct SharedMemoryTest : testing::Test {
   SharedMemoryTest() : object_(*SharedMemory::create(name_)) {
     object_.reserve(kBytes);
     mapping_ = object_.map(kBytes);
@@ -38,7 +36,7 @@ TEST_F(SharedMemoryTest, IsThereOnlyOnce) {
   EXPECT_FALSE(SharedMemory::create(name_));
 }
 
-TEST_F(SharedMemoryTest, OfNoSuchNameIsEmpty) {
+TEST_F(SharedMemoryTest, IsEmptyIfThereIsNoSuchName) {
   EXPECT_FALSE(SharedMemory::open(name_ + ".no", Access::kReadOnly));
 }
 
@@ -57,7 +55,7 @@ TEST_F(SharedMemoryTest, OpenToOthersIsNotPrivate) {
   EXPECT_FALSE(object_.is_private());
 }
 
-TEST_F(SharedMemoryTest, OfAnotherUserIsNotPrivate) {
+TEST_F(SharedMemoryTest, IsNotPrivateIfItIsOfAnotherUser) {
   if (geteuid() != 0) GTEST_SKIP() << "only root can give an object away";
   ASSERT_EQ(chown(("/dev/shm" + name_).c_str(), 65534, 65534), 0);
   EXPECT_FALSE(object_.is_private());
@@ -144,5 +142,4 @@ TEST_F(SharedMemoryTest, AWaitOnAReadOnlyMappingIsWokenByAnotherProcess) {
   EXPECT_LT(monotonic_ns() - before_ns, 5'000'000'000);  // woken, not timed out
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

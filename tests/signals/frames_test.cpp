@@ -15,8 +15,7 @@
 #include "signals/trace.h"
 #include "signals/truth_frame.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 /// A constant expression cannot read padding, so this compiles only without any.
 template <class Plain>
@@ -28,8 +27,7 @@ static_assert(kWithoutPadding<DriverTrace> && kWithoutPadding<EstimatorTrace> &&
               kWithoutPadding<MonitorTrace>);
 
 template <class Frame>
-class FrameTest : public testing::Test {
- protected:
+struct FrameTest : testing::Test {
   FrameTest() {
     frame_.head.run = 7;
     frame_.head.cycle = 1234;
@@ -78,7 +76,7 @@ TYPED_TEST(FrameTest, NoticesTwoWordsThatChangedPlaces) {
   EXPECT_FALSE(intact(swapped));
 }
 
-TYPED_TEST(FrameTest, OfZeroesIsNotIntact) {
+TYPED_TEST(FrameTest, IsNotIntactOfZeroes) {
   TypeParam zero = this->frame_;
   std::memset(static_cast<void*>(&zero), 0, sizeof zero);
   EXPECT_FALSE(intact(zero));
@@ -100,5 +98,4 @@ TEST(Permit, BrakesByDefault) {
   EXPECT_EQ(Permit{}.action, PermitAction::kBrake);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -8,8 +8,7 @@
 #include <vector>
 
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 constexpr std::int64_t kSecond = 1'000'000'000;
 
@@ -55,7 +54,7 @@ TEST(DurationHistogram, QuantilesOfRandomLatenciesAreThoseOfTheSortedSamplesWith
   }
 }
 
-TEST(DurationHistogram, WithoutASampleAllFiguresAreZero) {
+TEST(DurationHistogram, HasFiguresOfZeroWithoutASample) {
   const DurationFigures figures = figures_of({});
   EXPECT_EQ(figures.samples, 0u);
   EXPECT_EQ(figures.max, 0);
@@ -92,5 +91,4 @@ TEST(RecentDurations, ASampleOfALongPastSecondCountsForTheTotalAlone) {
   EXPECT_EQ(durations.total().samples, 2u);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

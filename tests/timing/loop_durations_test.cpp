@@ -2,8 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 constexpr std::int64_t kPeriod = 1'000'000;  // ns
 constexpr std::int64_t kStart = 5'000'000'000;
@@ -18,8 +17,7 @@ CycleTimes punctual(std::uint64_t cycle) {
   return times;
 }
 
-class LoopDurationsTest : public testing::Test {
- protected:
+struct LoopDurationsTest : testing::Test {
   LoopDurations all{{Role::kDriver, Role::kEstimator, Role::kController, Role::kMonitor}};
 
   void add(std::uint64_t first, std::uint64_t last) {
@@ -135,5 +133,4 @@ TEST_F(LoopDurationsTest, OverrunsOfAllRunsAreAdded) {
   EXPECT_EQ(all.overruns(), 4u);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

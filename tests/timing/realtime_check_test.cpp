@@ -2,14 +2,12 @@
 
 #include <gtest/gtest.h>
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 constexpr std::int64_t kInterval = 1'000'000'000;
 
 /// A thread that waits 1000 times per second and does nothing else that blocks.
-class RealtimeCheckTest : public testing::Test {
- protected:
+struct RealtimeCheckTest : testing::Test {
   RealtimeReading reading{.counters = {.page_faults = 40, .run_queue_ns = 0}};
   RealtimeCheck check;
 
@@ -85,5 +83,4 @@ TEST_F(RealtimeCheckTest, WhatTheKernelDoesNotCountIsNotReported) {
   EXPECT_FALSE(check.recent().run_queue_ns.has_value());
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -8,14 +8,12 @@
 
 #include "signals/command_frame.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr std::uint64_t kPlanar = kPartLinearX | kPartAngularZ;  ///< of a differential drive
 
-class CommandWatchTest : public testing::Test {
- protected:
+struct CommandWatchTest : testing::Test {
   void send(double linear) {
     request.content.twist.linear[0] = linear;
     ++request.count;
@@ -72,7 +70,7 @@ TEST_F(CommandWatchTest, NamesThePartsThatTheMachineCannotExecuteAndPassesTheOth
   EXPECT_EQ(watch.partial(), 1u);
 }
 
-TEST_F(CommandWatchTest, AnIgnoredPartEndsWithItsCommand) {
+TEST_F(CommandWatchTest, ForgetsAnIgnoredPartWithItsCommand) {
   request.content.twist.linear[1] = 0.3;
   ++request.count;
   for (std::uint64_t k = 0; k < 2000; ++k) watch.step(request, k);
@@ -351,5 +349,4 @@ TEST_F(CommandWatchTest, WhatNoSenderSentIsNoZeroRequestAndNoEndOfASilence) {
   EXPECT_EQ(watch.silent_cycles(3000), 3000u);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -7,8 +7,7 @@
 #include "control/wheeled/control_bench.h"
 #include "signals/names.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 /// Spoils one thing of a bench that drives at 0.5 m/s and 0.2 rad/s. It steps the bench no farther than to the command
 /// with the reason.
@@ -92,7 +91,7 @@ TEST(CommandReasons, AreEachRaisedByWhatTheySay) {
   }
 }
 
-TEST(CommandReasons, OfAnIgnoredPartNameItAndTheOthersAreExecuted) {
+TEST(CommandReasons, NameAnIgnoredPartAndTheOthersAreExecuted) {
   ControlBench bench = driving();
   const double before = bench.plant.twist.linear;
   bench.request.content.twist.linear[1] = 0.2;
@@ -104,7 +103,7 @@ TEST(CommandReasons, OfAnIgnoredPartNameItAndTheOthersAreExecuted) {
   EXPECT_EQ(bench.command.requests_refused, 0u);
 }
 
-TEST(CommandReasons, OfOneSenderTooManyRampWithTheEmergencyDeceleration) {
+TEST(CommandReasons, RampWithTheEmergencyDecelerationForOneSenderTooMany) {
   DriveControllerParameters parameters = straight_ramps();
   parameters.max_linear_emergency_deceleration = 2;
   ControlBench bench(make_test_robot(), parameters);
@@ -122,5 +121,4 @@ TEST(CommandReasons, OfOneSenderTooManyRampWithTheEmergencyDeceleration) {
   EXPECT_NEAR(bench.plant.twist.linear, 0.5, 1e-6) << "one is left";
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -1,23 +1,12 @@
 #include "control/wheeled/control_problems.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include <string>
 
 #include "control/wheeled/test_robot.h"
 #include "control/wheeled/wheel_loops/wheel_loop_gains.h"
+#include "support/matchers.h"
 
-namespace robot_control {
-namespace {
-
-using testing::AllOf;
-using testing::Each;
-using testing::ElementsAre;
-using testing::HasSubstr;
-using testing::IsEmpty;
-using testing::SizeIs;
-using testing::UnorderedElementsAre;
+namespace robot_control::tests {
 
 TEST(ControlProblems, FindsNoneInTheDefaultsAtAnyRate) {
   for (const double rate : {100.0, 200.0, 333.0, 500.0, 1000.0, 2000.0}) {
@@ -160,5 +149,4 @@ TEST(ControlProblems, RefuseGainsThatLeaveTheWheelsToFeedForward) {
               UnorderedElementsAre(HasSubstr("pid_kp"), HasSubstr("tracking_bandwidth")));
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -7,8 +7,7 @@
 
 #include "control/wheeled/control_bench.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 struct Figures {
   double rms = 0;          ///< m/s, true speed against the plan of two cycles ago
@@ -134,5 +133,4 @@ TEST(DrivePerformance, RepeatsBitForBit) {
   EXPECT_EQ(checksum_of(a.command), checksum_of(b.command));
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

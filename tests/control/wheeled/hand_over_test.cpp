@@ -6,15 +6,13 @@
 
 #include "control/wheeled/control_bench.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 constexpr double kSlope = 5 * std::numbers::pi / 180;
 // m·g·sin(slope)·r/2 per wheel
 const double kLoad = 0.5 * 12 * 9.81 * std::sin(kSlope) * 0.1;
 
-class HandOver : public testing::Test {
- protected:
+struct HandOver : testing::Test {
   void SetUp() override { bench.plant.slope = kSlope; }
 
   /// m, lowest position while it drives up at 5 mm/s, too slowly for feed-forward to hide the hand-over.
@@ -168,5 +166,4 @@ TEST_F(HandOver, ContinuesFromTheMeasuredSpeedAfterAShortBrake) {
   EXPECT_NEAR(bench.plant.twist.linear, 1, 0.01);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -7,8 +7,7 @@
 
 #include "control/wheeled/test_robot.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 constexpr double kRounding = 1e-14;  // a few operations on numbers of order one to ten
 
@@ -88,5 +87,4 @@ TEST(DriveKinematics, HasNoWheelLimitWhereTheRobotNamesNone) {
   EXPECT_EQ(DriveKinematics(robot).wheel_speed_scale({1000, 0}), 1);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -5,8 +5,7 @@
 #include "control/wheeled/control_bench.h"
 #include "control/wheeled/control_problems.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 TEST(MeasuredRobot, IsTheUrdfsWhereNothingWasMeasured) {
   DriveTrain robot = make_test_robot();
@@ -66,5 +65,4 @@ TEST(MeasuredRobot, IsWhatTheFeedForwardDrives) {
       1.25, 1e-12);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

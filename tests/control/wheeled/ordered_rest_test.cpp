@@ -2,18 +2,14 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
-
 #include "control/wheeled/control_bench.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 constexpr double kDegree = std::numbers::pi / 180;
 
 /// Healthy case: 0.5 m/s on the level, and loops that are as slow as 20 Hz make them.
-class OrderedRest : public testing::Test {
- protected:
+struct OrderedRest : testing::Test {
   OrderedRest() {
     bench.run(0.5);
     bench.send(0.5, 0);
@@ -74,5 +70,4 @@ TEST_F(OrderedRest, IsNoReasonToBrakeWhileAMotionIsRequested) {
   }
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -8,8 +8,7 @@
 
 #include "control/wheeled/control_bench.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 constexpr double kPermitRounding = 1e-14;  // a few operations on numbers of order one
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
@@ -65,8 +64,7 @@ TEST(RimSpeedScale, NoRimOfAnyRobotExceedsIt) {
 }
 
 /// The healthy case is a curve of 1 m radius at 0.8 m/s, its outer rim at 1 m/s, driven until it is steady.
-class PermitSpeed : public testing::Test {
- protected:
+struct PermitSpeed : testing::Test {
   PermitSpeed() {
     bench.send(0.8, 0.8);
     bench.run(1.2);
@@ -160,5 +158,4 @@ TEST_F(PermitSpeed, IsNoReasonUnderABrakeOrARamp) {
   EXPECT_FALSE(slowed());
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -9,8 +9,7 @@
 #include "control/wheeled/control_bench.h"
 #include "control/wheeled/kinematics.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 constexpr double kWeak = 0.4;  // N·m; straight ahead 1 m/s² takes 0.65
 constexpr PlanarTwist kCurve{.linear = 0.7, .angular = 1.0};
@@ -207,5 +206,4 @@ TEST(TorqueSaturation, NeverStretchesARampTowardsZero) {
   EXPECT_GT(bench.plant.twist.linear, 0.3) << "while the robot cannot";
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

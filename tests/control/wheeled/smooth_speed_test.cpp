@@ -7,8 +7,7 @@
 
 #include "control/wheeled/test_robot.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 constexpr double kCoarseCount = 2 * std::numbers::pi / 90;
 
@@ -52,5 +51,4 @@ TEST(SmoothSpeed, IsThatOfTheSetGainsAndOfTheMeasuredRobot) {
   EXPECT_EQ(smooth_from(without), 0);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -6,8 +6,7 @@
 
 #include "support/constants.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 constexpr double kCount = 2 * std::numbers::pi / 4096;
 
@@ -54,5 +53,4 @@ TEST(Standstill, ForgetsWhenReset) {
   EXPECT_FALSE(standstill.standing());
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

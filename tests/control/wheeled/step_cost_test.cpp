@@ -11,8 +11,7 @@
 #include "control/wheeled/control_bench.h"
 #include "support/allocation_guard.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 constexpr double kPromisedNs = 200;  // the median on a quiet machine, whose kernel takes 92
 /// factor between kinds of processors: one without AVX-512 takes 2.37 kernels instead of 1.9
@@ -37,8 +36,7 @@ Recording record(ControlBench& bench, const std::function<PlanarTwist(std::size_
   return recording;
 }
 
-class StepCost : public testing::Test {
- protected:
+struct StepCost : testing::Test {
   StepCost() { bench_.plant.counts = 4096; }
 
   /// The ratio of one round: the median over blocks of step over kernel.
@@ -84,5 +82,4 @@ TEST_F(StepCost, IsWithinItsPromiseWhereTheLimiterIsBusy) {
   }));
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -9,15 +9,13 @@
 #include "control/wheeled/derived_tuning.h"
 #include "support/allocation_guard.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 /// The bound lies between rounding and anything that a wheel could feel.
 constexpr double kTuneRounding = 1e-9;
 
 /// The rigid plant has friction that the controller does not know, so that error and integral are not zero.
-class Tune : public testing::Test {
- protected:
+struct Tune : testing::Test {
   static ControlBench driving(const DriveControllerParameters& parameters = straight_ramps()) {
     ControlBench bench(make_test_robot(), parameters);
     bench.plant.viscous_friction = 0.02;
@@ -49,7 +47,7 @@ class Tune : public testing::Test {
   DriveControllerParameters given = straight_ramps();
 };
 
-TEST_F(Tune, ToWhatHoldsAlreadyChangesNoBit) {
+TEST_F(Tune, ChangesNoBitByWhatHoldsAlready) {
   ControlBench tuned = driving();
   ControlBench left = driving();
   for (int k = 0; k < 1000; ++k) {
@@ -93,7 +91,7 @@ TEST_F(Tune, LeavesTheControllerThatAStartWithTheseValuesMakes) {
   EXPECT_NE(tuned.command.reasons & kReasonTimedOut, 0u);
 }
 
-TEST_F(Tune, OfGainsLetsTheTorqueGoOn) {
+TEST_F(Tune, LetsTheTorqueGoOnUnderOtherGains) {
   ControlBench tuned = driving();
   ControlBench left = driving();
   CommandFrame before_last;
@@ -119,7 +117,7 @@ TEST_F(Tune, OfGainsLetsTheTorqueGoOn) {
 }
 
 // A load that nothing plans causes a large error under small gains; its torque passes from them to the hand-over.
-TEST_F(Tune, OfGainsUnderALargeErrorLetsTrackingGoOn) {
+TEST_F(Tune, LetsTrackingGoOnUnderOtherGainsAndALargeError) {
   given.pid_kp = 0.7;
   given.pid_ki = 0.3;
   ControlBench bench(make_test_robot(), given);
@@ -136,7 +134,7 @@ TEST_F(Tune, OfGainsUnderALargeErrorLetsTrackingGoOn) {
   EXPECT_LT(worst, 0.3) << "rad/s of 5; taken for a planned torque, the hand-over makes 1.5 of them";
 }
 
-TEST_F(Tune, OfGainsInAStallLeavesTheIntegratorAlone) {
+TEST_F(Tune, LeavesTheIntegratorAloneInAStall) {
   constexpr double kLimit = 5, kError = 8;
   const WheelLoopGains before{.kp = 2, .ki = 0}, after{.kp = 1, .ki = 0};
   WheelLoop loop(before, 20, kLimit, 1e-3);
@@ -151,7 +149,7 @@ TEST_F(Tune, OfGainsInAStallLeavesTheIntegratorAlone) {
   EXPECT_EQ(loop.integral(), 0) << "what the limit cut off does not wind up";
 }
 
-TEST_F(Tune, BeforeAHandOverLeavesItTheTorqueThatTheBrakeHeld) {
+TEST_F(Tune, LeavesAHandOverTheTorqueThatTheBrakeHeld) {
   WheelLoop loop({.kp = 2, .ki = 20, .kd = 0.001}, 20, 5, 1e-3);
   for (int k = 0; k < 5; ++k) loop.measure({.position = 1e-4 * k * k}, 1, false);
   loop.tune({.kp = 1, .ki = 10, .kd = 0.01}, 20, {});
@@ -161,7 +159,7 @@ TEST_F(Tune, BeforeAHandOverLeavesItTheTorqueThatTheBrakeHeld) {
   EXPECT_NEAR(loop.step({.velocity = loop.velocity()}, 1), 1.5, kTuneRounding);
 }
 
-TEST_F(Tune, OfTheMassLetsTorqueAndTrackingGoOn) {
+TEST_F(Tune, LetsTorqueAndTrackingGoOnUnderAnotherMass) {
   ControlBench tuned = driving();
   ControlBench left = driving();
   given.feed_forward.mass = 14;
@@ -178,7 +176,7 @@ TEST_F(Tune, OfTheMassLetsTorqueAndTrackingGoOn) {
   }
 }
 
-TEST_F(Tune, OfFeedForwardLeavesTheIntegratorThePartForTheSpeedAlone) {
+TEST_F(Tune, LeavesTheIntegratorThePartForTheSpeedAlone) {
   WheelLoop loop({.kp = 2, .ki = 0.1}, 20, 5, 1e-3);
   loop.measure({}, 1, false);
   loop.step({.feed_forward = 1.5}, 1);
@@ -194,7 +192,7 @@ TEST_F(Tune, OfFeedForwardLeavesTheIntegratorThePartForTheSpeedAlone) {
   EXPECT_NEAR(loop.integral(), 0.3, kTuneRounding);
 }
 
-TEST_F(Tune, InMidRampLeavesNothingToASlowIntegrator) {
+TEST_F(Tune, LeavesNothingToASlowIntegratorInMidRamp) {
   given.pid_kp = 0.7;
   given.pid_ki = 0.3;  // 15 s of kp/ki and more
   for (const double times : {1.0 / 3, 3.0}) {
@@ -214,7 +212,7 @@ TEST_F(Tune, InMidRampLeavesNothingToASlowIntegrator) {
   }
 }
 
-TEST_F(Tune, OfTheBandwidthKeepsWhatIsTracked) {
+TEST_F(Tune, KeepsWhatIsTrackedUnderAnotherBandwidth) {
   given.feed_forward.wheel_damping = 1.0;  // then model_inertia follows from the bandwidth (wheel_loop_gains.h)
   given.pid_kp = 1.0;
   given.pid_ki = 5.0;
@@ -263,7 +261,7 @@ TEST_F(Tune, BringsNoCommandBackThatTimedOut) {
   EXPECT_EQ(bench.command.twist_limited.linear[0], 0.0);
 }
 
-TEST_F(Tune, WhileBrakedSpoilsNoHandOver) {
+TEST_F(Tune, SpoilsNoHandOverWhileBraked) {
   ControlBench bench;
   bench.plant.slope = 0.05;
   bench.run(0.4);
@@ -278,7 +276,7 @@ TEST_F(Tune, WhileBrakedSpoilsNoHandOver) {
   EXPECT_NEAR(bench.command.joints[0].effort, load, 0.01 * load) << "a mean, whose first sample was 0";
 }
 
-TEST_F(Tune, WhileBrakedAtSpeedChangesNothingThatTheIntegratorsKnow) {
+TEST_F(Tune, ChangesNothingThatTheIntegratorsKnowWhileBrakedAtSpeed) {
   ControlBench tuned = driving();
   ControlBench left = driving();
   given.feed_forward.wheel_damping = 0.5;
@@ -298,7 +296,6 @@ TEST_F(Tune, WhileBrakedAtSpeedChangesNothingThatTheIntegratorsKnow) {
 }
 
 TEST_F(Tune, AllocatesNothing) {
-  if (!AllocationGuard::kCounts) GTEST_SKIP() << "the sanitizer owns the allocator";
   ControlBench bench = driving();
   given.pid_kp = 1;
   const DriveTuning tuning = drive_tuning(given, bench.robot, bench.period);
@@ -328,7 +325,7 @@ struct WatchedAxis {
   }
 };
 
-TEST_F(Tune, AtRandomWhileDrivingNeverExceedsTheOldOrTheNewLimits) {
+TEST_F(Tune, NeverExceedsTheOldOrTheNewLimitsAtRandom) {
   for (unsigned seed = 0; seed < 40; ++seed) {
     std::mt19937 random(seed);
     const auto draw = [&](double low, double high) { return std::uniform_real_distribution(low, high)(random); };
@@ -362,5 +359,4 @@ TEST_F(Tune, AtRandomWhileDrivingNeverExceedsTheOldOrTheNewLimits) {
   }
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -8,8 +8,7 @@
 #include "control/wheeled/control_bench.h"
 #include "control/wheeled/control_problems.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 constexpr double kWheelRadius = 0.1;  // m
 constexpr double kNotMeasured = std::numeric_limits<double>::quiet_NaN();
@@ -148,5 +147,4 @@ TEST(VelocityCommand, RefusesGainsOfLoopsThatTheDrivesClose) {
   EXPECT_EQ(control_problems(parameters, VelocityBench::robot(), 1e-3).size(), 2u);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

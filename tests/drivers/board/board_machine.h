@@ -5,7 +5,6 @@
 #include <functional>
 #include <memory>
 #include <utility>
-#include <vector>
 
 #include "drivers/board/board_driver.h"
 #include "drivers/board/board_front.h"

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cstring>
 #include <random>
 #include <span>
 #include <vector>
@@ -12,8 +11,7 @@
 #include "drivers/board/mutated_stream.h"
 #include "firmware/board.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 using Bytes = std::vector<std::uint8_t>;
 
@@ -64,8 +62,7 @@ TEST(BoardFrame, AnyBodyComesBackAndLongerOnesAreRefused) {
 }
 
 /// A board with two wheels and no machine.
-class BoardTest : public testing::Test {
- protected:
+struct BoardTest : testing::Test {
   BoardTest() { configure({}); }
 
   void configure(board_config config) {
@@ -231,9 +228,8 @@ TEST_F(BoardTest, NoStreamOfBytesMovesAWheelUnlessItsOrderIsWhole) {
   expect_no_motion(20'000);
 }
 
-TEST_F(BoardTest, NightlyNorAMillion) {
+TEST_F(BoardTest, NightlyNoneOfAMillionStreamsMovesAWheel) {
   expect_no_motion(1'000'000);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

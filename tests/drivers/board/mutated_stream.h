@@ -4,8 +4,12 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <memory>
 #include <random>
+#include <string>
 #include <vector>
+
+#include "drivers/line/serial_line.h"
 
 namespace robot_control {
 
@@ -29,6 +33,28 @@ class MutatedStreams {
 
  private:
   std::mt19937 random_{49};
+};
+
+/// A line that answers each request with a stream that is nearly the answer of a healthy device.
+class MutatedLine : public SerialLine {
+ public:
+  bool receive(SerialChunk& chunk) noexcept override {
+    chunk.size = std::min(chunk.bytes.size(), pending_.size());
+    std::copy_n(pending_.begin(), chunk.size, chunk.bytes.begin());
+    pending_.erase(pending_.begin(), pending_.begin() + static_cast<std::ptrdiff_t>(chunk.size));
+    return chunk.size > 0;
+  }
+  bool connected() const noexcept override { return true; }
+  std::string name() const override { return "a line with errors"; }
+
+  int driven = 0;  ///< requests that were to move a wheel
+
+ protected:
+  void answer(const std::vector<std::uint8_t>& frame) { pending_ = mutated_.next(frame); }
+
+ private:
+  MutatedStreams mutated_;
+  std::vector<std::uint8_t> pending_;
 };
 
 }  // namespace robot_control

@@ -1,12 +1,8 @@
 #include "drivers/cia402/canopen.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
+#include "support/matchers.h"
 
-namespace robot_control::canopen {
-namespace {
-
-using ::testing::ElementsAre;
+namespace robot_control::canopen::tests {
 
 TEST(Canopen, AnNmtCommandIsTwoBytesToAllNodesOrOne) {
   const can_frame frame = encode_nmt({.command = NmtCommand::kStart, .node = 5});
@@ -76,5 +72,4 @@ TEST(Canopen, ErrorCodesHaveWordsOrThoseOfTheirClass) {
   EXPECT_STREQ(error_code_words(0xE000), "unknown error");
 }
 
-}  // namespace
-}  // namespace robot_control::canopen
+}  // namespace robot_control::canopen::tests

@@ -1,15 +1,10 @@
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include <cmath>
 #include <numbers>
 
 #include "drivers/drive/device_rig.h"
+#include "support/matchers.h"
 
-namespace robot_control::cia402 {
-namespace {
-
-using ::testing::HasSubstr;
+namespace robot_control::cia402::tests {
 
 std::string words_after(
     const Cia402Pair& pair, const std::function<void(Cia402Device&)>& change = [](auto&) {}) {
@@ -19,6 +14,13 @@ std::string words_after(
   rig.command_all({.enabled = true});
   rig.run(3);
   return rig.drive().words();
+}
+
+auto without(const canopen::ObjectAddress& object) {
+  return [=](Cia402Device& device) { device.objects().remove(object); };
+}
+auto with(const canopen::ObjectAddress& object, std::uint32_t value) {
+  return [=](Cia402Device& device) { device.objects().set(object, value); };
 }
 
 TEST(Cia402Drive, PrefersTheCyclicTorqueModeAndTakesTheProfileMode) {
@@ -53,18 +55,13 @@ TEST(Cia402Drive, ComparesWhatItReadsWithTheFile) {
   pair.drive.rated_torque = 3;
   EXPECT_THAT(words_after(pair), HasSubstr("rated torque (6076), 2 instead of 3"));
   pair = cia402_pair(5);
-  EXPECT_THAT(words_after(pair, [](Cia402Device& device) { device.objects().set(kMaxTorque, 500); }),
-              HasSubstr("maximum torque (6072), 1 instead of 1.6"));
+  EXPECT_THAT(words_after(pair, with(kMaxTorque, 500)), HasSubstr("maximum torque (6072), 1 instead of 1.6"));
 }
 
 TEST(Cia402Drive, SaysWhatIsMissingAndWhatWasRefusedWithTheAbortInWords) {
   const Cia402Pair pair = cia402_pair(5);
-  EXPECT_THAT(words_after(pair, [](auto& device) { device.objects().remove(kRatedTorque); }),
-              HasSubstr("lacks rated torque (6076); state rated_torque"));
-  EXPECT_THAT(words_after(pair,
-                          [](auto& device) {
-                            device.objects().remove({0x6077, 0});
-                          }),
+  EXPECT_THAT(words_after(pair, without(kRatedTorque)), HasSubstr("lacks rated torque (6076); state rated_torque"));
+  EXPECT_THAT(words_after(pair, without({0x6077, 0})),
               HasSubstr("refused to set TPDO of statusword, position and torque (0x6040041: object cannot be mapped"));
   Cia402Pair fixed = pair;
   fixed.device.fixed_mapping = true;
@@ -86,7 +83,7 @@ TEST(Cia402Drive, TakesAFixedMappingThatHoldsWhatItNeeds) {
     device.objects().set({0x1600, 3}, 0x607A0020);
   };
   EXPECT_THAT(words_after(pair, with_position), HasSubstr("its RPDO, which holds another object: 0x607A0020"));
-  const auto without_position = [](Cia402Device& device) { device.objects().set({0x1A00, 0}, 1); };
+  const auto without_position = with({0x1A00, 0}, 1);
   EXPECT_THAT(words_after(pair, without_position), HasSubstr("lacks an entry of its PDO: (0x60640020"));
 }
 
@@ -149,11 +146,7 @@ TEST(Cia402Drive, TakesAVelocityAtAnyPlaceOfAFixedPdo) {
   pair.drive.pdos = PdoSource::kFixed;
   pair.drive.velocity_pdo = VelocityPdo::kTrue;
   EXPECT_THAT(words_after(pair), HasSubstr("running"));
-  EXPECT_THAT(words_after(pair,
-                          [](auto& device) {
-                            device.objects().set({0x1A01, 0}, 0);
-                          }),
-              HasSubstr("lacks an entry of its PDO: (0x606C0020"));
+  EXPECT_THAT(words_after(pair, with({0x1A01, 0}, 0)), HasSubstr("lacks an entry of its PDO: (0x606C0020"));
   DeviceRig rig;
   Cia402Device& device = add(rig, pair);
   device.objects().set({0x1A01, 0}, 2);
@@ -179,22 +172,9 @@ VelocitySource velocity_of(const Cia402Pair& pair, const std::function<void(Cia4
 TEST(Cia402Drive, MapsTheVelocityWhereItCan) {
   const Cia402Pair pair = cia402_pair(5);
   EXPECT_EQ(velocity_of(pair), VelocitySource::kDrive);
-  EXPECT_EQ(velocity_of(pair,
-                        [](Cia402Device& device) {
-                          device.objects().remove({0x606C, 0});
-                        }),
-            VelocitySource::kNotMapped);
-  EXPECT_EQ(velocity_of(pair,
-                        [](Cia402Device& device) {
-                          device.objects().remove({0x1801, 1});
-                        }),
-            VelocitySource::kNotMapped);
-  EXPECT_EQ(velocity_of(pair,
-                        [](Cia402Device& device) {
-                          device.objects().remove({0x1A01, 2});
-                        }),
-            VelocitySource::kDrive)
-      << "one entry is enough";
+  EXPECT_EQ(velocity_of(pair, without({0x606C, 0})), VelocitySource::kNotMapped);
+  EXPECT_EQ(velocity_of(pair, without({0x1801, 1})), VelocitySource::kNotMapped);
+  EXPECT_EQ(velocity_of(pair, without({0x1A01, 2})), VelocitySource::kDrive) << "one entry is enough";
 }
 
 TEST(Cia402Drive, DrivesOnWithoutADerivedVelocityThatIsNotSent) {
@@ -211,13 +191,10 @@ TEST(Cia402Drive, DrivesOnWithoutADerivedVelocityThatIsNotSent) {
 // A wrong unit would move the joint by a multiple of its way.
 TEST(Cia402Drive, MapsNoVelocityWithoutItsUnit) {
   Cia402Pair pair = cia402_pair(5);
-  const auto without = [](Cia402Device& device) { device.objects().remove(kVelocityUnit); };
-  EXPECT_EQ(velocity_of(pair, without), VelocitySource::kNoUnit);
-  EXPECT_EQ(velocity_of(pair, [](Cia402Device& device) { device.objects().set(kVelocityUnit, 0x00B5'0300); }),
-            VelocitySource::kNoUnit)
-      << "increments per second";
+  EXPECT_EQ(velocity_of(pair, without(kVelocityUnit)), VelocitySource::kNoUnit);
+  EXPECT_EQ(velocity_of(pair, with(kVelocityUnit, 0x00B5'0300)), VelocitySource::kNoUnit) << "increments per second";
   pair.drive.velocity_unit = pair.device.velocity_unit = 0.01 * kRpm;
-  EXPECT_EQ(velocity_of(pair, without), VelocitySource::kDrive) << "it is stated";
+  EXPECT_EQ(velocity_of(pair, without(kVelocityUnit)), VelocitySource::kDrive) << "it is stated";
 }
 
 TEST(Cia402Drive, MapsNoVelocityThatIsNotWantedOrHasNoRoom) {
@@ -233,16 +210,8 @@ TEST(Cia402Drive, UsesTheVelocityOfAFixedPdoThatComesWithSync) {
   pair.device.fixed_mapping = true;
   pair.drive.pdos = PdoSource::kFixed;
   EXPECT_EQ(velocity_of(pair), VelocitySource::kDrive);
-  EXPECT_EQ(velocity_of(pair,
-                        [](Cia402Device& device) {
-                          device.objects().set({0x1801, 2}, canopen::kOnEvent);
-                        }),
-            VelocitySource::kNotMapped);
-  EXPECT_EQ(velocity_of(pair,
-                        [](Cia402Device& device) {
-                          device.objects().set({0x1A01, 0}, 0);
-                        }),
-            VelocitySource::kNotMapped);
+  EXPECT_EQ(velocity_of(pair, with({0x1801, 2}, canopen::kOnEvent)), VelocitySource::kNotMapped);
+  EXPECT_EQ(velocity_of(pair, with({0x1A01, 0}, 0)), VelocitySource::kNotMapped);
 }
 
 TEST(Cia402Drive, AVelocityThatIsNotSentAnyMoreIsNamed) {
@@ -267,7 +236,7 @@ TEST(Cia402Drive, StepsThroughThePowerStates) {
   });
   ASSERT_TRUE(rig.runs());
   rig.run(0.1);
-  EXPECT_THAT(controlwords, ::testing::ElementsAre(0x06, 0x07, 0x0F));
+  EXPECT_THAT(controlwords, ElementsAre(0x06, 0x07, 0x0F));
 }
 
 TEST(Cia402Drive, ResetsNoFaultByItself) {
@@ -310,8 +279,7 @@ TEST(Cia402Drive, JudgesTheVoltageWhereTheDriveHasIt) {
   device.objects().set(kDcLinkVoltage, 12000);
   rig.run(0.3);
   EXPECT_THAT(rig.drive().words(), HasSubstr("has a low supply: voltage, 12 instead of 18"));
-  EXPECT_THAT(words_after(cia402_pair(5), [](auto& each) { each.objects().remove(kDcLinkVoltage); }),
-              HasSubstr("running"));
+  EXPECT_THAT(words_after(cia402_pair(5), without(kDcLinkVoltage)), HasSubstr("running"));
 }
 
 struct ReactionCase {
@@ -353,8 +321,7 @@ TEST(Cia402Drive, StatesWhatTheDriveDoesOnSilenceAndTheDeviceDoesIt) {
   }
 }
 
-class TwoAxes : public ::testing::Test {
- protected:
+struct TwoAxes : ::testing::Test {
   TwoAxes() {
     Cia402Parameters parameters = cia402_pair(6).drive;
     for (const unsigned axis : {1U, 0U}) {  // The order of the joints does not matter.
@@ -370,7 +337,7 @@ class TwoAxes : public ::testing::Test {
   Cia402Device* device_ = nullptr;
 };
 
-TEST_F(TwoAxes, OfOneNodeAreDrivenApart) {
+TEST_F(TwoAxes, AreDrivenApart) {
   ASSERT_TRUE(rig_.runs());
   rig_.commands = {{.enabled = true, .torque = 1}, {.enabled = true, .torque = -2}};
   rig_.cycle();
@@ -426,5 +393,4 @@ TEST(Cia402Drive, ContinuesItsPositionOverTheOverflowOf32Bits) {
   EXPECT_NEAR(rig.drive().sample().joint.position - before, 10 * 0.1 / pair.drive.drive.gear, 0.02);
 }
 
-}  // namespace
-}  // namespace robot_control::cia402
+}  // namespace robot_control::cia402::tests

@@ -7,8 +7,7 @@
 #include <map>
 #include <string>
 
-namespace robot_control::cia402 {
-namespace {
+namespace robot_control::cia402::tests {
 
 /// The dictionary of a drive: keys of each section, as "6071 DataType" → "0x0003".
 std::map<std::string, std::string> read_eds(const std::string& name) {
@@ -30,8 +29,7 @@ std::string section_of(const ObjectAddress& object, bool has_subs) {
   return text;
 }
 
-class DriveObjects : public ::testing::Test {
- protected:
+struct DriveObjects : ::testing::Test {
   static bool has(const std::map<std::string, std::string>& eds, const ObjectAddress& object) {
     return eds.contains(section_of(object, true) + " DataType") ||
            eds.contains(section_of(object, false) + " DataType");
@@ -80,5 +78,4 @@ TEST_F(DriveObjects, AModeIsSupportedByItsBit) {
   EXPECT_FALSE(supports(0x1EF, Mode::kCyclicTorque));
 }
 
-}  // namespace
-}  // namespace robot_control::cia402
+}  // namespace robot_control::cia402::tests

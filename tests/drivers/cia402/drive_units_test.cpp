@@ -4,8 +4,7 @@
 
 #include <limits>
 
-namespace robot_control::cia402 {
-namespace {
+namespace robot_control::cia402::tests {
 
 constexpr DriveUnits kUnits{.rated_torque = 2.5, .counts_per_turn = 4096};
 
@@ -41,5 +40,4 @@ TEST(DriveUnits, ReadTheUnitOfTheVelocity) {
   EXPECT_EQ(velocity_unit(0), 0);
 }
 
-}  // namespace
-}  // namespace robot_control::cia402
+}  // namespace robot_control::cia402::tests

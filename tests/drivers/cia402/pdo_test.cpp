@@ -1,14 +1,9 @@
 #include "drivers/cia402/pdo.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include "drivers/cia402/drive_objects.h"
+#include "support/matchers.h"
 
-namespace robot_control::canopen {
-namespace {
-
-using ::testing::ElementsAre;
+namespace robot_control::canopen::tests {
 
 constexpr std::uint8_t kNode = 5;
 const cia402::AxisPdos kPdos;
@@ -61,5 +56,4 @@ TEST(Pdo, OtherFramesChangeNothing) {
   EXPECT_THAT(values, ElementsAre(7, 8, 9));
 }
 
-}  // namespace
-}  // namespace robot_control::canopen
+}  // namespace robot_control::canopen::tests

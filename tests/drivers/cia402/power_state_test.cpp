@@ -4,8 +4,7 @@
 
 #include <set>
 
-namespace robot_control::cia402 {
-namespace {
+namespace robot_control::cia402::tests {
 
 using enum PowerState;
 
@@ -67,5 +66,4 @@ TEST(PowerState, AFaultIsNotResetByAStep) {
   EXPECT_EQ(step_to_operation(kUnknown), Controlword::kDisableVoltage);
 }
 
-}  // namespace
-}  // namespace robot_control::cia402
+}  // namespace robot_control::cia402::tests

@@ -4,8 +4,7 @@
 
 #include <vector>
 
-namespace robot_control::canopen {
-namespace {
+namespace robot_control::canopen::tests {
 
 using enum SdoCommand;
 using enum SdoSide;
@@ -141,5 +140,4 @@ TEST(Sdo, AbortsHaveWords) {
   EXPECT_STREQ(abort_words(0x12345678), "unknown abort code");
 }
 
-}  // namespace
-}  // namespace robot_control::canopen
+}  // namespace robot_control::canopen::tests

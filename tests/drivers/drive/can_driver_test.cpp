@@ -1,19 +1,15 @@
-/// The driver on simulated devices, through a real file descriptor, held to the contract of every driver.
+/// The driver on simulated devices, through a real file descriptor; every_drive_test.cpp holds it to the contract.
 
 #include "drivers/drive/can_driver.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
 #include "drivers/drive/device_rig.h"
-#include "drivers/driver_contract.h"
+#include "support/allocation_guard.h"
+#include "support/matchers.h"
 
-namespace robot_control {
-namespace {
-
-using ::testing::HasSubstr;
+namespace robot_control::tests {
 
 enum class TestedDialect { kOdrive, kCia402, kVesc };
 constexpr const char* kNames[] = {"odrive", "cia402", "vesc"};
@@ -86,23 +82,7 @@ class CanMachine final : public Driver {
   std::optional<CanDriver> driver_;
 };
 
-MachineUnderTest machine(const std::string& name, TestedDialect dialect) {
-  return {.name = name,
-          .make = [dialect] { return std::make_unique<CanMachine>(dialect); },
-          .effort_limit = 4,
-          .effort = 0.5,
-          .damping = 2,
-          .stiffness = 20};
-}
-
-INSTANTIATE_TEST_SUITE_P(CanMachines, DriverContract,
-                         testing::Values(machine("Odrive", TestedDialect::kOdrive),
-                                         machine("Cia402", TestedDialect::kCia402),
-                                         machine("Vesc", TestedDialect::kVesc)),
-                         machine_name);
-
-class CanDriverOn : public ::testing::TestWithParam<TestedDialect> {
- protected:
+struct CanDriverOn : ::testing::TestWithParam<TestedDialect> {
   SensorFrame cycle(const JointCommand& command = {}) {
     SensorFrame frame;
     machine_.read(frame);
@@ -211,6 +191,18 @@ TEST_P(CanDriverOn, NothingMovesAfterAFaultUntilTheNextStart) {
   EXPECT_GT(cycles(500, drive_).joints[0].velocity, 4);
 }
 
+TEST_P(CanDriverOn, ReadAndWriteDoNotAllocate) {
+  machine_.start();
+  const std::vector<JointCommand> commands(2, drive_);
+  SensorFrame frame;
+  const AllocationGuard guard;
+  for (int i = 0; i < 100; ++i) {
+    machine_.read(frame);
+    machine_.write(commands);
+  }
+  EXPECT_EQ(guard.count(), 0u);
+}
+
 TEST_P(CanDriverOn, BrakesAndHoldsOnASlope) {
   machine_.start();
   cycles(500, drive_);
@@ -224,5 +216,4 @@ INSTANTIATE_TEST_SUITE_P(Dialects, CanDriverOn,
                          ::testing::Values(TestedDialect::kOdrive, TestedDialect::kCia402, TestedDialect::kVesc),
                          [](const auto& each) { return std::string(kNames[static_cast<std::size_t>(each.param)]); });
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -18,7 +18,6 @@
 #include "drivers/drive/can_drive_file.h"
 #include "drivers/odrive/odrive_device.h"
 #include "drivers/table/read_drive_file.h"
-#include "parameters/problem_list.h"
 
 namespace robot_control {
 namespace {

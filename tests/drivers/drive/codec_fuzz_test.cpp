@@ -12,8 +12,7 @@
 #include "drivers/odrive/odrive_catalogue.h"
 #include "drivers/vesc/vesc_messages.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 constexpr int kFrames = 10'000;  // per dialect
 
@@ -159,5 +158,4 @@ TEST(CodecFuzz, CanopenFramesHaveOneMeaningOrNone) {
   EXPECT_GT(accepted, kFrames / 4);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

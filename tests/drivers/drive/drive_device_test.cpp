@@ -1,8 +1,5 @@
 /// Claims that hold for every dialect: the state machine of a drive against its device.
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include <cmath>
 #include <numbers>
 #include <random>
@@ -11,11 +8,9 @@
 #include "drivers/drive/device_rig.h"
 #include "drivers/odrive/odrive_messages_06.h"
 #include "support/allocation_guard.h"
+#include "support/matchers.h"
 
-namespace robot_control {
-namespace {
-
-using ::testing::HasSubstr;
+namespace robot_control::tests {
 
 struct Dialect {
   std::string name;
@@ -137,8 +132,7 @@ void PrintTo(const Dialect& dialect, std::ostream* out) {
   *out << dialect.name;
 }
 
-class DriveAndDevice : public ::testing::TestWithParam<Dialect> {
- protected:
+struct DriveAndDevice : ::testing::TestWithParam<Dialect> {
   DriveAndDevice() { device_ = &GetParam().add(rig_, 1, 0); }
 
   DrivePhase state() { return rig_.drive().status().state; }
@@ -372,7 +366,6 @@ TEST_P(DriveAndDevice, AUnknownReactionOnSilenceRefusesUnlessItIsAccepted) {
 }
 
 TEST_P(DriveAndDevice, ReceiveAndStepDoNotAllocate) {
-  if (!AllocationGuard::kCounts) GTEST_SKIP() << "the sanitizer owns the allocator";
   ASSERT_TRUE(rig_.runs());
   FrameBatch send;
   std::mt19937_64 random(3);
@@ -501,5 +494,4 @@ TEST_P(InjectedFault, IsSaidInWords) {
 INSTANTIATE_TEST_SUITE_P(Faults, InjectedFault, ::testing::ValuesIn(fault_cases()),
                          [](const auto& each) { return each.param.name; });
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

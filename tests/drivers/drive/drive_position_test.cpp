@@ -9,8 +9,7 @@
 #include "drivers/drive/late_position.h"
 #include "drivers/position_difference.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 constexpr std::int64_t kPeriodNs = 1'000'000;
 constexpr double kPeriod = 1.0e-9 * kPeriodNs;  // s
@@ -108,5 +107,4 @@ TEST(PositionDifference, IsTheMeanOverItsSamples) {
   }
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

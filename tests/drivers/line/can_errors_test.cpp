@@ -3,8 +3,7 @@
 #include <gtest/gtest.h>
 #include <linux/can/error.h>
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 can_frame error(canid_t classes, std::uint64_t data) {
   return word_frame(CAN_ERR_FLAG | classes, data, CAN_ERR_DLC);
@@ -25,5 +24,4 @@ TEST(CanErrors, DetailsCountInTheirClassAlone) {
   EXPECT_EQ(can_error_words({}), "");
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

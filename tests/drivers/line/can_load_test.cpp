@@ -1,17 +1,13 @@
 #include "drivers/line/can_load.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include <algorithm>
 #include <random>
 #include <string>
 #include <vector>
 
-namespace robot_control {
-namespace {
+#include "support/matchers.h"
 
-using ::testing::HasSubstr;
+namespace robot_control::tests {
 
 std::string binary(std::uint32_t value, unsigned bits) {
   std::string text;
@@ -126,7 +122,7 @@ TEST(CanLoad, TheRefusalNamesTheRateThatFits) {
   EXPECT_GT(bus_load(odrive_plan(4), 756, 1e6), kMaxBusLoad);
 }
 
-TEST(CanLoad, WhereNoRateFitsTheRefusalNamesTheBitRate) {
+TEST(CanLoad, NamesTheBitRateWhereNoRateFits) {
   const auto problem = bus_load_problem(odrive_plan(8), 1000, 125e3, 100);
   ASSERT_TRUE(problem);
   EXPECT_THAT(*problem, HasSubstr("no robot.rate fits; set a bit rate of at least 279 kbit/s"));
@@ -150,5 +146,4 @@ TEST(CanLoad, ARateThatIsRefusedLeavesARateThatFitsForAllPlans) {
   }
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -1,6 +1,5 @@
 #include "drivers/line/serial_port.h"
 
-#include <gtest/gtest.h>
 #include <poll.h>
 
 #include <chrono>
@@ -14,10 +13,11 @@
 #include "drivers/driver.h"
 #include "drivers/line/awaited_terminal.h"
 #include "rt/clock.h"
+#include "support/matchers.h"
+#include "support/message_of.h"
 #include "support/temporary_folder.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 const RealtimeParameters kThread{.name = "serial", .policy = RealtimePolicy::kOff};
 
@@ -32,8 +32,7 @@ bool comes_true(const std::function<bool()>& condition) {
   return is_true;
 }
 
-class SerialPortTest : public testing::Test {
- protected:
+struct SerialPortTest : testing::Test {
   bool passes(SerialLine& from, SerialLine& to, const std::string& text) {
     if (!from.send({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()})) return false;
     std::string got;
@@ -84,12 +83,8 @@ TEST_F(SerialPortTest, RefusesAFileAndASecondProgram) {
   EXPECT_THROW(SerialPort("/dev/null", 0, kThread, &monotonic_ns), DriverError);
   const PseudoTerminal device(path_);
   const SerialPort port(path_, 0, kThread, &monotonic_ns);
-  try {
-    const SerialPort second(path_, 0, kThread, &monotonic_ns);
-    FAIL() << "no refusal";
-  } catch (const DriverError& error) {
-    EXPECT_NE(std::string(error.what()).find("another program uses it"), std::string::npos) << error.what();
-  }
+  EXPECT_THAT(message_of<DriverError>([&] { SerialPort(path_, 0, kThread, &monotonic_ns); }),
+              HasSubstr("another program uses it"));
 }
 
 TEST_F(SerialPortTest, SendNeverBlocksThoughNothingIsTaken) {
@@ -103,12 +98,7 @@ TEST_F(SerialPortTest, SendNeverBlocksThoughNothingIsTaken) {
 TEST_F(SerialPortTest, APseudoTerminalTakesNoLinkInUseAndReplacesOneThatLeadsNowhere) {
   std::filesystem::create_symlink("/dev/pts/none", path_);
   PseudoTerminal device(path_);
-  try {
-    const PseudoTerminal second(path_);
-    FAIL() << "no refusal";
-  } catch (const DriverError& error) {
-    EXPECT_NE(std::string(error.what()).find("in use"), std::string::npos) << error.what();
-  }
+  EXPECT_THAT(message_of<DriverError>([&] { PseudoTerminal{path_}; }), HasSubstr("in use"));
   SerialPort port(path_, 0, kThread, &monotonic_ns);
   EXPECT_TRUE(passes(port, device, "still there"));
 }
@@ -118,17 +108,14 @@ TEST_F(SerialPortTest, TheDriverTurnsTheWheelsOfABoardBehindAPseudoTerminal) {
   BoardMachine machine(500, std::make_unique<CountedLine>(path_, bytes),
                        [&] { return std::make_unique<AwaitedLine>(path_, bytes); });
   machine.start();
-  SensorFrame frame;
-  const std::vector<JointCommand> commands(2, {.mode = JointMode::kVelocity, .velocity = 10, .damping = 0.2});
+  const JointCommand command{.mode = JointMode::kVelocity, .velocity = 10, .damping = 0.2};
   for (int i = 0; i < 500; ++i) {
-    machine.read(frame);
-    ASSERT_EQ(frame.driver_state, DriverState::kRunning) << machine.warning();
-    machine.write(commands);
+    ASSERT_EQ(machine.cycles(1, command).driver_state, DriverState::kRunning) << machine.warning();
   }
+  const SensorFrame& frame = machine.frame();
   EXPECT_NEAR(frame.joints[0].velocity, 10, 0.5);
   EXPECT_NEAR(machine.joints[0].velocity, 10, 0.5);
   EXPECT_EQ(frame.links[0].errors, 0U);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -4,11 +4,9 @@
 
 #include "drivers/drive/device_rig.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
-class VirtualCanBus : public ::testing::Test {
- protected:
+struct VirtualCanBus : ::testing::Test {
   VirtualCan bus_{1.0e6};
   std::vector<std::pair<canid_t, std::int64_t>> received_;
   std::size_t first_ = bus_.join([](const can_frame&, std::int64_t) {});
@@ -82,5 +80,4 @@ TEST(PlannedLoad, IsThatOfTheFramesOnTheBus) {
   expect_planned_load<Cia402Pair>({with_velocity}, 500);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

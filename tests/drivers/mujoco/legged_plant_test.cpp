@@ -10,8 +10,7 @@
 #include "machine/legs/legs_corpus.h"
 #include "signals/rotation.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 constexpr double kPeriod = 0.001;    // s
 constexpr double kStandUp = 1.5;     // s
@@ -19,8 +18,7 @@ constexpr double kHeight = 0.7;      // of the leg's length, from the second joi
 constexpr double kStiffness = 11.0;  // N·m/rad per kg and m of leg
 constexpr double kDamping = 0.57;    // N·m·s/rad per kg and m^1.5
 
-class LeggedPlant : public testing::TestWithParam<std::string> {
- protected:
+struct LeggedPlant : testing::TestWithParam<std::string> {
   LeggedPlant() {
     parameters_.scene = PROJECT_DIRECTORY "/urdf/scenes/flat.xml";
     parameters_.sensor_errors = ErrorLevel::kIdeal;
@@ -138,5 +136,4 @@ TEST_P(LeggedPlant, StaysUprightWhenItsJointsLoseTheirPower) {
 
 INSTANTIATE_TEST_SUITE_P(Robots, LeggedPlant, testing::ValuesIn(legged_robots()), robot_name);
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

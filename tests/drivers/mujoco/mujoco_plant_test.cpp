@@ -8,8 +8,7 @@
 #include "drivers/mujoco/plant_fixture.h"
 #include "support/allocation_guard.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 constexpr double kRadius = 0.1;
 constexpr double kBase = 0.5;
@@ -194,13 +193,6 @@ TEST_F(MujocoPlantTest, AccelerationOfALongPeriodIsItsMean) {
   }
 }
 
-TEST_F(MujocoPlantTest, ReportsTheTorqueThatWasAppliedNotTheOneAskedFor) {
-  auto plant = started();
-  plant->write(both(effort_command(1.25), effort_command(100)));
-  EXPECT_EQ(sensors(*plant).joints[0].effort, 1.25);
-  EXPECT_EQ(sensors(*plant).joints[1].effort, 3.5);
-}
-
 // In free space a wheel's angular momentum gives the mean torque: J (Δq̇ + Δω_y) = τ T.
 TEST_F(MujocoPlantTest, EffortIsTheMeanOverThePeriod) {
   const std::string space = scene_file("space.xml", R"(<mujoco><option gravity="0 0 0"/><worldbody>
@@ -218,7 +210,7 @@ class HardStop : public PlantTest, public testing::WithParamInterface<double> {}
 
 // v²/(2a), a half of what lifts the rear, 9.81 · 0.0602 / 0.0890 / 2 = 3.32 m/s²: 0.151 m; the soft landing adds some
 // mm.
-TEST_P(HardStop, FromOneMetrePerSecondStopsWithoutTipping) {
+TEST_P(HardStop, StopsFromOneMetrePerSecondWithoutTipping) {
   auto plant = started();
   speed_up(*plant, GetParam() / kRadius, GetParam() / kRadius);
   const double start = truth(*plant).pose_world.position[0];
@@ -234,14 +226,6 @@ TEST_P(HardStop, FromOneMetrePerSecondStopsWithoutTipping) {
 
 INSTANTIATE_TEST_SUITE_P(MujocoPlantTest, HardStop, testing::Values(1.0, -1.0));
 
-TEST_F(MujocoPlantTest, AfterStopOnlyTheBrakesAct) {
-  auto plant = started();
-  speed_up(*plant, 5, 5);
-  plant->stop();
-  hold(*plant, both(effort_command(3), effort_command(3)), 2);
-  EXPECT_NEAR(truth(*plant).twist_base.linear[0], 0, 1e-6);
-}
-
 TEST_F(MujocoPlantTest, CommandsForAnotherNumberOfJointsBrake) {
   auto plant = started();
   const std::array<JointCommand, 1> one{effort_command(3)};
@@ -249,8 +233,7 @@ TEST_F(MujocoPlantTest, CommandsForAnotherNumberOfJointsBrake) {
   EXPECT_LT(std::abs(truth(*plant).twist_base.linear[0]), 1e-5);
 }
 
-class Repeats : public PlantTest, public testing::WithParamInterface<double> {
- protected:
+struct Repeats : PlantTest, testing::WithParamInterface<double> {
   // Everything that is read during a drive, as bytes.
   std::string record(MujocoPlant& plant) const {
     std::string bytes;
@@ -276,45 +259,4 @@ TEST_P(Repeats, BitForBitInAnotherPlantAndAfterStart) {
 
 INSTANTIATE_TEST_SUITE_P(MujocoPlantTest, Repeats, testing::Values(0.01, 0.002, 0.001, 0.0005));
 
-TEST_F(MujocoPlantTest, ReadOnlyCopies) {
-  auto plant = started();
-  speed_up(*plant, 2, 3);
-  const SensorFrame first = sensors(*plant);
-  const SensorFrame second = sensors(*plant);
-  EXPECT_EQ(std::memcmp(&first, &second, sizeof first), 0);
-}
-
-TEST_F(MujocoPlantTest, ReadAndTruthLeaveTheRestOfTheFrameAlone) {
-  auto plant = started();
-  SensorFrame frame;
-  frame.head.cycle = 7;
-  frame.driver_instance = 8;
-  frame.overruns = 9;
-  frame.gate.missed = 10;
-  plant->read(frame);
-  EXPECT_EQ(frame.head.cycle, 7u);
-  EXPECT_EQ(frame.driver_instance, 8u);
-  EXPECT_EQ(frame.overruns, 9u);
-  EXPECT_EQ(frame.gate.missed, 10u);
-  TruthFrame real;
-  real.head.cycle = 7;
-  plant->truth(real);
-  EXPECT_EQ(real.head.cycle, 7u);
-}
-
-TEST_F(MujocoPlantTest, ReadAndWriteDoNotAllocate) {
-  if (!AllocationGuard::kCounts) GTEST_SKIP() << "the sanitizer owns the allocator";
-  auto plant = started();
-  SensorFrame frame;
-  TruthFrame real;
-  AllocationGuard guard;
-  for (int k = 0; k < 500; ++k) {
-    plant->write(k % 2 == 0 ? brakes_ : both(effort_command(1), velocity_command(2)));
-    plant->read(frame);
-    plant->truth(real);
-  }
-  EXPECT_EQ(guard.count(), 0u);
-}
-
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -11,13 +11,11 @@
 #include "drivers/mujoco/sensors/integrated_force.h"
 #include "support/robots/corpus.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 namespace fs = std::filesystem;
 
-class RealRobot : public testing::TestWithParam<const char*> {
- protected:
+struct RealRobot : testing::TestWithParam<const char*> {
   void SetUp() override { set_down({}); }
 
   void set_down(std::optional<double> ground_friction) {
@@ -146,8 +144,7 @@ TEST_P(RealRobot, MeasuresTheForceThatMovesIt) {
   EXPECT_LT(force.worst(), 0.001);
 }
 
-class RealRobotOnIce : public RealRobot {
- protected:
+struct RealRobotOnIce : RealRobot {
   static constexpr double kFriction = 0.3;  // no robot tips
 
   void SetUp() override { set_down(kFriction); }
@@ -197,5 +194,4 @@ INSTANTIATE_TEST_SUITE_P(Corpus, RealRobot,
                                          "scout_v2", "p3dx_mario", "linorobot2_2wd", "rosbot2r", "dingo_d", "create_2"),
                          [](const auto& named) { return std::string(named.param); });
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -44,8 +44,7 @@ inline JointCommand velocity_command(double velocity) {
   return command;
 }
 
-class PlantTest : public testing::Test {
- protected:
+struct PlantTest : testing::Test {
   std::unique_ptr<MujocoPlant> started(const RobotDescription& description, const std::string& scene,
                                        double period = 0.001, const DriveTrainParameters& robot = {}) {
     MujocoPlantParameters parameters;

@@ -1,16 +1,11 @@
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include <cmath>
 
 #include "drivers/drive/device_rig.h"
 #include "drivers/odrive/odrive_messages_05.h"
 #include "drivers/odrive/odrive_messages_06.h"
+#include "support/matchers.h"
 
-namespace robot_control::odrive {
-namespace {
-
-using ::testing::HasSubstr;
+namespace robot_control::odrive::tests {
 
 std::string words_after(const OdrivePair& pair, double seconds = 3) {
   DeviceRig rig;
@@ -302,5 +297,4 @@ TEST(OdriveDrive, AnAxisThatCannotCloseItsLoopIsAFault) {
   EXPECT_THAT(rig.drive().words(), HasSubstr("stays without torque: axis state 1"));
 }
 
-}  // namespace
-}  // namespace robot_control::odrive
+}  // namespace robot_control::odrive::tests

@@ -8,8 +8,7 @@
 #include "drivers/odrive/odrive_catalogue.h"
 #include "drivers/odrive/odrive_errors.h"
 
-namespace robot_control::odrive {
-namespace {
+namespace robot_control::odrive::tests {
 
 TEST(ODrive, ATorqueIsFourBytesUnderTheNodesIdentifier) {
   const can_frame frame = encode(3, SetInputTorque{.torque = 1.5});
@@ -98,5 +97,4 @@ TEST(ODrive, ErrorsHaveNames) {
   EXPECT_EQ(error_names(ErrorKind::kEncoder05, 0), "NONE");
 }
 
-}  // namespace
-}  // namespace robot_control::odrive
+}  // namespace robot_control::odrive::tests

@@ -1,6 +1,3 @@
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include <filesystem>
 #include <fstream>
 #include <regex>
@@ -12,13 +9,10 @@
 #include "drivers/table/read_drive_file.h"
 #include "drivers/vesc/vesc_parameters.h"
 #include "parameters/problem_list.h"
+#include "support/matchers.h"
 #include "support/message_of.h"
 
-namespace robot_control {
-namespace {
-
-using ::testing::AllOf;
-using ::testing::HasSubstr;
+namespace robot_control::tests {
 
 const std::vector<std::string> kWheels = {"left_wheel_joint", "right_wheel_joint"};
 
@@ -43,8 +37,7 @@ left_wheel_joint: {node: 0}
 right_wheel_joint: {node: 1}
 )";
 
-class DriveFileTest : public ::testing::Test {
- protected:
+struct DriveFileTest : ::testing::Test {
   template <class File = DriveFile>
   const File& read(const std::string& text, double rate = 500, bool takes_speeds = false,
                    std::string_view driver = "can") {
@@ -220,5 +213,4 @@ TEST_F(DriveFileTest, AnOverloadedBusIsRefusedWithTheRateThatFits) {
               HasSubstr("set robot.rate to at most 5"));
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

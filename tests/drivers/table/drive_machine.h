@@ -26,14 +26,7 @@ class DriveMachine final : public WheelsInAir<DeviceFront, Driver> {
                                  [this] { return CanTime{.time_ns = board_->now_ns(), .utc_ns = board_->now_ns()}; });
   }
 
-  void start() override {
-    driver_->start();
-    SensorFrame frame;
-    for (int i = 0; i < 5 * kRate && frame.driver_state != DriverState::kRunning; ++i) {
-      read(frame);
-      write(std::vector<JointCommand>(2));
-    }
-  }
+  void start() override { WheelsInAir::start(static_cast<int>(5 * kRate)); }
 
   const DriveFile& file() const { return *file_; }
 

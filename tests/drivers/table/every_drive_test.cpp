@@ -6,8 +6,7 @@
 #include "drivers/line/answer_faults.h"
 #include "drivers/table/drive_machine.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 struct DriveUnderTest {
   const DriveRow* row = nullptr;
@@ -45,8 +44,7 @@ std::vector<MachineUnderTest> drives_with_torques() {
 
 INSTANTIATE_TEST_SUITE_P(EveryDrive, DriverContract, testing::ValuesIn(drives_with_torques()), machine_name);
 
-class EveryDrive : public testing::TestWithParam<DriveUnderTest> {
- protected:
+struct EveryDrive : testing::TestWithParam<DriveUnderTest> {
   void SetUp() override {
     machine_.start();
     ASSERT_EQ(run(2), DriverState::kRunning) << machine_.warning();
@@ -57,17 +55,12 @@ class EveryDrive : public testing::TestWithParam<DriveUnderTest> {
     const JointCommand command = GetParam().takes_speeds
                                      ? JointCommand{.mode = JointMode::kDriveVelocity, .velocity = kSpeed}
                                      : JointCommand{.mode = JointMode::kVelocity, .velocity = kSpeed, .damping = 0.2};
-    for (int i = 0; i < seconds * DriveMachine::kRate; ++i) {
-      machine_.read(frame_);
-      machine_.write(std::vector<JointCommand>(2, command));
-    }
-    return frame_.driver_state;
+    return machine_.cycles(static_cast<int>(std::lround(seconds * DriveMachine::kRate)), command).driver_state;
   }
   bool turns() const { return std::abs(machine_.joints[0].velocity) + std::abs(machine_.joints[1].velocity) > 0.5; }
 
   static constexpr double kSpeed = 5;  // rad/s
   DriveMachine machine_{*GetParam().row, GetParam().takes_speeds};
-  SensorFrame frame_;
 };
 
 TEST_P(EveryDrive, IsAtRestWhileItsAnswersFailAndUntilTheReset) {
@@ -84,12 +77,12 @@ TEST_P(EveryDrive, IsAtRestWhileItsAnswersFailAndUntilTheReset) {
     ASSERT_EQ(machine_.board().inject(component, "ok"), "");
     EXPECT_EQ(run(2), DriverState::kFault);
     EXPECT_FALSE(turns());
-    for (int i = 0; i < 20 && frame_.driver_state == DriverState::kFault; ++i) {
+    for (int i = 0; i < 20 && machine_.frame().driver_state == DriverState::kFault; ++i) {
       machine_.reset();
       run(1);
     }
     run(3);
-    ASSERT_EQ(frame_.driver_state, DriverState::kRunning) << machine_.warning();
+    ASSERT_EQ(machine_.frame().driver_state, DriverState::kRunning) << machine_.warning();
     ASSERT_TRUE(turns()) << machine_.warning();
   }
 }
@@ -105,5 +98,4 @@ INSTANTIATE_TEST_SUITE_P(Table, EveryDrive, testing::ValuesIn(all_drives()), [](
   return std::string(each.param.row->name) + (each.param.takes_speeds ? "_with_speeds" : "_with_torques");
 });
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

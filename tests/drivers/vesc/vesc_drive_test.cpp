@@ -1,15 +1,9 @@
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <cmath>
 #include <numbers>
 
 #include "drivers/drive/device_rig.h"
+#include "support/matchers.h"
 
-namespace robot_control::vesc {
-namespace {
-
-using ::testing::HasSubstr;
+namespace robot_control::vesc::tests {
 
 constexpr double kCount = 2 * std::numbers::pi / 42;  // rad of the motor, 7 pole pairs
 constexpr double kGear = 2.5;
@@ -86,7 +80,7 @@ TEST(VescDrive, TheEffortHasTheSignOfTheTorqueAlsoWhereItBrakes) {
   }
 }
 
-TEST(VescDrive, WithoutATorqueConstantItTakesSpeedsAndMeasuresNoTorque) {
+TEST(VescDrive, TakesSpeedsAndMeasuresNoTorqueWithoutATorqueConstant) {
   VescPair pair = vesc_pair(2);
   pair.drive.drive.takes_speeds = true;
   pair.drive.torque_constant = 0;
@@ -169,5 +163,4 @@ TEST(VescDrive, TheTimeoutBrakesWithItsCurrent) {
   EXPECT_NEAR(rig.motor().velocity, 0, 1.0e-3);
 }
 
-}  // namespace
-}  // namespace robot_control::vesc
+}  // namespace robot_control::vesc::tests

@@ -6,8 +6,7 @@
 
 #include "drivers/vesc/vesc_messages.h"
 
-namespace robot_control::vesc {
-namespace {
+namespace robot_control::vesc::tests {
 
 can_frame frame_of(std::uint32_t command, std::uint8_t node, std::initializer_list<std::uint8_t> bytes) {
   return data_frame(CAN_EFF_FLAG | command << 8U | node, std::vector(bytes));
@@ -69,5 +68,4 @@ TEST(Vesc, ACurrentBeyondTheRangeSaturatesAndNanIsNone) {
   EXPECT_EQ(decode<SetCurrent>(encode(0, SetCurrent{.current = std::numeric_limits<double>::quiet_NaN()}))->current, 0);
 }
 
-}  // namespace
-}  // namespace robot_control::vesc
+}  // namespace robot_control::vesc::tests

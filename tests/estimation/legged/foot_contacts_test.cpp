@@ -7,8 +7,7 @@
 #include "machine/gravity.h"
 #include "machine/legs/legs_corpus.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 /// quadbot, which stands level while its legs swing in the air as fast as in a trot.
 struct SwingingLegs {
@@ -93,5 +92,4 @@ TEST(FootContacts, AreWeighedByForceSensorsWhereAllFeetHaveThem) {
   EXPECT_EQ(legs.state.probability[0], 0);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -9,8 +9,7 @@
 #include "machine/gravity.h"
 #include "support/allocation_guard.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 using Eigen::Quaterniond;
 using Eigen::Vector3d;
@@ -160,5 +159,4 @@ TEST(LegFilter, AllocatesNothing) {
   EXPECT_EQ(guard.count(), 0u);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

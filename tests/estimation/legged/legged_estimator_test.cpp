@@ -6,8 +6,7 @@
 #include "machine/legs/legs_corpus.h"
 #include "support/allocation_guard.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 /// quadbot, which stands at rest on four feet with force sensors.
 struct Standing {
@@ -54,7 +53,7 @@ TEST(LeggedEstimator, LearnsTheGyrosBiasAtRest) {
 }
 
 // Joints that are not valid keep their last angles, at which the feet would seem to hold the robot where it is.
-TEST(LeggedEstimator, WithoutTheJointsTheDeviationsGrow) {
+TEST(LeggedEstimator, LetsTheDeviationsGrowWithoutTheJoints) {
   Standing robot;
   robot.run(1);
   const double place = robot.out.base.pose_covariance[0];
@@ -114,5 +113,4 @@ TEST(LeggedEstimator, AllocatesNothing) {
   EXPECT_EQ(guard.count(), 0u);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

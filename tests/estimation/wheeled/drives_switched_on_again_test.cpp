@@ -2,14 +2,12 @@
 
 #include "estimation/wheeled/estimator_fixture.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 constexpr double kOtherZero = 7.0;  // rad
 
 /// Healthy case: a second of standing, then 1 m/s straight ahead. A drive without a supply has no valid sample.
-class DrivesSwitchedOnAgain : public EstimatorFixture {
- protected:
+struct DrivesSwitchedOnAgain : EstimatorFixture {
   DrivesSwitchedOnAgain() {
     stand();
     drive(1.0, 0, 2000);
@@ -128,5 +126,4 @@ TEST_F(DrivesSwitchedOnAgain, TheDistanceGoesOn) {
   EXPECT_NEAR(x() - before_x, robot_.x() - before_true, 0.002);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -5,8 +5,7 @@
 #include "machine/bodies/rigid_bodies.h"
 #include "support/constants.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 EstimatorParameters held() {
   EstimatorParameters parameters;
@@ -16,8 +15,7 @@ EstimatorParameters held() {
 
 /// The wheels have 0.4 % opposite radius error on a base that is 1.5 % wider than described; the drive turns either way
 /// for five minutes.
-class EstimatorCalibrationTest : public EstimatorFixture {
- protected:
+struct EstimatorCalibrationTest : EstimatorFixture {
   explicit EstimatorCalibrationTest(const EstimatorParameters& parameters = {})
       : EstimatorFixture(two_wheeler(), parameters) {
     robot_.radius_ratio = 0.004;
@@ -29,8 +27,7 @@ class EstimatorCalibrationTest : public EstimatorFixture {
   }
 };
 
-class EstimatorHeldCalibrationTest : public EstimatorCalibrationTest {
- protected:
+struct EstimatorHeldCalibrationTest : EstimatorCalibrationTest {
   EstimatorHeldCalibrationTest() : EstimatorCalibrationTest(held()) {}
 };
 
@@ -148,5 +145,4 @@ TEST_F(EstimatorCalibrationTest, AGyroThatIsLostLeavesCalibratedWheels) {
   EXPECT_LT((ours - truth).norm(), (raw - truth).norm() / 5);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -5,12 +5,10 @@
 #include "estimation/wheeled/estimator_fixture.h"
 #include "support/constants.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 // Pulled with 1 m/s², these tyres turn 1 % faster than the robot moves; in curves they drift outwards.
-class CreepingTyres : public EstimatorFixture {
- protected:
+struct CreepingTyres : EstimatorFixture {
   static constexpr double kCreep = 0.01;  // s²/m
   explicit CreepingTyres(double known = kCreep, const DriveTrain& model = two_wheeler())
       : EstimatorFixture(model, {.tyre_creep = known}) {
@@ -34,14 +32,12 @@ class CreepingTyres : public EstimatorFixture {
     return worst;
   }
 };
-class CreepingTyresTakenForRigid : public CreepingTyres {
- protected:
+struct CreepingTyresTakenForRigid : CreepingTyres {
   CreepingTyresTakenForRigid() : CreepingTyres(0) {}
 };
 
 /// The IMU swings in curves: its measured force is not that of the tyres.
-class CreepingTyresUnderAFarImu : public CreepingTyres {
- protected:
+struct CreepingTyresUnderAFarImu : CreepingTyres {
   CreepingTyresUnderAFarImu() : CreepingTyres(kCreep, far()) {}
   static DriveTrain far() {
     DriveTrain model = two_wheeler();
@@ -120,5 +116,4 @@ TEST(EstimatorCreep, ATiltInDoubtMakesNoCreep) {
   EXPECT_NEAR(state.base.pose_odom.position[0], robot.x(), 0.002 * robot.x());
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

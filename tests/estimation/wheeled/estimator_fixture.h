@@ -41,8 +41,7 @@ inline bool is_covariance(const Matrix6& published, double slack) {
   return positive_definite([&](std::size_t i, std::size_t j) { return published[6 * i + j]; }, 6, slack);
 }
 
-class EstimatorFixture : public testing::Test {
- protected:
+struct EstimatorFixture : testing::Test {
   explicit EstimatorFixture(const DriveTrain& model = two_wheeler(),
                             const EstimatorParameters& parameters = rigid_tyres(),
                             double period = RollingRobot::kPeriod)

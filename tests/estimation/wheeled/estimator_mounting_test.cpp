@@ -5,8 +5,7 @@
 #include "estimation/wheeled/estimator_fixture.h"
 #include "support/constants.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 /// Stands and drives for ten seconds. `biased`: constant errors in base axes, wherever the IMU is.
 StateFrame drive_with(const DriveTrain& model, RollingRobot& robot) {
@@ -150,5 +149,4 @@ INSTANTIATE_TEST_SUITE_P(Rates, EstimatorRatesTest,
                                   std::to_string(rates.param.wheels);
                          });
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

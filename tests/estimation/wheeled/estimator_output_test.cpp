@@ -3,15 +3,13 @@
 #include "estimation/wheeled/estimator_fixture.h"
 #include "support/constants.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 constexpr double kAhead = 0.2;  // m, of base_link from the axle
 
 /// The same wheels are under a base_link on the axle and one ahead of it. Slip detection is off, because the IMUs
 /// differ.
-class EstimatorLeverTest : public testing::Test {
- protected:
+struct EstimatorLeverTest : testing::Test {
   EstimatorLeverTest() {
     for (int i = 0; i < 2000; ++i) step(0, 0);
     for (Estimator* estimator : {&middle_, &ahead_}) estimator->set_pose({0, 0, 0});
@@ -154,5 +152,4 @@ INSTANTIATE_TEST_SUITE_P(Planar, EstimatorPlaneTest, testing::Bool(), [](const t
   return planar.param ? "Projected" : "InThreeDimensions";
 });
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -3,8 +3,7 @@
 #include "estimation/wheeled/estimator_fixture.h"
 #include "support/constants.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 constexpr double kSlope = 0.1;  // rad, upwards
 constexpr double kTime = 1.0;   // s, in which the robot pitches
@@ -12,8 +11,7 @@ constexpr double kSpeed = 0.5;
 
 /// The robot drives from level ground onto a ramp: the body pitches up about its contacts by kSlope, evenly accelerated
 /// and braked. On the ramp the way s rises by s sin(slope) and reaches s cos(slope) far.
-class EstimatorSlopeTest : public testing::TestWithParam<bool> {
- protected:
+struct EstimatorSlopeTest : testing::TestWithParam<bool> {
   EstimatorSlopeTest() {
     parameters_.planar = GetParam();
     model_.imu_in_base.position = {0.05, 0.02, 0.15};
@@ -102,5 +100,4 @@ TEST(EstimatorOnARamp, StartsWithTheTiltThatItStandsAt) {
   EXPECT_EQ(state.base.pose_odom.position, (Vector3{0, 0, 0}));
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

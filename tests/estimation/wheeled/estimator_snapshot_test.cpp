@@ -7,11 +7,9 @@
 #include "signals/law_snapshot.h"
 #include "support/constants.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
-class EstimatorSnapshotTest : public EstimatorFixture {
- protected:
+struct EstimatorSnapshotTest : EstimatorFixture {
   EstimatorSnapshotTest() { robot_.noise = {.gyro = 2.44e-4, .accelerometer = 2e-3, .counts = 4096}; }
   /// The events are rest, drive, a wheel that spins, a gyro that is lost, and rest again.
   void event(int cycle) {
@@ -60,5 +58,4 @@ TEST_F(EstimatorSnapshotTest, ANewRunIsThatOfANewEstimator) {
   }
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

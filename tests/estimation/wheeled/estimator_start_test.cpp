@@ -3,11 +3,9 @@
 #include "estimation/wheeled/estimator_fixture.h"
 #include "support/constants.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
-class EstimatorStartTest : public EstimatorFixture {
- protected:
+struct EstimatorStartTest : EstimatorFixture {
   /// The robot moves and no sample is received.
   void drive_unseen(double linear, double angular, int cycles) {
     for (int i = 0; i < cycles; ++i) robot_.drive(linear, angular);
@@ -60,7 +58,7 @@ TEST_F(EstimatorStartTest, AHoleInAllSamplesIsTurnedByTheWheels) {
   EXPECT_NEAR(speed(), 0.3, 0.005);
 }
 
-TEST_F(EstimatorStartTest, WithoutEncodersItIsNotAtRest) {
+TEST_F(EstimatorStartTest, IsNotAtRestWithoutEncoders) {
   stand();
   const Vector3 learned = state_.base.gyro_bias;
   for (int i = 0; i < 3000; ++i) {
@@ -77,5 +75,4 @@ TEST_F(EstimatorStartTest, WithoutEncodersItIsNotAtRest) {
   EXPECT_TRUE(has(kStateValid));
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

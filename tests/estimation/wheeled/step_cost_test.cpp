@@ -8,15 +8,13 @@
 #include "estimation/wheeled/estimator_fixture.h"
 #include "support/allocation_guard.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 constexpr double kPromisedNs = 1500;  // the median on a quiet machine, whose kernel takes 92
 constexpr std::size_t kCycles = 1000;
 constexpr int kBlocks = 11;
 
-class EstimatorCost : public EstimatorFixture {
- protected:
+struct EstimatorCost : EstimatorFixture {
   EstimatorCost() {
     robot_.noise = {.gyro = 2.44e-4, .accelerometer = 2e-3, .counts = 4096};
     stand();
@@ -56,5 +54,4 @@ TEST_F(EstimatorCost, IsWithinItsPromiseOnASteadyCurve) {
   EXPECT_LE(best, kBound);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

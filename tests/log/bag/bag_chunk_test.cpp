@@ -1,16 +1,9 @@
 #include "log/bag/bag_chunk.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include "log/bag/read_bag.h"
+#include "support/matchers.h"
 
-namespace robot_control {
-namespace {
-
-using ::testing::AnyOf;
-using ::testing::HasSubstr;
-using ::testing::StartsWith;
+namespace robot_control::tests {
 
 /// Reads a chunk of these bytes that announces `size` bytes; returns its content, or the message of the refusal.
 std::string said_of(const std::string& bytes, std::uint32_t size) {
@@ -34,7 +27,7 @@ TEST(ACompressedChunk, NeverInflatesBeyondWhatItSays) {
   EXPECT_THAT(said_of(stream, 0), HasSubstr("inflates to more than the 0 bytes"));
 }
 
-TEST(ACompressedChunk, ThatIsBrokenIsRefused) {
+TEST(ACompressedChunk, IsRefusedIfItIsBroken) {
   const std::string content = "some content, some content, some content, some content";
   const auto size = static_cast<std::uint32_t>(content.size());
   const std::string stream = packed(content);
@@ -50,9 +43,8 @@ TEST(ACompressedChunk, ThatIsBrokenIsRefused) {
   }
 }
 
-TEST(AChunk, ThatWouldInflateWithoutBoundsIsRefusedBeforeIt) {
+TEST(AChunk, IsRefusedBeforeItInflatesWithoutBounds) {
   EXPECT_THAT(refusal(make_bag(1, 10, {.size_of_chunk = kMaxChunk}).bytes), HasSubstr("field size: 26843"));
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

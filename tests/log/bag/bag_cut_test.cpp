@@ -1,14 +1,9 @@
 /// Bags without a valid end.
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include "log/bag/read_bag.h"
+#include "support/matchers.h"
 
-namespace robot_control {
-namespace {
-
-using ::testing::HasSubstr;
+namespace robot_control::tests {
 
 constexpr std::size_t kChunks = 3, kMessages = 50;
 
@@ -77,5 +72,4 @@ TEST(ABagWithAnEnd, IsRefusedWhereItsMiddleIsMissing) {
   EXPECT_THAT(refusal(bytes), HasSubstr("field index_pos"));
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -2,8 +2,7 @@
 
 #include "log/bag/bag_trials.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 /// 1 % of `scripts/bench bags`.
 TEST(ADamagedBag, IsRefusedOrReadAsItWas) {
@@ -17,5 +16,4 @@ TEST(ADamagedBag, IsRefusedOrReadAsItWas) {
   EXPECT_GT(figures.whole, 0U);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -1,15 +1,10 @@
 #include "log/bag/bag_reader.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include "log/bag/read_bag.h"
+#include "support/matchers.h"
 #include "support/message_of.h"
 
-namespace robot_control {
-namespace {
-
-using ::testing::HasSubstr;
+namespace robot_control::tests {
 
 TEST(ASoundBag, IsReadToItsLastMessage) {
   const MadeBag made = make_bag(3, 200);
@@ -25,7 +20,7 @@ TEST(ASoundBag, IsReadToItsLastMessage) {
   EXPECT_EQ(bag.chunks()[1].last_ns, made.chunks[1].back().time_ns);
 }
 
-TEST(ASoundBag, ThatShrinksBetweenTwoReadsIsAnError) {
+TEST(ASoundBag, IsAnErrorIfItShrinksBetweenTwoReads) {
   const BagOfBytes file(make_bag(3, 100'000).bytes);
   BagReader bag(file.path());
   file.shorten(1000);
@@ -45,7 +40,7 @@ TEST(ASoundBag, IsReadOnceWhereItIsReadWhileItIsChecked) {
 }
 
 /// Each case has one contradiction: everything else in the bag agrees.
-TEST(ASoundBag, WithOneContradictionIsRefusedWithByteAndField) {
+TEST(ASoundBag, IsRefusedWithByteAndFieldForOneContradiction) {
   const auto said = [&](const BagFlaw& flaw) { return refusal(make_bag(2, 20, flaw).bytes); };
   EXPECT_THAT(said({.start_in_list = 1}), HasSubstr("field start_time: contradicts the messages in the chunk"));
   EXPECT_THAT(said({.size_of_chunk = 1}), HasSubstr("field size: "));
@@ -67,7 +62,7 @@ TEST(AForeignFile, IsRefusedInOneSentence) {
   EXPECT_THAT(refusal("#ROSBAG V2.0\n" + std::string(100, '\0')), HasSubstr("field op: is absent"));
 }
 
-TEST(AForeignFile, ThatIsNoRegularOneIsRefused) {
+TEST(AForeignFile, IsRefusedIfItIsNoRegularOne) {
   EXPECT_THROW(BagReader("/dev/zero"), std::runtime_error);
   EXPECT_THROW(BagReader("/nowhere.bag"), std::runtime_error);
 }
@@ -83,7 +78,7 @@ TEST(AHeader, IsReadFieldByField) {
   EXPECT_THROW(header.text("topic"), BagError);
 }
 
-TEST(AHeader, WithABrokenFieldIsRefusedAtItsByte) {
+TEST(AHeader, IsRefusedAtTheByteOfABrokenField) {
   const auto said = [](const std::string& bytes) -> std::string {
     return message_of<BagError>([&] { const BagHeader header(bytes, {.offset = 100}); });
   };
@@ -99,5 +94,4 @@ TEST(AHeader, WithABrokenFieldIsRefusedAtItsByte) {
   EXPECT_EQ(said(sound), "");
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

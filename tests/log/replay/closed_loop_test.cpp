@@ -13,13 +13,11 @@
 #include "log/replay/continuity.h"
 #include "log/replay/recorded.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 constexpr std::uint64_t kSecond = 1000;  // cycles
 
-class ReplayedDrive : public testing::Test {
- protected:
+struct ReplayedDrive : testing::Test {
   /// Calls `act(k)` before each step.
   void drive(
       std::uint64_t cycles, const std::function<void(std::uint64_t)>& act = [](std::uint64_t) {}) {
@@ -58,7 +56,7 @@ class ReplayedDrive : public testing::Test {
   Recording recording;
 };
 
-TEST_F(ReplayedDrive, WithEveryFaultOfEveryComponent) {
+TEST_F(ReplayedDrive, IsExactWithEveryFaultOfEveryComponent) {
   for (const std::string component : {"left_encoder", "gyro", "accelerometer", "controller", "estimator", "monitor"}) {
     for (const std::string kind : {"off", "stuck", "garbage", "wrong", "slow", "delayed", "intermittent"}) {
       SCOPED_TRACE(component + " " + kind);
@@ -73,7 +71,7 @@ TEST_F(ReplayedDrive, WithEveryFaultOfEveryComponent) {
   }
 }
 
-TEST_F(ReplayedDrive, OfWheelsThatTakeSpeedsAndMeasureNoTorque) {
+TEST_F(ReplayedDrive, IsExactForWheelsThatTakeSpeedsAndMeasureNoTorque) {
   parameters.robot.wheel_command = WheelCommand::kVelocity;
   parameters.plant.drive = SimulatedDrive::kVelocity;
   made.emplace(parameters);
@@ -153,5 +151,4 @@ TEST_F(ReplayedDrive, DoesNotUseADamagedSnapshotAndIsNotExactWithIt) {
   EXPECT_FALSE(report.exact());
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -6,8 +6,7 @@
 
 #include <set>
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 JoinedRow row_of(const EstimatorTrace& trace) {
   return {.laws = {.estimator = &trace}};
@@ -76,5 +75,4 @@ TEST(FieldDifferences, ShowRealAndWholeNumbers) {
   EXPECT_EQ(found[1].replayed, "1");
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -2,9 +2,6 @@
 /// checksum of the message may escape. The page docs/log.md lists the fields with such edits, and this test reads the
 /// list.
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include <algorithm>
 #include <fstream>
 #include <random>
@@ -16,9 +13,9 @@
 #include "files/input_file.h"
 #include "log/messages/message_checksum.h"
 #include "log/replay/recorded.h"
+#include "support/matchers.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 /// A drive with two runs, live tuning, faults of the nodes' outputs, a request that wheels refuse, and a stop.
 struct LoggedDrive {
@@ -112,8 +109,7 @@ std::set<std::string> fields_that_cannot_be_known() {
   return fields;
 }
 
-class ForgedFields : public testing::Test {
- protected:
+struct ForgedFields : testing::Test {
   static const LoggedDrive& drive() {
     static const LoggedDrive drive;
     return drive;
@@ -146,7 +142,7 @@ class EditsOfForgedFields : public ForgedFields, public testing::WithParamInterf
 INSTANTIATE_TEST_SUITE_P(EveryDay, EditsOfForgedFields, testing::Values(1));
 INSTANTIATE_TEST_SUITE_P(Nightly, EditsOfForgedFields, testing::Values(5));
 
-TEST_P(EditsOfForgedFields, OfEveryNameAreNoticed) {
+TEST_P(EditsOfForgedFields, AreNoticedForEveryName) {
   for (std::size_t field = 0; field < places_.size(); ++field) {
     const std::string& name = trace_fields()[field].name;
     ASSERT_FALSE(places_[field].empty()) << name << " has no element in this drive";
@@ -154,7 +150,7 @@ TEST_P(EditsOfForgedFields, OfEveryNameAreNoticed) {
   }
 }
 
-TEST_P(EditsOfForgedFields, WithARenewedChecksumAreNoticedOrListedInTheDocumentation) {
+TEST_P(EditsOfForgedFields, AreNoticedOrDocumentedWithARenewedChecksum) {
   constexpr int kTries = 1000;  // few rows have neither a usable command nor permit
   std::set<std::string> listed = fields_that_cannot_be_known();
   EXPECT_FALSE(listed.empty());
@@ -165,8 +161,7 @@ TEST_P(EditsOfForgedFields, WithARenewedChecksumAreNoticedOrListedInTheDocumenta
     for (int i = 0; noticed && i < (known ? GetParam() : kTries); ++i) noticed = notices_edit(places_[field], true);
     EXPECT_EQ(noticed, known) << name << (known ? " is not listed" : " is listed, but every edit is noticed");
   }
-  EXPECT_THAT(listed, testing::IsEmpty()) << "no such fields";
+  EXPECT_THAT(listed, IsEmpty()) << "no such fields";
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -11,8 +11,7 @@
 #include "robots/differential_drive.h"
 #include "signals/names.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 class RandomNodes {
  public:
@@ -177,7 +176,7 @@ TEST(ReplayedNodes, AreComputedAgainBitForBitWhateverHappens) {
   }
 }
 
-TEST(ReplayedNodes, WithTheSameParametersKeepTheirPoseOverRestarts) {
+TEST(ReplayedNodes, KeepTheirPoseOverRestartsWithTheSameParameters) {
   constexpr unsigned kSeeds = 5;
   constexpr int kCycles = 2000;
   for (unsigned seed = 1; seed <= kSeeds; ++seed) {
@@ -187,5 +186,4 @@ TEST(ReplayedNodes, WithTheSameParametersKeepTheirPoseOverRestarts) {
   }
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

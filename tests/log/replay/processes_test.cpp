@@ -9,11 +9,9 @@
 #include "log/trace_reader.h"
 #include "support/processes/driving_robot.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
-class ReplayedProcesses : public testing::Test {
- protected:
+struct ReplayedProcesses : testing::Test {
   ReplayedProcesses() {
     robot_.nodes().log_into(folder_.string());
     robot_.nodes().start(LoopNode::kTelemetry);
@@ -51,7 +49,7 @@ class ReplayedProcesses : public testing::Test {
 };
 
 /// The log that telemetry writes, up to the chunk that was on the disk when telemetry was killed.
-TEST_F(ReplayedProcesses, OnADriveInWhichEveryNodeIsLostAndStartedAgain) {
+TEST_F(ReplayedProcesses, AreExactOnADriveInWhichEveryNodeIsLostAndStartedAgain) {
   robot_.drive_at_full_speed();
   lose(LoopNode::kController, SIGSTOP);
   lose(LoopNode::kEstimator, SIGKILL);
@@ -63,5 +61,4 @@ TEST_F(ReplayedProcesses, OnADriveInWhichEveryNodeIsLostAndStartedAgain) {
   expect_exact();
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -2,9 +2,7 @@
 /// A log in memory in the form of the log's reader: rows and snapshots. The rows hold only the checksum of a frame that
 /// a law computed.
 
-#include <cmath>
 #include <cstdint>
-#include <memory>
 #include <string>
 #include <vector>
 

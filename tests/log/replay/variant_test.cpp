@@ -2,13 +2,10 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
-
 #include "log/replay/recorded.h"
 #include "robots/differential_drive.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 struct VariedDrive : testing::Test {
   void drive(double speed) {
@@ -57,7 +54,7 @@ TEST_F(VariedDrive, IsTheSameWithTheSameParameters) {
   EXPECT_EQ(permits, 2000);
 }
 
-TEST_F(VariedDrive, WithALowerLimitPlansASlowerDriveWhileTheLogIsComputedAgainExactly) {
+TEST_F(VariedDrive, PlansASlowerDriveWithALowerLimitWhileTheLogIsComputedAgainExactly) {
   constexpr double kLimit = 0.3;  // m/s
   drive(0.5);
   Parameters slow = parameters;
@@ -73,7 +70,7 @@ TEST_F(VariedDrive, WithALowerLimitPlansASlowerDriveWhileTheLogIsComputedAgainEx
   EXPECT_NEAR(fastest, kLimit, 1e-9);
 }
 
-TEST_F(VariedDrive, WithANoisierGyroIsLessSureOfItsPath) {
+TEST_F(VariedDrive, IsLessSureOfItsPathWithANoisierGyro) {
   drive(0.5);
   Parameters other = parameters;
   other.estimator.gyro_noise *= 3;
@@ -86,5 +83,4 @@ TEST_F(VariedDrive, WithANoisierGyroIsLessSureOfItsPath) {
   EXPECT_TRUE(differs);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

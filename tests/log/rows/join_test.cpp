@@ -1,45 +1,37 @@
 #include "log/rows/join.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include <random>
 #include <string>
 
 #include "log/rows/traces.h"
+#include "support/matchers.h"
 
-namespace robot_control {
-namespace {
-
-using ::testing::ElementsAre;
-using ::testing::IsEmpty;
+namespace robot_control::tests {
 
 constexpr double kPeriod = 0.001;
 constexpr std::size_t kWindow = 8;
 
-/// Emitted rows as "run:cycle parts", a part being d, e, c or m if the node has a frame.
-class JoinTest : public ::testing::Test {
- protected:
-  void cycle(std::uint64_t run, std::uint64_t k, const std::string& nodes = "decm") {
-    for (const char node : nodes) {
-      if (node == 'd') join.add(driver_row(run, k));
-      if (node == 'e') join.add(estimator_row(run, k));
-      if (node == 'c') join.add(controller_row(run, k));
-      if (node == 'm') join.add(monitor_row(run, k));
-    }
+/// "run:cycle parts", a part being d, e, c or m if the node has a frame.
+std::string text_of(const JoinedRow& row) {
+  return std::to_string(row.run) + ":" + std::to_string(row.cycle) + " " + (row.driver != nullptr ? "d" : "") +
+         (row.estimator != nullptr ? "e" : "") + (row.controller != nullptr ? "c" : "") +
+         (row.monitor != nullptr ? "m" : "");
+}
+
+void add(Join& join, std::uint64_t run, std::uint64_t cycle, const std::string& nodes) {
+  for (const char node : nodes) {
+    if (node == 'd') join.add(driver_row(run, cycle));
+    if (node == 'e') join.add(estimator_row(run, cycle));
+    if (node == 'c') join.add(controller_row(run, cycle));
+    if (node == 'm') join.add(monitor_row(run, cycle));
   }
+}
+
+struct JoinTest : ::testing::Test {
+  void cycle(std::uint64_t run, std::uint64_t k, const std::string& nodes = "decm") { add(join, run, k, nodes); }
 
   std::vector<std::string> rows;
-  Join join{kPeriod,
-            [this](const JoinedRow& row) {
-              std::string text = std::to_string(row.run) + ":" + std::to_string(row.cycle) + " ";
-              if (row.driver != nullptr) text += "d";
-              if (row.estimator != nullptr) text += "e";
-              if (row.controller != nullptr) text += "c";
-              if (row.monitor != nullptr) text += "m";
-              rows.push_back(text);
-            },
-            kWindow};
+  Join join{kPeriod, [this](const JoinedRow& row) { rows.push_back(text_of(row)); }, kWindow};
 };
 
 TEST_F(JoinTest, EmitsACycleAsSoonAsAllFourHaveIt) {
@@ -57,10 +49,9 @@ TEST_F(JoinTest, JoinsRowsOfOneCycleOnly) {
     EXPECT_EQ(row.monitor->permit.head.cycle, row.cycle);
     EXPECT_EQ(row.time, static_cast<double>(row.cycle) * kPeriod);
   });
-  for (std::uint64_t k = 0; k < 100; ++k) strict.add(driver_row(1, k));
-  for (std::uint64_t k = 0; k < 100; ++k) strict.add(estimator_row(1, k));
-  for (std::uint64_t k = 0; k < 100; ++k) strict.add(controller_row(1, k));
-  for (std::uint64_t k = 0; k < 100; ++k) strict.add(monitor_row(1, k));
+  for (const char* node : {"d", "e", "c", "m"}) {
+    for (std::uint64_t k = 0; k < 100; ++k) add(strict, 1, k, node);
+  }
   EXPECT_EQ(strict.counts().emitted, 100u);
 }
 
@@ -257,12 +248,7 @@ TEST_F(JoinTest, LosesNothingOverRandomInterleavings) {
       }
     }
     rows.clear();
-    Join wide(kPeriod, [this](const JoinedRow& row) {
-      std::string text = std::to_string(row.run) + ":" + std::to_string(row.cycle) + " ";
-      text += std::string(row.driver != nullptr ? "d" : "") + (row.estimator != nullptr ? "e" : "") +
-              (row.controller != nullptr ? "c" : "") + (row.monitor != nullptr ? "m" : "");
-      rows.push_back(text);
-    });
+    Join wide(kPeriod, [this](const JoinedRow& row) { rows.push_back(text_of(row)); });
     std::array<std::size_t, 4> next{};
     for (;;) {
       std::vector<std::size_t> open;
@@ -272,15 +258,11 @@ TEST_F(JoinTest, LosesNothingOverRandomInterleavings) {
       if (open.empty()) break;
       const std::size_t node = open[random() % open.size()];
       const auto [run, k] = pending[node][next[node]++];
-      if (node == 0) wide.add(driver_row(run, k));
-      if (node == 1) wide.add(estimator_row(run, k));
-      if (node == 2) wide.add(controller_row(run, k));
-      if (node == 3) wide.add(monitor_row(run, k));
+      add(wide, run, k, nodes.substr(node, 1));
     }
     wide.finish();
     ASSERT_EQ(rows, expected) << "seed " << seed;
   }
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

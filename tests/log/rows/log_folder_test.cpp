@@ -1,23 +1,15 @@
 #include "log/log_folder.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include <filesystem>
 
 #include "log/log_error.h"
 #include "log/log_file.h"
+#include "support/matchers.h"
 #include "support/temporary_folder.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
-using ::testing::ElementsAre;
-using ::testing::HasSubstr;
-using ::testing::IsEmpty;
-
-class ALogFolder : public ::testing::Test {
- protected:
+struct ALogFolder : ::testing::Test {
   std::string path(const std::string& name) const { return folder_.path() / name; }
   void keep(const std::string& name, std::size_t bytes) const { folder_.write(name, std::string(bytes, 'x')); }
   std::vector<std::string> names() const {
@@ -76,7 +68,7 @@ TEST_F(ALogFolder, RemovesTheOldestRunsFirstAndNoMoreThanItMust) {
   EXPECT_FALSE(folder.make_room(1001)) << "the running log fills it alone";
 }
 
-TEST_F(ALogFolder, WithoutAQuotaRemovesNothing) {
+TEST_F(ALogFolder, RemovesNothingWithoutAQuota) {
   keep("run.1.bag", 1000);
   EXPECT_TRUE(LogFolder(folder_.path(), 0).make_room(std::int64_t{1} << 40U));
   EXPECT_THAT(names(), ElementsAre("run.1.bag"));
@@ -119,5 +111,4 @@ TEST_F(ALogFolder, NeverHoldsMoreThanItsQuotaAndTheLogEndsWithAWholePart) {
   EXPECT_EQ(std::filesystem::file_size(path("run.bag")), kQuota / 7'000 * 7'000);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

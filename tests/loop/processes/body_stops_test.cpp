@@ -9,14 +9,12 @@
 #include "machine/gravity.h"
 #include "simulation/closed_loop.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 constexpr std::uint64_t kPushStart = 1000;  // cycle
 constexpr std::uint64_t kNever = ~std::uint64_t{0};
 
-class BodyStops : public testing::Test {
- protected:
+struct BodyStops : testing::Test {
   BodyStops() : parameters_(read_parameters(PROJECT_DIRECTORY "/config/robot_params.yaml")) {
     parameters_.plant.sensor_errors = ErrorLevel::kIdeal;
   }
@@ -205,38 +203,4 @@ TEST_P(StuckImu, LimitsTheSpeed) {
 INSTANTIATE_TEST_SUITE_P(Devices, StuckImu, testing::Values("gyro", "accelerometer"),
                          [](const auto& device) { return std::string(device.param); });
 
-TEST_F(BodyStops, AButtonThatIsPressedStopsItInThatCycle) {
-  constexpr std::uint64_t kOnset = 2000;
-  run(4000, 1.0, [](ClosedLoop& loop) {
-    if (loop.cycle() == kOnset) loop.inject_fault("e_stop_button", "wrong");
-  });
-  EXPECT_EQ(latched(kCauseEmergencyStopInput), kOnset);
-  EXPECT_EQ(permit_.first_cause, kCauseEmergencyStopInput);
-  EXPECT_NEAR(truth_.twist_base.linear[0], 0, 1e-3);
-}
-
-// 60 % of 24 V.
-TEST_F(BodyStops, AnEmptyBatteryEndsTheDriveByARamp) {
-  constexpr std::uint64_t kOnset = 3000;
-  parameters_.plant.battery_voltage = 24;
-  parameters_.safety.battery_low.limit = 22;
-  parameters_.safety.battery_empty.limit = 20;
-  run(8000, 1.0, [](ClosedLoop& loop) {
-    if (loop.cycle() == kOnset) loop.inject_fault("battery", "wrong");
-  });
-  EXPECT_EQ(latched(kCauseBatteryEmpty), kOnset + cycles(parameters_.safety.battery_empty) - 1);
-  EXPECT_NE(warned_ & kCauseBatteryLow, 0u);
-  EXPECT_EQ(permit_.first_cause, kCauseBatteryEmpty);
-  EXPECT_NEAR(truth_.twist_base.linear[0], 0, 1e-3);
-}
-
-TEST_F(BodyStops, AGoodBatteryIsNoReason) {
-  parameters_.plant.battery_voltage = 24;
-  parameters_.safety.battery_low.limit = 22;
-  parameters_.safety.battery_empty.limit = 20;
-  run(5000, 1.0);
-  EXPECT_EQ(caused_ | warned_, 0u);
-}
-
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

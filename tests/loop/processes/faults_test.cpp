@@ -3,7 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include <fstream>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -15,8 +14,7 @@
 #include "support/processes/four_nodes.h"
 #include "support/temporary_folder.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 constexpr double kTimeout = 240;  // s
 
@@ -42,8 +40,7 @@ std::vector<Fault> all_faults() {
   return faults;
 }
 
-class Faults : public ::testing::Test {
- protected:
+struct Faults : ::testing::Test {
   Faults() {
     std::ostringstream script;
     script << "cycle,linear,angular,event\n";
@@ -69,7 +66,7 @@ class Faults : public ::testing::Test {
   DriveTrain robot_;
 };
 
-TEST_F(Faults, OfFourProcessesGiveTheNumbersOfTheClosedLoop) {
+TEST_F(Faults, GiveTheNumbersOfTheClosedLoopInFourProcesses) {
   FourNodes(parameters_, robot_, true).run(kTimeout, [&](DriverProcess& driver) {
     SimulationServices& services = *driver.services();
     services.set_pause(true);
@@ -105,5 +102,4 @@ TEST_F(Faults, OfFourProcessesGiveTheNumbersOfTheClosedLoop) {
   EXPECT_EQ(LogTable::difference(LogTable::of_bag(folder_.path() / "log" / "run.bag"), one), "");
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

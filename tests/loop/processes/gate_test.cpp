@@ -9,8 +9,7 @@
 #include "gate/joint_clamp.h"
 #include "simulation/closed_loop.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 constexpr std::uint64_t kClamps = kGateEffortClamped | kGateRateClamped | kGateSpeedClamped | kGatePositionClamped;
 
@@ -28,8 +27,7 @@ Twist restless(double time) {
   return twist(now[0], now[1]);
 }
 
-class GateInTheLoop : public testing::Test {
- protected:
+struct GateInTheLoop : testing::Test {
   GateInTheLoop() : parameters_(read_parameters(PROJECT_DIRECTORY "/config/robot_params.yaml")) {}
 
   void expect_no_clamp(const Request& request, double seconds) {
@@ -70,7 +68,7 @@ TEST_F(GateInTheLoop, DoesNotTakeACoarseEncoderForATooFastWheel) {
 }
 
 // At the wheels' speed limit the gate would take away the torque that the load uphill needs.
-TEST_F(GateInTheLoop, AtTheSpeedLimitTheControllerKeepsOutOfTheTaper) {
+TEST_F(GateInTheLoop, IsNotTaperingAtTheSpeedLimitOfTheController) {
   static_assert(kUsableWheelSpeed == kTaperStart);
   parameters_.plant.slope = 0.0873;
   parameters_.robot.wheel_velocity_limit = 8;
@@ -89,5 +87,4 @@ TEST_F(GateInTheLoop, AtTheSpeedLimitTheControllerKeepsOutOfTheTaper) {
   EXPECT_NEAR(limited, loop.row().controller->command.twist_limited.linear[0], 0.02);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -8,14 +8,12 @@
 #include <filesystem>
 #include <fstream>
 #include <string>
-#include <vector>
 
 #include "simulation/closed_loop.h"
 #include "support/log_table.h"
 #include "support/processes/four_nodes.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 constexpr double kServicePatience = 120;         // s
 constexpr std::int64_t kSecond = 1'000'000'000;  // ns
@@ -23,8 +21,7 @@ constexpr std::int64_t kSecond = 1'000'000'000;  // ns
 constexpr const char* kCurve = "cycle,linear,angular,event\n1,0.5,0.2,\n1000,0.5,0.2,\n2000,0.5,0.2,\n3000,0.5,0.2,\n";
 
 /// Drives a curve in every run.
-class Services : public ::testing::Test {
- protected:
+struct Services : ::testing::Test {
   Services() : folder_(std::filesystem::temp_directory_path() / ("services-" + std::to_string(getpid()))) {
     std::filesystem::create_directories(folder_);
     std::ofstream(folder_ / "script.csv") << kCurve;
@@ -64,7 +61,7 @@ void step_from_the_beginning(SimulationServices& services, std::uint64_t cycles)
   ASSERT_TRUE(answer.success) << answer.message;
 }
 
-TEST_F(Services, InLockstepStepsAndResetsGiveTheNumbersOfTheClosedLoop) {
+TEST_F(Services, StepsAndResetsInLockstepGiveTheNumbersOfTheClosedLoop) {
   constexpr std::uint64_t kFirst = 1500;  // cycles: at 0.5 m/s
   constexpr std::uint64_t kSecondRun = 700;
   const LogTable four = four_processes(ClockMode::kLockstep, [](DriverProcess& driver) {
@@ -95,7 +92,7 @@ TEST_F(Services, InLockstepStepsAndResetsGiveTheNumbersOfTheClosedLoop) {
 }
 
 /// Motion begins again from rest: nothing of the first run's 0.5 m/s is left in pose, command or torque.
-TEST_F(Services, OnTheWallClockAResetAtSpeedIsFollowedWithoutAJump) {
+TEST_F(Services, AResetAtSpeedOnTheWallClockIsFollowedWithoutAJump) {
   constexpr double kEffortStep = 1;  // N·m; max_linear_acceleration takes 0.65 from one cycle to the next
   const LogTable rows = four_processes(ClockMode::kWall, [](DriverProcess& driver) {
     sleep_ns(3 * kSecond / 2);
@@ -126,7 +123,7 @@ SensorFrame newest(DriverProcess& driver) {
   return sensors;
 }
 
-TEST_F(Services, OnTheWallClockAPauseStopsTimeAndIsNeitherCaughtUpNorSlip) {
+TEST_F(Services, APauseOnTheWallClockStopsTimeAndIsNeitherCaughtUpNorSlip) {
   constexpr std::int64_t kPause = kSecond / 2;
   constexpr std::uint64_t kPeriod = 1'000'000;   // ns
   constexpr std::int64_t kStall = kSecond / 20;  // what a busy machine may take off a thread of this test
@@ -201,5 +198,4 @@ TEST_F(Services, AStepThatIsTakenBackSaysHowFarItCame) {
   });
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -7,8 +7,7 @@
 
 #include "support/processes/loop_speed.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 // Promised: 60 × and 20 × real time on a quiet machine whose bare loop runs at 150 ×.
 constexpr double kClosedLoopShare = 60.0 / 150.0;
@@ -16,8 +15,7 @@ constexpr double kFourNodesShare = 20.0 / 150.0;
 constexpr std::uint64_t kTimedCycles = 10'000;
 constexpr int kRounds = 5;  // rounds until one is good: a stall in favour of another process proves nothing
 
-class Speed : public ::testing::Test {
- protected:
+struct Speed : ::testing::Test {
   template <class Measure>
   double best_share(Measure measure, double wanted) {
     double best = 0;
@@ -42,5 +40,4 @@ TEST_F(Speed, FourProcessesInLockstepKeepTheirShareOfTheBareEngine) {
             kFourNodesShare);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -1,21 +1,16 @@
 /// Files that are no plain XML are refused by name, in few words.
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 #include <urdf_model/model.h>
 
 #include "machine/description/mesh.h"
 #include "machine/description/robot_description.h"
 #include "machine/description/urdf_document.h"
 #include "machine/description/xacro.h"
+#include "support/matchers.h"
 #include "support/message_of.h"
 #include "support/temporary_folder.h"
 
-namespace robot_control {
-namespace {
-
-using testing::AllOf;
-using testing::HasSubstr;
+namespace robot_control::tests {
 
 constexpr std::size_t kShort = 2048;
 
@@ -31,8 +26,7 @@ std::string short_message_of(const Action& action) {
   return message;
 }
 
-class ForeignText : public testing::Test {
- protected:
+struct ForeignText : testing::Test {
   std::string reading(const std::string& name, const std::string& text) {
     const std::string path = folder_.write(name, text);
     return short_message_of([&] { parse_urdf(load_description(path)); });
@@ -127,8 +121,7 @@ TEST_F(ForeignText, EntitiesAreNamed) {
   EXPECT_EQ(reading("c.urdf", "<robot name=\"r\"><!-- <!ENTITY a \"b\"> --><link name=\"a\"/></robot>"), "accepted");
 }
 
-class CyclicXacro : public ForeignText {
- protected:
+struct CyclicXacro : ForeignText {
   void SetUp() override {
     if (reading("probe.xacro", "<robot name=\"r\"><link name=\"a\"/></robot>").find("no module xacro") !=
         std::string::npos) {
@@ -154,7 +147,7 @@ TEST_F(CyclicXacro, IncludesInACircleAreNamed) {
   }
 }
 
-TEST_F(CyclicXacro, OrForeignFilesThatItIncludesAreNamed) {
+TEST_F(CyclicXacro, NamesForeignFilesThatItIncludes) {
   folder_.write("wide.xacro", utf16("<robot name=\"r\"><link name=\"a\"/></robot>", false, true));
   folder_.write("pointer.xacro", kPointer);
   for (const std::string name : {"wide", "pointer"}) {
@@ -189,5 +182,4 @@ TEST(LongMessages, AreCutInTheMiddleToTwoKilobytes) {
   EXPECT_THAT(message, AllOf(HasSubstr("r.urdf"), HasSubstr("Mend it."), HasSubstr("…")));
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

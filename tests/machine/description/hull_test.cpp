@@ -9,8 +9,7 @@
 
 #include "machine/description/mesh.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 const Points kCube{{-1, -1, -1}, {-1, -1, 1}, {-1, 1, -1}, {-1, 1, 1}, {1, -1, -1}, {1, -1, 1}, {1, 1, -1}, {1, 1, 1}};
 
@@ -42,7 +41,7 @@ TEST(HullCorners, AreFoundAtAnySizeAndPlace) {
   }
 }
 
-TEST(HullCorners, OfAFlatCloudAreThoseOfItsPolygon) {
+TEST(HullCorners, AreThoseOfThePolygonOfAFlatCloud) {
   const Eigen::AngleAxisd tilt(0.7, Eigen::Vector3d(1, 2, 3).normalized());
   Points points;
   for (const double x : {-1.0, -0.3, 0.4, 1.0}) {
@@ -57,18 +56,18 @@ TEST(HullCorners, OfAFlatCloudAreThoseOfItsPolygon) {
   EXPECT_LE(corners.size(), 8U);
 }
 
-TEST(HullCorners, OfAStraightCloudAreItsEnds) {
+TEST(HullCorners, AreTheEndsOfAStraightCloud) {
   Points points;
   for (int i = 0; i <= 10; ++i) points.emplace_back(0.1 * i, 0.2 * i, -0.3 * i);
   EXPECT_EQ(hull_corners(points), (Points{points.front(), points.back()}));
 }
 
-TEST(HullCorners, OfOnePointAreThatPoint) {
+TEST(HullCorners, AreThePointIfThereIsOne) {
   EXPECT_EQ(hull_corners(Points(5, {1, 2, 3})), (Points{{1, 2, 3}}));
   EXPECT_EQ(hull_corners({}), Points{});
 }
 
-TEST(HullCorners, OfTheThinnestSheetAreStillItsOutline) {
+TEST(HullCorners, AreStillTheOutlineOfTheThinnestSheet) {
   for (double thickness = 1e-3; thickness > 1e-12; thickness /= 3) {
     Points points = kCube;
     for (Eigen::Vector3d& point : points) point.z() *= thickness;
@@ -80,7 +79,7 @@ TEST(HullCorners, OfTheThinnestSheetAreStillItsOutline) {
 }
 
 // h(u) of the ball is its radius everywhere.
-TEST(HullCorners, OfTheFinestBallAreFewAndLoseLittle) {
+TEST(HullCorners, AreFewAndLoseLittleOfTheFinestBall) {
   std::mt19937 random(3);
   Points points;
   for (int i = 0; i < 20'000; ++i) points.push_back(direction(random));
@@ -105,7 +104,7 @@ TEST(HullCorners, KeepTheBoundingBox) {
 }
 
 // A wheel of 4000 facets: its radius is what the corners are measured for.
-TEST(HullCorners, OfAWheelKeepItsRadius) {
+TEST(HullCorners, KeepTheRadiusOfAWheel) {
   Points points;
   for (int i = 0; i < 4000; ++i) {
     const double angle = 2 * std::numbers::pi * i / 4000;
@@ -136,5 +135,4 @@ TEST(HullTriangles, AreNoneOfAFlatCloud) {
   EXPECT_TRUE(hull_triangles({}).empty());
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -8,8 +8,7 @@
 #include "machine/description/mesh_faces.h"
 #include "mesh_texts.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 constexpr unsigned kSeeds = 2000;
 
@@ -66,8 +65,7 @@ TEST(MeshFuzz, TextStl) {
 }
 
 /// First seed, and last seed + 1. Each runs as a process, which under a sanitizer takes a tenth of a second.
-class AssimpFuzz : public testing::TestWithParam<std::pair<unsigned, unsigned>> {
- protected:
+struct AssimpFuzz : testing::TestWithParam<std::pair<unsigned, unsigned>> {
   static void expect_only_faces_or_a_problem_of(const std::string& healthy, const char* format) {
     expect_only_faces_or_a_problem(healthy, GetParam().first, GetParam().second,
                                    [&](const std::string& text) { return parse_with_assimp(text, format); });
@@ -84,5 +82,4 @@ TEST_P(AssimpFuzz, Dae) {
   expect_only_faces_or_a_problem_of(kDae, "dae");
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -1,23 +1,17 @@
 #include "machine/description/mesh.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include <algorithm>
 #include <chrono>
 #include <limits>
 
 #include "machine/description/robot_description.h"
 #include "mesh_texts.h"
+#include "support/matchers.h"
 #include "support/message_of.h"
 #include "support/quiet_refusal.h"
 #include "support/temporary_folder.h"
 
-namespace robot_control {
-namespace {
-
-using testing::AllOf;
-using testing::HasSubstr;
+namespace robot_control::tests {
 
 using Corner = Eigen::Vector3d;
 
@@ -33,8 +27,7 @@ std::string nested(int depth) {
   return replaced(dae_with("<node id=\"n\">", begin + "<node id=\"n\">"), "instance_geometry", "</node>", end);
 }
 
-class Mesh : public testing::Test {
- protected:
+struct Mesh : testing::Test {
   Points read(const std::string& name, const std::string& bytes) { return read_mesh(folder_.write(name, bytes)); }
 
   std::string refusal(const std::string& name, const std::string& bytes) {
@@ -47,43 +40,30 @@ class Mesh : public testing::Test {
 };
 
 TEST_F(Mesh, IsTheSameInEveryFormat) {
-  EXPECT_EQ(read("binary.stl", kBinaryStl), kTriangle);
-  EXPECT_EQ(read("text.stl", kTextStl), kTriangle);
-  EXPECT_EQ(read("a.obj", kObj), kTriangle);
-  EXPECT_EQ(read("a.dae", kDae), kTriangle);
-}
-
-TEST_F(Mesh, EndingCountsInUpperCaseToo) {
-  EXPECT_EQ(read("a.STL", kBinaryStl), kTriangle);
-  EXPECT_EQ(read("a.Dae", kDae), kTriangle);
-}
-
-TEST_F(Mesh, BinaryStlMayBeginWithTheWordSolid) {
-  EXPECT_EQ(read("a.stl", binary_stl("solid part exported", {{0, 0, 0, 1, 0, 0, 0, 2, 0}})), kTriangle);
-}
-
-TEST_F(Mesh, PointsThatNoFaceUsesDoNotCount) {
-  EXPECT_EQ(read("a.obj", kObj + "v 9 9 9\n"), kTriangle);
-  EXPECT_EQ(read("a.dae", dae_with("0 2 0<", "0 2 0 9 9 9<")), kTriangle);
-}
-
-TEST_F(Mesh, ObjFacesMayCountBackwards) {
-  EXPECT_EQ(read("a.obj", "v 9 9 9\nv 0 0 0\nv 1 0 0\nv 0 2 0\nf -1 -2 -3\n"), kTriangle);
-}
-
-TEST_F(Mesh, ObjDoesNotLookForItsMaterials) {
-  EXPECT_EQ(read("a.obj", "mtllib /dev/stdin\n" + kObj), kTriangle);
+  const std::string polygons = replaced(dae_with("<triangles", "<polygons"), "<p>", "</triangles", "</polygons");
+  for (const auto& [name, bytes] : {std::pair{"binary.stl", kBinaryStl},
+                                    {"text.stl", kTextStl},
+                                    {"A.STL", kBinaryStl},
+                                    {"solid.stl", binary_stl("solid part exported", {{0, 0, 0, 1, 0, 0, 0, 2, 0}})},
+                                    {"a.obj", kObj},
+                                    {"unused.obj", kObj + "v 9 9 9\n"},
+                                    {"backwards.obj", "v 9 9 9\nv 0 0 0\nv 1 0 0\nv 0 2 0\nf -1 -2 -3\n"},
+                                    {"materials.obj", "mtllib /dev/stdin\n" + kObj},
+                                    {"a.dae", kDae},
+                                    {"A.Dae", kDae},
+                                    {"unused.dae", dae_with("0 2 0<", "0 2 0 9 9 9<")},
+                                    {"polygons.dae", polygons},
+                                    // rviz and Gazebo turn no axis either; assimp by itself turns Z_UP by 90°.
+                                    {"x.dae", dae_with("Z_UP", "X_UP")},
+                                    {"y.dae", dae_with("Z_UP", "Y_UP")},
+                                    {"no_axis.dae", dae_with("<up_axis>Z_UP</up_axis>", "")}}) {
+    EXPECT_EQ(read(name, bytes), kTriangle) << name;
+  }
 }
 
 TEST_F(Mesh, UnitOfADaeApplies) {
   const Points points = read("a.dae", dae_with("meter=\"1\"", "name=\"inch\" meter=\"0.0254\""));
   EXPECT_NEAR((points[1] - Corner(0, 2 * 0.0254, 0)).norm(), 0, 1e-8);  // single precision
-}
-
-// rviz and Gazebo do the same; assimp by itself turns Z_UP by 90°.
-TEST_F(Mesh, UpAxisOfADaeDoesNot) {
-  for (const char* axis : {"X_UP", "Y_UP"}) EXPECT_EQ(read("a.dae", dae_with("Z_UP", axis)), kTriangle) << axis;
-  EXPECT_EQ(read("a.dae", dae_with("<up_axis>Z_UP</up_axis>", "")), kTriangle);
 }
 
 TEST_F(Mesh, NodesOfADaePlaceTheirMeshes) {
@@ -101,11 +81,6 @@ TEST_F(Mesh, NodesOfADaeMayStandForOthers) {
   const Points points =
       read("a.dae", dae_with("</node>", "</node><node><translate>0 0 5</translate><instance_node url=\"#n\"/></node>"));
   EXPECT_EQ(points.size(), 6U);
-}
-
-TEST_F(Mesh, PolygonsOfADaeAreFaces) {
-  EXPECT_EQ(read("a.dae", replaced(dae_with("<triangles", "<polygons"), "<p>", "</triangles", "</polygons")),
-            kTriangle);
 }
 
 TEST_F(Mesh, InfinityIsNoPartOfIt) {
@@ -127,50 +102,34 @@ TEST_F(Mesh, AbsentFileIsRefused) {
   EXPECT_THAT(message, AllOf(HasSubstr("nowhere.stl"), HasSubstr("no such file")));
 }
 
-TEST_F(Mesh, EmptyFileIsRefused) {
-  for (const char* name : {"a.stl", "a.obj", "a.dae"}) EXPECT_THAT(refusal(name, ""), says("0 bytes")) << name;
-}
-
-TEST_F(Mesh, UnknownFormatIsRefused) {
-  EXPECT_THAT(refusal("a.blend", "BLENDER"), says("\".blend\""));
-  EXPECT_THAT(refusal("a", "BLENDER"), says("no format"));
-}
-
-TEST_F(Mesh, FileThatIsCutShortIsRefused) {
-  EXPECT_THAT(refusal("a.stl", kBinaryStl.substr(0, 100)), says("cut short"));
-  EXPECT_THAT(refusal("a.stl", kTextStl.substr(0, 90)), says("unreadable"));
-  EXPECT_THAT(refusal("a.obj", kObj.substr(0, 30)), says("mesh: "));
-  EXPECT_THAT(refusal("a.dae", kDae.substr(0, 700)), says("unreadable"));
-}
-
-TEST_F(Mesh, GarbageIsRefused) {
-  for (const char* name : {"a.stl", "a.obj", "a.dae"}) {
-    EXPECT_THAT(refusal(name, "\x01\x02garbage \xff\xfe <<<>> garbage"), says("mesh: ")) << name;
-  }
-}
-
-TEST_F(Mesh, StlFacesHaveThreeCorners) {
-  EXPECT_THAT(refusal("a.stl", replaced(kTextStl, "solid", "   vertex 0 +2 0\n", "")), says("three"));
-  EXPECT_THAT(refusal("a.stl", replaced(kTextStl, "solid", "0 +2 0", "0 two 0")), says("no three numbers"));
-}
-
-TEST_F(Mesh, WithoutFacesIsRefused) {
-  EXPECT_THAT(refusal("a.stl", binary_stl("", {})), says("empty"));
-  EXPECT_THAT(refusal("a.stl", "solid nothing\nendsolid nothing\n"), says("empty"));
-  EXPECT_THAT(refusal("a.dae", dae_with("<instance_geometry url=\"#g\"/>", "")), says("empty"));
-}
-
-TEST_F(Mesh, OfLinesIsRefused) {
+TEST_F(Mesh, RefusesWhatIsNoMesh) {
+  const std::string garbage = "\x01\x02garbage \xff\xfe <<<>> garbage";
   std::string lines = dae_with("<triangles count=\"1\"", "<lines count=\"1\"");
   lines = replaced(replaced(lines, "<p>", "0 1 2", "0 1"), "<p>", "</triangles>", "</lines>");
-  EXPECT_THAT(refusal("a.dae", lines), says("lines"));
-}
-
-TEST_F(Mesh, NodesInACircleAreRefused) {
-  EXPECT_THAT(refusal("a.dae", dae_with("<node id=\"n\">", "<node id=\"n\"><instance_node url=\"#n\"/>")),
-              says("breaks down"));
-  EXPECT_THAT(refusal("a.dae", dae_with("<node id=\"n\">", "<node name='n'><node><instance_node url = '#n' /></node>")),
-              says("breaks down"));
+  for (const auto& [name, bytes, why] :
+       {std::tuple{"a.stl", std::string(), "0 bytes"},
+        {"a.obj", "", "0 bytes"},
+        {"a.dae", "", "0 bytes"},
+        {"a.blend", "BLENDER", "\".blend\""},
+        {"a", "BLENDER", "no format"},
+        {"a.stl", kBinaryStl.substr(0, 100), "cut short"},
+        {"a.stl", kTextStl.substr(0, 90), "unreadable"},
+        {"a.obj", kObj.substr(0, 30), "mesh: "},
+        {"a.dae", kDae.substr(0, 700), "unreadable"},
+        {"a.stl", garbage, "mesh: "},
+        {"a.obj", garbage, "mesh: "},
+        {"a.dae", garbage, "mesh: "},
+        {"a.stl", replaced(kTextStl, "solid", "   vertex 0 +2 0\n", ""), "three"},
+        {"a.stl", replaced(kTextStl, "solid", "0 +2 0", "0 two 0"), "no three numbers"},
+        {"a.stl", binary_stl("", {}), "empty"},
+        {"a.stl", "solid nothing\nendsolid nothing\n", "empty"},
+        {"a.dae", dae_with("<instance_geometry url=\"#g\"/>", ""), "empty"},
+        {"a.dae", lines, "lines"},
+        {"a.dae", dae_with("<node id=\"n\">", "<node id=\"n\"><instance_node url=\"#n\"/>"), "breaks down"},
+        {"a.dae", dae_with("<node id=\"n\">", "<node name='n'><node><instance_node url = '#n' /></node>"),
+         "breaks down"}}) {
+    EXPECT_THAT(refusal(name, bytes), says(why)) << name;
+  }
 }
 
 #if !defined(__SANITIZE_ADDRESS__)  // a gigabyte of nodes takes Assimp, which is not under it, half a minute
@@ -196,7 +155,7 @@ TEST_F(Mesh, CountsThatAreNotMetAreRefusedOrIgnored) {
     for (const char* element : {"count=\"9\"", "count=\"3\"", "count=\"1\"", "stride=\"3\"", "0 1 2"}) {
       const std::string attribute = std::string(element).substr(0, std::string(element).find('"'));
       const std::string to = element[0] == '0' ? count : attribute + "\"" + count + "\"";
-      EXPECT_THAT(refusal("a.dae", dae_with(element, to)), testing::AnyOf("accepted", says("mesh: "))) << to;
+      EXPECT_THAT(refusal("a.dae", dae_with(element, to)), AnyOf("accepted", says("mesh: "))) << to;
     }
   }
   EXPECT_THAT(refusal("a.obj", kObj + "f 1 2 99999999999\n"), says("unreadable"));
@@ -211,5 +170,4 @@ TEST_F(Mesh, CornersAreReadAgainWhenTheFileIsAnother) {
   EXPECT_EQ(mesh_corners(file).points[1], Corner(0, 3, 0));
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

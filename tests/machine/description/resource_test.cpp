@@ -1,23 +1,17 @@
 #include "machine/description/resource.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 #include <sys/stat.h>
 
+#include "support/matchers.h"
+#include "support/message_of.h"
 #include "support/temporary_folder.h"
 
-namespace robot_control {
-namespace {
-
-using testing::AllOf;
-using testing::HasSubstr;
-using testing::Not;
+namespace robot_control::tests {
 
 constexpr const char* kManifest = "<package><name>bot_description</name></package>";
 
 /// ws/src/stack/folder is the package bot_description; robots/bot.urdf refers to it.
-class Resource : public testing::Test {
- protected:
+struct Resource : testing::Test {
   Resource() {
     folder_.write("ws/src/stack/folder/package.xml", kManifest);
     mesh_ = folder_.write("ws/src/stack/folder/meshes/base.stl", "solid");
@@ -27,11 +21,7 @@ class Resource : public testing::Test {
   std::filesystem::path resolved(const std::string& uri) { return resolve_resource(uri, urdf_).lexically_normal(); }
 
   std::string refusal(const std::string& uri) {
-    try {
-      return resolve_resource(uri, urdf_);
-    } catch (const RobotError& error) {
-      return error.what();
-    }
+    return message_of<RobotError>([&] { resolve_resource(uri, urdf_); });
   }
 
   TemporaryFolder folder_;
@@ -144,5 +134,4 @@ TEST_F(Resource, WhatNamesNoFileIsRefused) {
   }
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

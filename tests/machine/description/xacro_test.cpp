@@ -1,18 +1,12 @@
 #include "machine/description/xacro.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include "machine/description/other_process.h"
 #include "machine/description/robot_description.h"
+#include "support/matchers.h"
 #include "support/quiet_refusal.h"
 #include "support/temporary_folder.h"
 
-namespace robot_control {
-namespace {
-
-using testing::AllOf;
-using testing::HasSubstr;
+namespace robot_control::tests {
 
 constexpr const char* kRobot =
     "<robot name=\"bot\" xmlns:xacro=\"http://www.ros.org/wiki/xacro\">"
@@ -26,8 +20,7 @@ constexpr const char* kPartsManifest =
     "<package><name>robot_control_test_parts</name><version>1.0.0</version><description>d</description>"
     "<maintainer email=\"a@b.c\">m</maintainer><license>l</license></package>";
 
-class Xacro : public testing::Test {
- protected:
+struct Xacro : testing::Test {
   Xacro() {
     folder_.write("ws/parts/package.xml", kPartsManifest);
     folder_.write("ws/parts/wheel.xacro", kWheel);
@@ -155,5 +148,4 @@ TEST(OtherProcess, CrashesApart) {
   EXPECT_EQ(run_apart([]() -> std::string { throw 1; }).code, 1);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -6,11 +6,9 @@
 #include "machine/legs/mujoco_equations.h"
 #include "support/allocation_guard.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
-class LegDynamicsOf : public testing::TestWithParam<std::string> {
- protected:
+struct LegDynamicsOf : testing::TestWithParam<std::string> {
   LegModel robot_ = legged_robot(GetParam());
 };
 
@@ -63,5 +61,4 @@ TEST_P(LegDynamicsOf, AllocatesNothing) {
 
 INSTANTIATE_TEST_SUITE_P(Robots, LegDynamicsOf, testing::ValuesIn(legged_robots()), robot_name);
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -9,8 +9,7 @@
 #include "machine/description/urdf_document.h"
 #include "machine/legs/legs_corpus.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 constexpr double kWhole = 3.14159265358979323846;
 
@@ -32,8 +31,7 @@ bool in_range(const LegKinematics& leg, const LegAngles& angles) {
   return true;
 }
 
-class LegKinematicsOf : public testing::TestWithParam<std::string> {
- protected:
+struct LegKinematicsOf : testing::TestWithParam<std::string> {
   LegModel robot_ = legged_robot(GetParam());
   std::mt19937_64 random_{31};
 };
@@ -142,5 +140,4 @@ TEST(LegKinematics, TellsReachAndRangeApart) {
   EXPECT_EQ(leg.inverse(hip + Eigen::Vector3d(0, 0.08, -0.3)).reach, FootReach::kReached);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -2,8 +2,6 @@
 
 #include "machine/legs/leg_model.h"
 
-#include <gmock/gmock.h>
-
 #include <algorithm>
 #include <cmath>
 
@@ -12,19 +10,16 @@
 #include "machine/legs/legs_corpus.h"
 #include "machine/legs/lying_posture.h"
 #include "machine/quadruped_urdf.h"
+#include "support/matchers.h"
 #include "support/message_of.h"
 
-namespace robot_control {
-namespace {
-
-using testing::HasSubstr;
+namespace robot_control::tests {
 
 constexpr double kDigits = 1.5e-9;      // m, of the feet in FACTS.json, which has nine decimals
 constexpr double kEffortDigits = 1e-5;  // N·m
 constexpr double kMassDigits = 1e-5;    // kg
 
-class LegFacts : public testing::TestWithParam<std::string> {
- protected:
+struct LegFacts : testing::TestWithParam<std::string> {
   void SetUp() override {
     if (quadrupeds().empty()) GTEST_SKIP() << kNoQuadrupeds;
     facts_ = quadruped_facts()[GetParam()];
@@ -105,7 +100,7 @@ std::vector<std::string> real_ones() {
 
 INSTANTIATE_TEST_SUITE_P(Robots, LegFacts, testing::ValuesIn(real_ones()), robot_name);
 
-TEST(LegModel, OfAnymalBendsItsKneesTowardsTheMiddleWhereTheRangesLeaveBothSides) {
+TEST(LegModel, BendsTheKneesOfAnymalTowardsTheMiddleWhereTheRangesLeaveBothSides) {
   if (quadrupeds().empty()) GTEST_SKIP() << kNoQuadrupeds;
   const LegModel derived = legged_robot("anymal_c");
   const LegModel outwards = legged_robot("anymal_c", {.knee_bend = KneeBend::kOutwards});
@@ -116,7 +111,7 @@ TEST(LegModel, OfAnymalBendsItsKneesTowardsTheMiddleWhereTheRangesLeaveBothSides
   }
 }
 
-TEST(LegModel, OfOneSidedKneesBendsThemAsTheirRangesDo) {
+TEST(LegModel, BendsOneSidedKneesAsTheirRangesDo) {
   const LegModel robot = legged_robot("quadbot");
   for (const Leg& leg : robot.legs) EXPECT_EQ(leg.kinematics.geometry().bend, -1);
 }
@@ -155,8 +150,7 @@ TEST(LegModel, LiesOnItsBodyAlone) {
   }
 }
 
-class LegRefusals : public testing::Test {
- protected:
+struct LegRefusals : testing::Test {
   std::string refusal(const std::string& content, const LegParameters& legs = {}) {
     return message_of<RobotError>([&] { read_legs(robot_of(content), {}, legs); }, "accepted");
   }
@@ -306,5 +300,4 @@ TEST(HasLegs, IsTrueForQuadrupedsAndFalseForRobotsOnWheels) {
   }
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -5,7 +5,6 @@
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <cstdint>
 #include <random>
 #include <stdexcept>
 

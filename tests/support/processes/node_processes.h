@@ -13,7 +13,6 @@
 #include <functional>
 #include <iterator>
 #include <memory>
-#include <new>
 #include <string>
 
 #include "drivers/mujoco/mujoco_plant.h"

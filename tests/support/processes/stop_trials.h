@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <csignal>
-#include <cstdint>
 #include <cstdio>
 #include <stdexcept>
 #include <string>

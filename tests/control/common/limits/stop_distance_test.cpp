@@ -9,8 +9,7 @@
 #include "control/wheeled/limits/speed_limiter.h"
 #include "support/constants.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 TEST(StopDistance, IsThatOfTextbooksWithoutAJerkLimit) {
   EXPECT_DOUBLE_EQ(stop_distance(1, 2, std::numeric_limits<double>::infinity()), 0.25);
@@ -52,5 +51,4 @@ TEST(StopDistance, IsWhatTheLimiterTakes) {
   }
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -3,11 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 constexpr double kUnlimited = std::numeric_limits<double>::infinity();
 
@@ -39,7 +37,7 @@ TEST(DriveLimits, LeftOutFollowFromTheAccelerations) {
   EXPECT_TRUE(limits.keep_curvature);
 }
 
-TEST(DriveLimits, ThatAreGivenAreTaken) {
+TEST(DriveLimits, AreThoseGiven) {
   DriveControllerParameters parameters = plain();
   parameters.max_linear_deceleration = 1.1;
   parameters.max_linear_deceleration_reverse = 1.2;
@@ -64,7 +62,7 @@ TEST(DriveLimits, ThatAreGivenAreTaken) {
   EXPECT_FALSE(limits.keep_curvature);
 }
 
-TEST(DriveLimits, InReverseFollowTheDecelerationForwards) {
+TEST(DriveLimits, FollowTheDecelerationForwardsInReverse) {
   DriveControllerParameters parameters = plain();
   parameters.max_linear_deceleration = 1.4;
   EXPECT_EQ(speed_limits(parameters).linear.reverse_deceleration, 1.4);
@@ -75,7 +73,7 @@ TEST(DriveLimits, InReverseFollowTheDecelerationForwards) {
 }
 
 /// Twice the larger deceleration, no more than half of the grip, no less than the deceleration itself.
-TEST(DriveLimits, OfAnEmergencyAreBoundedByTheGrip) {
+TEST(DriveLimits, AreBoundedByTheGripInAnEmergency) {
   DriveControllerParameters parameters = plain();
   parameters.max_linear_deceleration_reverse = 2;
   EXPECT_DOUBLE_EQ(speed_limits(parameters).linear.emergency_deceleration, 4);
@@ -90,7 +88,7 @@ TEST(DriveLimits, OfAnEmergencyAreBoundedByTheGrip) {
   EXPECT_DOUBLE_EQ(speed_limits(parameters).angular.emergency_deceleration, 3);
 }
 
-TEST(DriveLimits, OfTheJerkLetTheLargestAccelerationBuildUpInATenthOfASecond) {
+TEST(DriveLimits, LetTheLargestAccelerationBuildUpInATenthOfASecond) {
   DriveControllerParameters parameters = plain();
   parameters.max_linear_acceleration_reverse = 2.5;
   EXPECT_DOUBLE_EQ(speed_limits(parameters).linear.jerk, 25);
@@ -102,7 +100,7 @@ TEST(DriveLimits, OfTheJerkLetTheLargestAccelerationBuildUpInATenthOfASecond) {
   EXPECT_DOUBLE_EQ(speed_limits(parameters).angular.jerk, 50);
 }
 
-TEST(DriveLimits, OfJerkZeroAreNone) {
+TEST(DriveLimits, HoldNoJerkForAJerkOfZero) {
   EXPECT_EQ(jerk_limit(0), kUnlimited);
   EXPECT_EQ(jerk_limit(0.5), 0.5);
   DriveControllerParameters parameters = plain();
@@ -112,7 +110,7 @@ TEST(DriveLimits, OfJerkZeroAreNone) {
   EXPECT_EQ(speed_limits(parameters).angular.jerk, kUnlimited);
 }
 
-TEST(MotionLimits, OfTheReverseHoldBelowZeroAlone) {
+TEST(MotionLimits, HoldInReverseBelowZeroAlone) {
   MotionLimits limits{.speed = 1, .acceleration = 2, .deceleration = 3};
   for (const double direction : {-1.0, 0.0, 1.0}) {
     EXPECT_EQ(limits.speed_towards(direction), 1);
@@ -129,7 +127,7 @@ TEST(MotionLimits, OfTheReverseHoldBelowZeroAlone) {
   }
 }
 
-TEST(SpeedLimits, WithoutParametersAreThoseOfTheHeader) {
+TEST(SpeedLimits, AreThoseOfTheHeaderWithoutParameters) {
   const SpeedLimits limits;
   EXPECT_EQ(limits.linear.speed, 1);
   EXPECT_EQ(limits.linear.acceleration, 1);
@@ -175,5 +173,4 @@ TEST(UsedAccelerationScale, FallsAtTheTighterJerkLimit) {
   }
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

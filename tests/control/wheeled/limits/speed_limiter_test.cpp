@@ -9,8 +9,7 @@
 #include "control/wheeled/limits/limiter_properties.h"
 #include "signals/command_frame.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 constexpr SpeedLimits kLimits{
     .linear = {.speed = 1, .acceleration = 1, .deceleration = 1, .emergency_deceleration = 2},
@@ -21,8 +20,6 @@ constexpr SpeedLimits kSmooth{
     .angular = {.speed = 2, .acceleration = 4, .deceleration = 6, .emergency_deceleration = 12, .jerk = 40},
 };
 constexpr double kDt = 1e-3;
-// A speed below 2 rounds to 2·10⁻¹⁶; a difference of two of them over 1 ms shows 10³ times that.
-constexpr double kRoundedAcceleration = 1e-12;
 
 TEST(SpeedLimiter, ReachesOneMetrePerSecondInExactlyOneSecond) {
   SpeedLimiter limiter(kLimits);
@@ -35,34 +32,6 @@ TEST(SpeedLimiter, ReachesOneMetrePerSecondInExactlyOneSecond) {
   EXPECT_EQ(limiter.step({1, 0}, kDt).linear, 1.0);
   EXPECT_EQ(limiter.acceleration().linear, 0.0);
   EXPECT_EQ(limiter.reasons(), 0u);
-}
-
-TEST(SpeedLimiter, NeverExceedsALimitNorOvershoots) {
-  for (unsigned seed = 0; seed < 50; ++seed) {
-    std::mt19937 random(seed);
-    std::uniform_real_distribution<double> requested(-4, 4);
-    std::uniform_int_distribution<int> hold(1, 800);
-    SpeedLimiter limiter(kLimits);
-    for (int change = 0; change < 40; ++change) {
-      const PlanarTwist target{requested(random), requested(random)};
-      const int cycles = hold(random);
-      for (int k = 0; k < cycles; ++k) {
-        const PlanarTwist before = limiter.value();
-        const PlanarTwist after = limiter.step(target, kDt);
-        ASSERT_LE(std::abs(after.linear), 1) << "seed " << seed;
-        ASSERT_LE(std::abs(after.angular), 2) << "seed " << seed;
-        ASSERT_LE(std::abs(after.linear - before.linear) / kDt, 1 + kRoundedAcceleration) << "seed " << seed;
-        ASSERT_LE(std::abs(after.angular - before.angular) / kDt, 4 + kRoundedAcceleration) << "seed " << seed;
-        // The value lies between the last one and the reachable target: no overshoot, no reversal.
-        const double s = std::fmin(1, std::fmin(1 / std::abs(target.linear), 2 / std::abs(target.angular)));
-        const auto between = [](double x, double a, double b) {
-          return x >= std::fmin(a, b) - 1e-15 && x <= std::fmax(a, b) + 1e-15;
-        };
-        ASSERT_TRUE(between(after.linear, before.linear, s * target.linear)) << "seed " << seed;
-        ASSERT_TRUE(between(after.angular, before.angular, s * target.angular)) << "seed " << seed;
-      }
-    }
-  }
 }
 
 TEST(SpeedLimiter, DoesTheSameInReverseBitForBit) {
@@ -370,27 +339,20 @@ TEST(SpeedLimiter, ATurnDoesNotHoldUpTheStopInAnEmergency) {
   EXPECT_GT(limiter.value().angular, 0.5);
 }
 
-// The wheels can give a hundredth of the turn, which must speed up while the robot slows down.
-TEST(SpeedLimiter, TooLittleTorqueForATurnDoesNotHoldUpWhoSlowsDown) {
-  SpeedLimiter limiter(kSmooth);
-  cycles_to(limiter, {0.3, 0});
-  int whole = 0;
-  SpeedLimiter strong = limiter;
-  while (strong.step({0, 2}, kDt).linear != 0) ++whole;
-  int weak = 0;
-  while (limiter.step({0, 2}, kDt, false, 0.01).linear != 0 && weak < 100'000) ++weak;
-  EXPECT_LE(weak, whole + 1);
-}
-
-TEST(SpeedLimiter, TooLittleTorqueForAStartDoesNotHoldUpTheEndOfATurn) {
-  SpeedLimiter limiter(kSmooth);
-  cycles_to(limiter, {0, 1});
-  int whole = 0;
-  SpeedLimiter strong = limiter;
-  while (strong.step({0.1, 0}, kDt).angular != 0) ++whole;
-  int weak = 0;
-  while (limiter.step({0.1, 0}, kDt, false, 0.01).angular != 0 && weak < 100'000) ++weak;
-  EXPECT_LE(weak, whole + 1);
+// The wheels can give a hundredth of what speeds up on one axis, while the robot slows down on the other.
+TEST(SpeedLimiter, SlowsDownOneAxisInTimeWhereTheTorqueForTheOtherIsMissing) {
+  for (const auto& [from, to] : {std::pair{PlanarTwist{0.3, 0}, PlanarTwist{0, 2}}, {{0, 1}, {0.1, 0}}}) {
+    const auto cycles = [&, to = to, turns = from.angular != 0](SpeedLimiter limiter, double torque) {
+      int count = 0;
+      for (PlanarTwist now{1, 1}; (turns ? now.angular : now.linear) != 0 && count < 100'000; ++count) {
+        now = limiter.step(to, kDt, false, torque);
+      }
+      return count;
+    };
+    SpeedLimiter limiter(kSmooth);
+    cycles_to(limiter, from);
+    EXPECT_LE(cycles(limiter, 0.01), cycles(limiter, 1) + 1);
+  }
 }
 
 // One axis slows down while the other one speeds up.
@@ -465,5 +427,4 @@ TEST(SpeedLimiter, StandsWhereReverseIsForbidden) {
   EXPECT_EQ(drive_to(limiter, -0.5).end, 0);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -7,8 +7,7 @@
 #include "control/wheeled/test_robot.h"
 #include "control/wheeled/two_wheel_plant.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 TEST(FeedForward, GivesTheTwelveKilogramRobotItsMeasuredInertias) {
   const DriveTrain robot = make_test_robot();
@@ -75,5 +74,4 @@ TEST(FeedForward, AcceleratesARigidRobotExactlyAsPlanned) {
   }
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -7,13 +7,11 @@
 
 #include "control/wheeled/test_robot.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 constexpr double kCycle = 1e-3;  // s
 
-class GroundFrictionTest : public testing::Test {
- protected:
+struct GroundFrictionTest : testing::Test {
   GroundFriction law_{make_skid_steer()};
   std::array<double, 4> integral_{};
 
@@ -151,5 +149,4 @@ TEST_F(GroundFrictionTest, TakesWhatStandingWheelsHoldAgainstATurnForStrain) {
   EXPECT_NEAR(law_.effort(1), 0, 1e-12) << "a slope";
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -4,8 +4,7 @@
 
 #include "support/constants.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 constexpr double kRippleInertia = 0.005;  // kg·m²
 constexpr double kRippleLimit = 3.5;      // N·m
@@ -41,5 +40,4 @@ TEST(QuantisationRipple, IsFiniteInAJointOfStiffDamping) {
   EXPECT_LT(ripple, kRippleLimit);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

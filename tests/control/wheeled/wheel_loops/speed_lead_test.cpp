@@ -5,8 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 constexpr double kLeadPeriod = 1.0e-3;
 constexpr double kResponse = 0.05;  // s
@@ -45,11 +44,11 @@ TEST(SpeedLead, ADriveThatIsFasterDoesNotOvershoot) {
   EXPECT_LT(overshoot(kResponse, 1.5), 2 * kPeriods);
 }
 
-TEST(SpeedLead, WithoutATimeTheOrderIsThePlan) {
+TEST(SpeedLead, OrdersThePlanWithoutATime) {
   EXPECT_TRUE(std::signbit(SpeedLead(0, kLeadPeriod).step(-0.0, 10, 1)));
 }
 
-TEST(SpeedLead, AfterTheRampItIsExactlyZeroInTime) {
+TEST(SpeedLead, IsExactlyZeroInTimeAfterTheRamp) {
   SpeedLead lead(kResponse, kLeadPeriod);
   for (int i = 0; i < 500; ++i) lead.step(0, kRamp, 1);
   double last = 1;
@@ -64,5 +63,4 @@ TEST(SpeedLead, SkippedCyclesCount) {
   EXPECT_NEAR(third.step(0, kRamp, 3), last, 1.0e-12);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

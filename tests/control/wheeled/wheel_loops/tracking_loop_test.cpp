@@ -8,8 +8,7 @@
 #include <random>
 #include <vector>
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 constexpr double kBandwidth = 20;
 constexpr double kW = 2 * std::numbers::pi * kBandwidth;
@@ -179,7 +178,7 @@ TEST(TrackingLoop, LearnsTheCountsOfItsEncoder) {
   EXPECT_EQ(loop.quantum(), 0) << "exact";
 }
 
-TEST(TrackingLoop, OfAWheelThatStandsTakesTheEncoderOfAnother) {
+TEST(TrackingLoop, TakesTheEncoderOfAnotherWheelAtAStand) {
   TrackingLoop turning(kBandwidth, 1e-3), standing(kBandwidth, 1e-3);
   standing.assume_encoder_of(turning);
   EXPECT_NEAR(standing.quantum(), 2 * std::numbers::pi / 45, 1e-15) << "none has shown a count";
@@ -203,5 +202,4 @@ TEST(TrackingLoop, PredictsOverSkippedSamples) {
   }
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -2,18 +2,15 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cmath>
 #include <random>
 
 #include "control/wheeled/control_problems.h"
 #include "control/wheeled/test_robot.h"
-#include "control/wheeled/wheel_loops/feed_forward.h"
 #include "control/wheeled/wheel_loops/wheel_loop_stability.h"
 #include "support/constants.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 WheelLoopGains derived(double rate) {
   const DriveTrain robot = make_test_robot();
@@ -142,5 +139,4 @@ TEST(WheelLoopGains, AreAcceptedForRobotsOfEverySize) {
   }
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

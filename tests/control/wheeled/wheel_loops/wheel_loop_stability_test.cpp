@@ -9,8 +9,7 @@
 #include "control/wheeled/wheel_loops/wheel_loop.h"
 #include "support/constants.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 constexpr double kTrackingBandwidth = 20;
 constexpr double kLifted = 0.005;
@@ -133,5 +132,4 @@ TEST(WheelLoopSpectralRadius, GrowsWithEveryCycleOfDelayWhereTheWheelIsLifted) {
   }
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

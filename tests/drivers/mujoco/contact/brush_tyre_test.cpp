@@ -8,11 +8,9 @@
 #include "drivers/mujoco/plant_fixture.h"
 #include "support/robots/made_robot.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
-class BrushTyreTest : public PlantTest {
- protected:
+struct BrushTyreTest : PlantTest {
   std::unique_ptr<MujocoPlant> started(const MadeRobot& robot) {
     parameters_.scene = kFlat;
     parameters_.sensor_errors = ErrorLevel::kIdeal;
@@ -150,5 +148,4 @@ MadeRobot light() {
 INSTANTIATE_TEST_SUITE_P(BrushTyre, OfAnySize, testing::Values(heavy(), light()),
                          [](const auto& made) { return made.param.body_mass > 100 ? "of450kg" : "of1kg"; });
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -1,22 +1,15 @@
 /// Robots on feet whose lowest points differ from those of the wheels.
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include <random>
 
 #include "drivers/mujoco/plant_fixture.h"
+#include "support/matchers.h"
 #include "support/message_of.h"
 #include "support/robots/made_robot.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
-using testing::AllOf;
-using testing::HasSubstr;
-
-class FeetOnGround : public PlantTest {
- protected:
+struct FeetOnGround : PlantTest {
   /// Balls of 3 cm before and behind the wheels that end `gap` m above them.
   static MadeRobot on_balls(double front, double back, double x = 0.3) {
     MadeRobot robot;
@@ -92,5 +85,4 @@ TEST_F(FeetOnGround, AFootprintBoxDoesNotLiftTheWheels) {
   EXPECT_GT(truth(*stood(robot)).normal_force[0], 10);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

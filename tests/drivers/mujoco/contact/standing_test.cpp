@@ -1,18 +1,13 @@
 /// Robots that stand on more than their wheels.
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include <cmath>
 
 #include "drivers/mujoco/plant_fixture.h"
+#include "support/matchers.h"
 #include "support/message_of.h"
 #include "support/robots/made_robot.h"
 
-namespace robot_control {
-namespace {
-
-using testing::HasSubstr;
+namespace robot_control::tests {
 
 std::string part(const std::string& name, const std::string& shape, const std::string& parent, const std::string& joint,
                  const std::string& mass = "0.5") {
@@ -26,15 +21,14 @@ std::string ball(double radius) {
   return "<collision><geometry><sphere radius=\"" + std::to_string(radius) + "\"/></geometry></collision>";
 }
 
-class Standing : public PlantTest {
- protected:
+struct Standing : PlantTest {
   std::unique_ptr<MujocoPlant> stood(const MadeRobot& robot) {
     return started(robot.description(), kFlat, 0.001, robot.names());
   }
 };
 
 // The bumper hangs 2 cm below the wheels.
-TEST_F(Standing, OnItsBodyWithTheWheelsInTheAirIsRefused) {
+TEST_F(Standing, IsRefusedOnItsBodyWithTheWheelsInTheAir) {
   MadeRobot robot;
   robot.more = part("bumper", "<collision><geometry><box size=\"0.6 0.6 0.04\"/></geometry></collision>", "base_link",
                     "type=\"fixed\"><origin xyz=\"0 0 -0.1\"/>");
@@ -69,7 +63,7 @@ TEST_F(Standing, LeaningBackIsInTheTruthAndTheGroundStaysLevel) {
 }
 
 // A pendulum without friction never comes to rest; the robot below it does.
-TEST_F(Standing, WhileSomethingOnItSwings) {
+TEST_F(Standing, IsAllowedWhileSomethingOnItSwings) {
   MadeRobot robot;
   robot.axles = {0.2, -0.2};
   robot.more = part("pendulum", "", "base_link",
@@ -80,7 +74,7 @@ TEST_F(Standing, WhileSomethingOnItSwings) {
 // Half of the weight is on a rear ball 0.4 m behind the wheels, which turns about its own axle alone. If it gripped, μ
 // · 60 N · 0.4 m would outweigh the wheels' 2 · μ · 30 N · 0.25 m. The robot must still turn at 2 r q̇/b, except for
 // the creep of the tyres: less than 1 %.
-TEST_F(Standing, OnABallWithoutASwivelTurns) {
+TEST_F(Standing, TurnsOnABallWithoutASwivel) {
   MadeRobot robot;
   robot.body_x = -0.24;
   robot.more =
@@ -93,5 +87,4 @@ TEST_F(Standing, OnABallWithoutASwivelTurns) {
   EXPECT_NEAR(truth(*plant).twist_base.angular[2], expected, 0.01 * expected);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -8,8 +8,7 @@
 #include "drivers/mujoco/plant_fixture.h"
 #include "support/robots/made_robot.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 std::string exact(double value) {
   std::ostringstream text;
@@ -58,5 +57,4 @@ TEST(FlatInertias, AreValidInEveryOrientation) {
   }
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

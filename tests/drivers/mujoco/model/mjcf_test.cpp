@@ -5,17 +5,13 @@
 #include <gtest/gtest.h>
 #include <mujoco/mujoco.h>
 
-#include <algorithm>
-#include <fstream>
-
 #include "drivers/mujoco/constants.h"
 #include "drivers/mujoco/model/mujoco_model.h"
 #include "drivers/mujoco/mujoco_errors.h"
 #include "drivers/mujoco/plant_fixture.h"
 #include "support/robots/made_robot.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 using ModelPointer = std::unique_ptr<mjModel, DeleteMujoco>;
 
@@ -27,8 +23,7 @@ ModelPointer load_text(const std::string& name, const std::string& text) {
 }
 
 /// Two wheels, and an arm whose first joint is `kind` with `inside`.
-class MjcfTest : public testing::Test {
- protected:
+struct MjcfTest : testing::Test {
   MjcfTest() {
     install_mujoco_handlers();
     model_.bodies = bodies_;
@@ -226,5 +221,4 @@ TEST_F(MjcfTest, TheExportedTextOpensByItselfAndStands) {
   EXPECT_EQ(data->ncon, 3) << "two wheels and the ball, rolling down the slope";
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -1,22 +1,15 @@
 #include "drivers/mujoco/model/mujoco_model.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include <filesystem>
 
 #include "drivers/driver.h"
 #include "drivers/mujoco/plant_fixture.h"
+#include "support/matchers.h"
 #include "support/message_of.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
-using testing::HasSubstr;
-using testing::Not;
-
-class MujocoModelTest : public testing::Test {
- protected:
+struct MujocoModelTest : testing::Test {
   MujocoModel compiled(const std::string& scene, double period = 0.001) const {
     MujocoPlantParameters parameters;
     parameters.scene = scene;
@@ -121,8 +114,8 @@ TEST_F(MujocoModelTest, ASceneByRelativePathWorks) {
 TEST_F(MujocoModelTest, ASceneThatDoesNotCompileIsRefusedWithMujocosMessage) {
   const std::string scene = scene_file(
       "typo.xml", "<mujoco><worldbody><geom type=\"plane\" size=\"1 1 1\" bogus=\"3\"/></worldbody></mujoco>");
-  EXPECT_THAT(refusal(scene), testing::AllOf(HasSubstr("typo.xml"), HasSubstr("unrecognized attribute: 'bogus'"),
-                                             Not(HasSubstr("\n")), HasSubstr("Repair the scene")));
+  EXPECT_THAT(refusal(scene), AllOf(HasSubstr("typo.xml"), HasSubstr("unrecognized attribute: 'bogus'"),
+                                    Not(HasSubstr("\n")), HasSubstr("Repair the scene")));
 }
 
 TEST_F(MujocoModelTest, ASceneThatIsNotThereIsRefused) {
@@ -153,25 +146,24 @@ TEST_F(MujocoModelTest, ASceneThatIsNoXmlIsRefused) {
 
 TEST_F(MujocoModelTest, ASceneWithoutStartIsRefused) {
   EXPECT_THAT(refusal(scene_file("no_start.xml", "<mujoco><worldbody/></mujoco>")),
-              testing::AllOf(HasSubstr("no_start.xml"), HasSubstr("site \"start\"")));
+              AllOf(HasSubstr("no_start.xml"), HasSubstr("site \"start\"")));
 }
 
 TEST_F(MujocoModelTest, ASceneThatChangesTheRobotsMassIsRefused) {
   EXPECT_THAT(refusal(scene_file("heavy.xml", R"(<mujoco><compiler settotalmass="50"/><worldbody><site name="start"/>
     </worldbody></mujoco>)")),
-              testing::AllOf(HasSubstr("heavy.xml"), HasSubstr("weigh")));
+              AllOf(HasSubstr("heavy.xml"), HasSubstr("weigh")));
 }
 
 // The scene's own text includes itself, and so does one that it includes.
 TEST_F(MujocoModelTest, AnIncludeCycleInASceneIsRefused) {
   const std::string own = scene_file("own.xml", R"(<mujoco><include file="own.xml"/><worldbody><site name="start"/>
     </worldbody></mujoco>)");
-  EXPECT_THAT(refusal(own), testing::AllOf(HasSubstr("own.xml"), HasSubstr("include")));
+  EXPECT_THAT(refusal(own), AllOf(HasSubstr("own.xml"), HasSubstr("include")));
   scene_file("second.xml", R"(<mujocoinclude><include file="first.xml"/></mujocoinclude>)");
   const std::string first = scene_file("first.xml", R"(<mujoco><include file="second.xml"/><worldbody>
     <site name="start"/></worldbody></mujoco>)");
-  EXPECT_THAT(refusal(first), testing::AllOf(HasSubstr("first.xml"), HasSubstr("include")));
+  EXPECT_THAT(refusal(first), AllOf(HasSubstr("first.xml"), HasSubstr("include")));
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -1,18 +1,14 @@
 /// The worlds around the robot: ours, and what the parameters make of them.
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include "drivers/mujoco/constants.h"
 #include "drivers/mujoco/plant_fixture.h"
+#include "support/matchers.h"
 #include "support/message_of.h"
 #include "support/robots/made_robot.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
-class SceneTest : public PlantTest {
- protected:
+struct SceneTest : PlantTest {
   std::unique_ptr<MujocoPlant> in(const std::string& scene) {
     parameters_.scene = scene.front() == '/' ? scene : PROJECT_DIRECTORY "/urdf/scenes/" + scene;
     parameters_.sensor_errors = ErrorLevel::kIdeal;
@@ -62,7 +58,7 @@ TEST_F(SceneTest, AnotherShapeIsNoRegionOfFriction) {
   for (const std::string& region :
        {R"(type="cylinder" size="1 0.01" pos="3 0 0")" + through, R"(type="plane" size="1 1 1")" + through,
         std::string(R"(type="box" size="1 1 0.01" pos="3 0 0")")}) {
-    EXPECT_THAT(with(region), testing::AllOf(testing::HasSubstr("region.xml"), testing::HasSubstr("friction/ice")));
+    EXPECT_THAT(with(region), AllOf(HasSubstr("region.xml"), HasSubstr("friction/ice")));
   }
 }
 
@@ -84,7 +80,7 @@ TEST_F(SceneTest, ASlopeByParameterIsASlope) {
 // tan 5° = 0.087: less than that does not hold.
 TEST_F(SceneTest, GroundTooSlipperyForItsSlopeIsRefused) {
   parameters_.ground_friction = 0.05;
-  EXPECT_THAT(refusal("slope_5deg.xml"), testing::HasSubstr("does not come to rest"));
+  EXPECT_THAT(refusal("slope_5deg.xml"), HasSubstr("does not come to rest"));
 }
 
 // A robot on two wheels alone has nothing to stand on.
@@ -93,7 +89,7 @@ TEST_F(SceneTest, ARobotThatFallsOverIsRefused) {
   made.body_x = 0.05;
   made.body_z = 0.2;
   robot_ = made.model();
-  EXPECT_THAT(refusal("flat.xml"), testing::HasSubstr("falls over"));
+  EXPECT_THAT(refusal("flat.xml"), HasSubstr("falls over"));
 }
 
 TEST_F(SceneTest, ARobotThatWasRefusedDoesNotRun) {
@@ -130,5 +126,4 @@ TEST_F(SceneTest, ARobotWithALargerLeftWheelDrivesToTheRight) {
   EXPECT_NEAR(truth(*plant).twist_base.angular[2], -0.02 * 0.1 * 5 / 0.5, 0.03 * 0.02);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -6,11 +6,9 @@
 #include "support/robots/diffbot_urdf.h"
 #include "support/robots/made_robot.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
-class TrueRobotTest : public testing::Test {
- protected:
+struct TrueRobotTest : testing::Test {
   TrueRobotTest() { parameters_.sensor_errors = ErrorLevel::kDataSheet; }
 
   TrueRobot real() const { return true_robot(believed_, parameters_, kStep); }
@@ -97,5 +95,4 @@ TEST_F(TrueRobotTest, APayloadIsAPointMassOnTheBase) {
   EXPECT_NEAR(loaded.inertia(2, 2), empty.inertia(2, 2), 1e-12);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -7,8 +7,7 @@
 #include "drivers/mujoco/plant_fixture.h"
 #include "support/message_of.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 constexpr double kVoltage = 24, kResistance = 0.5;
 constexpr double kVoltRounding = 1e-12;
@@ -32,7 +31,7 @@ TEST(Battery, IsChargedByMotorsThatBrake) {
   EXPECT_GT(battery_under_load(kVoltage, kResistance, -100).voltage, kVoltage);
 }
 
-TEST(Battery, WithoutResistanceKeepsItsVoltage) {
+TEST(Battery, KeepsItsVoltageWithoutResistance) {
   EXPECT_NEAR(battery_under_load(kVoltage, 0, 1000).voltage, kVoltage, kVoltRounding);
 }
 
@@ -42,8 +41,7 @@ TEST(Battery, GivesHalfItsVoltageAtItsGreatestPowerAndBeyond) {
   EXPECT_NEAR(battery_under_load(kVoltage, kResistance, 1e6).voltage, half, kVoltRounding);
 }
 
-class BatteryOfThePlant : public PlantTest {
- protected:
+struct BatteryOfThePlant : PlantTest {
   BatteryOfThePlant() {
     parameters_.scene = kFlat;
     parameters_.sensor_errors = ErrorLevel::kIdeal;
@@ -65,13 +63,6 @@ TEST_F(BatteryOfThePlant, IsReported) {
   EXPECT_NEAR(frame.battery_voltage, kVoltage - kResistance * kIdleCurrent, 1e-6);
 }
 
-TEST_F(BatteryOfThePlant, IsNotThereByDefault) {
-  parameters_.battery_voltage = MujocoPlantParameters{}.battery_voltage;
-  const SensorFrame frame = sensors(*fed());
-  EXPECT_EQ(frame.valid & kValidBattery, 0u);
-  EXPECT_EQ(frame.battery_voltage, 0);
-}
-
 // Both wheels at 5 rad/s with 1 N·m each: 10 W.
 TEST_F(BatteryOfThePlant, FeedsTheMechanicalPowerOfTheWheels) {
   auto plant = fed();
@@ -85,12 +76,11 @@ TEST_F(BatteryOfThePlant, FeedsTheMechanicalPowerOfTheWheels) {
   EXPECT_GT(truth(*plant).joints[0].velocity, 5);
 }
 
-TEST_F(BatteryOfThePlant, WithMoreResistanceThanItsVoltageBearsIsRefused) {
+TEST_F(BatteryOfThePlant, IsRefusedWithMoreResistanceThanItsVoltageBears) {
   parameters_.battery_resistance = 25;
   const std::string message = message_of<DriverError>([&] { fed(); });
   EXPECT_NE(message.find("battery_resistance is 25 ohm"), std::string::npos) << message;
   EXPECT_NE(message.find("more than 24 ohm"), std::string::npos) << message;
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

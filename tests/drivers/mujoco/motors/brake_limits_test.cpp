@@ -1,18 +1,13 @@
 #include "drivers/mujoco/motors/brake_limits.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <cmath>
-
 #include "drivers/driver.h"
 #include "drivers/mujoco/constants.h"
 #include "machine/wheeled/tipping.h"
+#include "support/matchers.h"
 #include "support/message_of.h"
 #include "support/robots/made_robot.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 // Centre of gravity 0.2 m above the ground, axles 0.15 m before and behind it.
 MadeRobot four_wheels() {
@@ -62,8 +57,7 @@ TEST(BrakeOf, TakesWhatTheUserSays) {
   EXPECT_EQ(brake.hold_speed, 0.2);
 }
 
-class CheckBrake : public testing::Test {
- protected:
+struct CheckBrake : testing::Test {
   std::string refusal() const {
     return message_of<DriverError>([&] { check_brake(brake_, "left_wheel_joint", 0.005, kStep); }, "accepted");
   }
@@ -76,24 +70,23 @@ TEST_F(CheckBrake, AcceptsWhatALightWheelBears) {
 
 TEST_F(CheckBrake, RefusesDampingThatALightWheelDoesNotBear) {
   brake_.damping = 2.6;  // 2.6 · 0.001 / 0.005 = 0.52
-  EXPECT_THAT(refusal(), testing::HasSubstr("brake_damping"));
+  EXPECT_THAT(refusal(), HasSubstr("brake_damping"));
 }
 
 TEST_F(CheckBrake, RefusesStiffnessThatALightWheelDoesNotBear) {
   brake_.stiffness = 2600;  // 2600 · 10⁻⁶ / 0.005 = 0.52
-  EXPECT_THAT(refusal(), testing::HasSubstr("brake_stiffness"));
+  EXPECT_THAT(refusal(), HasSubstr("brake_stiffness"));
 }
 
 TEST(CheckBrakeOfATinyWheel, NamesItsNumbers) {
   const std::string message = message_of<DriverError>(
       [&] { check_brake({.effort = 1, .damping = 1, .stiffness = 1, .hold_speed = 1}, "tiny", 4e-7, kStep); });
-  EXPECT_THAT(message, testing::AllOf(testing::HasSubstr("4e-07 kg·m²"), testing::HasSubstr("up to 0.0002 ")));
+  EXPECT_THAT(message, AllOf(HasSubstr("4e-07 kg·m²"), HasSubstr("up to 0.0002 ")));
 }
 
 TEST_F(CheckBrake, RefusesABrakeThatDoesNotHold) {
   brake_.stiffness = 0;
-  EXPECT_THAT(refusal(), testing::HasSubstr("brake_stiffness"));
+  EXPECT_THAT(refusal(), HasSubstr("brake_stiffness"));
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

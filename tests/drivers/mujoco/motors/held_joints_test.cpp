@@ -14,8 +14,7 @@
 #include "machine/fault_names.h"
 #include "support/robots/made_robot.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 constexpr int kJoints = 6;
 constexpr double kGivesWay = 0.0035;  // rad or m, under the full effort limit
@@ -64,8 +63,7 @@ struct Arm {
   }
 };
 
-class HeldJoints : public testing::TestWithParam<Arm> {
- protected:
+struct HeldJoints : testing::TestWithParam<Arm> {
   HeldJoints() {
     parameters_.scene = kFlat;
     parameters_.sensor_errors = ErrorLevel::kIdeal;
@@ -158,5 +156,4 @@ INSTANTIATE_TEST_SUITE_P(Arms, HeldJoints,
                                          Arm{.length = 0.5, .mass = 8, .effort = 1000}, Arm{.inertia = 1e-4},
                                          Arm{.effort = 1e7}));
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -2,8 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 constexpr double kStall = 4;     // N·m
 constexpr double kNoLoad = 200;  // rad/s, of the shaft
@@ -47,11 +46,10 @@ TEST(MotorTest, IsSlowerBehindAGreaterGear) {
   EXPECT_NEAR(Motor(kStall, kNoLoad, 20).limited(10, 5), kStall / 2, kTorqueRounding);
 }
 
-TEST(MotorTest, WithoutANoLoadSpeedIsLimitedOnlyByItsStallTorque) {
+TEST(MotorTest, IsLimitedOnlyByItsStallTorqueWithoutANoLoadSpeed) {
   const Motor motor{kStall, 0, kGear};
   EXPECT_EQ(motor.limited(10, 1000), kStall);
   EXPECT_EQ(motor.limited(-10, -1000), -kStall);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -4,14 +4,12 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 
 #include "drivers/mujoco/constants.h"
 #include "drivers/mujoco/plant_fixture.h"
 #include "support/robots/made_robot.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 constexpr double kTolerance = 0.003;  // rad or m
 
@@ -35,8 +33,7 @@ const std::string kArm = R"(
 const std::array<std::pair<const char*, double>, 3> kRest{
     {{"lift_joint", 0.3}, {"arm_joint", 0.5}, {"finger_joint", -0.4}}};
 
-class RestingJoints : public testing::Test {
- protected:
+struct RestingJoints : testing::Test {
   RestingJoints() {
     parameters_.scene = kFlat;
     parameters_.sensor_errors = ErrorLevel::kIdeal;
@@ -78,5 +75,4 @@ TEST_F(RestingJoints, BeginThereInTheExportedModelAndStay) {
   }
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -6,14 +6,12 @@
 
 #include <limits>
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 constexpr double kStep = 0.001;     // s
 constexpr double kInertia = 0.065;  // kg·m²
 
-class VelocityDriveTest : public testing::Test {
- protected:
+struct VelocityDriveTest : testing::Test {
   VelocityDriveParameters parameters{
       .loaded_inertia = kInertia,
       .lifted_inertia = 0.005,
@@ -99,5 +97,4 @@ TEST_F(VelocityDriveTest, TorquesAndNumbersThatAreNotFiniteBrake) {
   }
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

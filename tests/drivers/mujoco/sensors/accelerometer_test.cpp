@@ -5,8 +5,7 @@
 #include "drivers/mujoco/sensors/integrated_force.h"
 #include "support/robots/made_robot.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 struct Case {
   const char* name;
@@ -31,8 +30,7 @@ DriveTrain skid_steer() {
   return made.model();
 }
 
-class Accelerometer : public testing::TestWithParam<std::tuple<double, double>> {
- protected:
+struct Accelerometer : testing::TestWithParam<std::tuple<double, double>> {
   /// m/s, the largest error over a second of a drive.
   static double worst(const DriveTrain& robot, double damping, double period) {
     MujocoPlantParameters parameters;
@@ -73,5 +71,4 @@ TEST_P(Accelerometer, IntegratesToTheVelocity) {
 INSTANTIATE_TEST_SUITE_P(DampingAndPeriod, Accelerometer,
                          testing::Combine(testing::Values(0, 0.01, 0.1, 1), testing::Values(0.01, 0.001)));
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

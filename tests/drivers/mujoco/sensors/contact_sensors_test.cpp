@@ -10,11 +10,9 @@
 #include "support/allocation_guard.h"
 #include "support/robots/corpus.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
-class ContactSensors : public PlantTest, public testing::WithParamInterface<TyreModel> {
- protected:
+struct ContactSensors : PlantTest, testing::WithParamInterface<TyreModel> {
   ContactSensors() {
     parameters_.scene = kFlat;
     parameters_.sensor_errors = ErrorLevel::kIdeal;
@@ -114,7 +112,6 @@ TEST_P(ContactSensors, FeelTheCastersBehindTheWheels) {
 }
 
 TEST_P(ContactSensors, NeverAllocate) {
-  if (!AllocationGuard::kCounts) GTEST_SKIP() << "the sanitizer owns the allocator";
   parameters_.battery_voltage = 24;
   auto plant = sensing();
   SensorFrame frame;
@@ -129,5 +126,4 @@ TEST_P(ContactSensors, NeverAllocate) {
 INSTANTIATE_TEST_SUITE_P(Tyres, ContactSensors, testing::Values(TyreModel::kBrush, TyreModel::kNative),
                          [](const auto& tyre) { return tyre.param == TyreModel::kBrush ? "brush" : "native"; });
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numbers>
 #include <set>
 #include <vector>
 
@@ -19,8 +18,7 @@
 #include "support/allocation_guard.h"
 #include "support/robots/made_robot.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 double bound(std::size_t count) {
   return 5 * std::sqrt(2.0 / static_cast<double>(count));
@@ -32,8 +30,7 @@ double mean_square(const std::vector<double>& values) {
   return sum / static_cast<double>(values.size());
 }
 
-class VibrationTest : public testing::Test {
- protected:
+struct VibrationTest : testing::Test {
   VibrationTest() { errors_.accelerometer_slow_error = 0; }
 
   Vibration made() const {
@@ -153,8 +150,7 @@ TEST(LateSamplesTest, AreTheSameForTheSameSeed) {
   EXPECT_EQ(reported(0.01, 0.002, 1000), reported(0.01, 0.002, 1000));
 }
 
-class SlipNoiseTest : public testing::Test {
- protected:
+struct SlipNoiseTest : testing::Test {
   SlipNoiseTest() {
     made_.axles = {0.2, -0.2};
     parameters_.sensor_errors = ErrorLevel::kField;
@@ -202,8 +198,7 @@ TEST_F(SlipNoiseTest, IsOfTheFieldAndOfWheelsBehindEachOtherAlone) {
 }
 
 /// The robot of SlipNoiseTest, straight ahead on the plant.
-class FieldPlant : public SlipNoiseTest {
- protected:
+struct FieldPlant : SlipNoiseTest {
   struct Driven {
     double rims = 0;    ///< m, mean of both sides
     double ground = 0;  ///< m, ahead
@@ -319,7 +314,6 @@ TEST(FieldErrors, BeginWithWhatTheImuMeasuredBefore) {
 }
 
 TEST(FieldErrors, NeverAllocate) {
-  if (!AllocationGuard::kCounts) GTEST_SKIP() << "the sanitizer owns the allocator";
   MujocoPlantParameters parameters;
   parameters.sensor_errors = ErrorLevel::kField;
   parameters.encoder_jitter = 0.002;
@@ -330,5 +324,4 @@ TEST(FieldErrors, NeverAllocate) {
   EXPECT_EQ(guard.count(), 0u);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -4,21 +4,18 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cmath>
 
 #include "drivers/mujoco/plant_fixture.h"
 #include "support/message_of.h"
 #include "support/robots/made_robot.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 constexpr double kLaserX = 0.05;  // m, of laser_link ahead of the base
 constexpr double kExact = 0.002;  // m: the robot leans by less than 0.1° at rest
 
-class LaserTest : public PlantTest {
- protected:
+struct LaserTest : PlantTest {
   LaserTest() {
     parameters_.sensor_errors = ErrorLevel::kIdeal;
     parameters_.laser = {.rate = 10, .rays = 4, .noise = 0, .drop_outs = 0};
@@ -148,5 +145,4 @@ TEST_F(LaserTest, APathNeedsABodyAndTwoCorners) {
   EXPECT_NE(with("1  0 0  1", "mocap=\"true\"").find("there is no such path"), std::string::npos);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

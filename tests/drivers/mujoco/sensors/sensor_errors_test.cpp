@@ -16,8 +16,7 @@
 #include "support/allocation_guard.h"
 #include "support/message_of.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 constexpr double kDeviations = 5;
 constexpr double kCount = 2 * std::numbers::pi / 4096;  // rad
@@ -52,8 +51,7 @@ double correlation_bound(std::size_t count) {
   return kDeviations / std::sqrt(static_cast<double>(count));
 }
 
-class SensorErrorsTest : public testing::Test {
- protected:
+struct SensorErrorsTest : testing::Test {
   SensorErrorsTest() {
     parameters_.seed = 7;
     parameters_.sensor_errors = ErrorLevel::kDataSheet;
@@ -239,14 +237,14 @@ TEST_F(SensorErrorsTest, ScaleTheTrueRateAndNothingElse) {
   EXPECT_EQ(measurement.imu.linear_acceleration, (Vector3{1, -2, 3}));
 }
 
-TEST_F(SensorErrorsTest, OfOneDeviceDoNotDependOnTheOther) {
+TEST_F(SensorErrorsTest, DoNotDependOnTheOtherDevice) {
   const Record both = record(1000);
   parameters_.gyro_noise = parameters_.gyro_bias = parameters_.gyro_bias_walk = 0;
   parameters_.encoder_resolution = 0;
   EXPECT_EQ(record(1000).accelerometer, both.accelerometer);
 }
 
-TEST_F(SensorErrorsTest, OfOneKindDoNotDependOnTheOthers) {
+TEST_F(SensorErrorsTest, DoNotDependOnErrorsOfOtherKinds) {
   white_only();
   const Record white = record(1000);
   parameters_.gyro_bias = MujocoPlantParameters{}.gyro_bias;
@@ -328,7 +326,7 @@ TEST_F(SensorErrorsTest, LeaveJointsWithoutAnActuatorAlone) {
   EXPECT_EQ(measurement.joints[kSwivel].velocity, 0.7654321);
 }
 
-TEST_F(SensorErrorsTest, OfNoResolutionAreNone) {
+TEST_F(SensorErrorsTest, AreNoneOfNoResolution) {
   parameters_.encoder_resolution = 0;
   SensorErrors encoder = errors();
   Measurement measurement;
@@ -378,7 +376,6 @@ TEST_F(SensorErrorsTest, AreNoneWhenSwitchedOff) {
 }
 
 TEST_F(SensorErrorsTest, NeverAllocate) {
-  if (!AllocationGuard::kCounts) GTEST_SKIP() << "the sanitizer owns the allocator";
   parameters_.sensor_delay = 10;
   SensorErrors all = errors();
   Measurement measurement;
@@ -387,5 +384,4 @@ TEST_F(SensorErrorsTest, NeverAllocate) {
   EXPECT_EQ(guard.count(), 0u);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -8,12 +8,10 @@
 #include "estimation/common/values.h"
 #include "support/constants.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 /// A gyro and an accelerometer have given their first samples: 0.1 rad/s and 1 m/s² along z.
-class ImuSamplesTest : public testing::Test {
- protected:
+struct ImuSamplesTest : testing::Test {
   ImuSamplesTest() { both(0.1, 1.0, 0); }
 
   void none(double dt = kPeriod) { step(0, {}, {}, dt); }
@@ -222,5 +220,4 @@ TEST_F(ImuSamplesTest, AResetForgets) {
   EXPECT_FALSE(reading_.accelerometer.has_value());
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

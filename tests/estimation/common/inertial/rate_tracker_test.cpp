@@ -7,8 +7,7 @@
 #include "estimation/wheeled/estimator_fixture.h"
 #include "support/constants.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 using Eigen::Vector3d;
 
@@ -80,7 +79,7 @@ TEST_F(PublishedRate, FollowsATurnFromItsFirstCycleOn) {
 
 // With 4096 counts at 1 kHz the encoder's own speed jumps by 1.53 rad/s. Half a per cent of that is the loop's noise,
 // RMS.
-TEST_F(PublishedRate, OfEachWheelDoesNotJumpWithItsCounts) {
+TEST_F(PublishedRate, DoesNotJumpWithTheCountsOfAWheel) {
   robot_.noise.counts = 4096;
   drive(0, 0, 1000);
   drive(0.5, 0.2, 3000);
@@ -93,7 +92,7 @@ TEST_F(PublishedRate, OfEachWheelDoesNotJumpWithItsCounts) {
   EXPECT_NEAR(state_.joint_velocity[0], 0, 1e-6);
 }
 
-TEST_F(PublishedRate, OfAWheelSurvivesSamplesThatAreMissing) {
+TEST_F(PublishedRate, SurvivesMissingSamplesOfAWheel) {
   drive(0.5, 0, 2000);
   SensorFrame missing = robot_.frame();
   for (int i = 0; i < 20; ++i) {
@@ -109,5 +108,4 @@ TEST_F(PublishedRate, OfAWheelSurvivesSamplesThatAreMissing) {
   EXPECT_NEAR(state_.joint_velocity[0], 5, 0.05);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -10,8 +10,7 @@
 
 #include "signals/rotation.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 constexpr double kTiltStep = 0.01;  // s
 constexpr double kAllowedTilt =
@@ -106,7 +105,7 @@ TEST(TiltTest, RestsInTwoHeadingsSeparateBiasFromTilt) {
 }
 
 // The robot leaves a slope of 0.1 rad and comes back to it turned by 180°: gravity turns, the bias does not.
-TEST(TiltTest, OnASlopeTooTheTwoAreSeparated) {
+TEST(TiltTest, SeparatesTheTwoOnASlopeToo) {
   Tilt tilt;
   Vector3 uphill = gravity(-0.1);
   Vector3 downhill = gravity(0.1);
@@ -178,5 +177,4 @@ TEST(TiltTest, WhatIsSetBeyondTheSteepestIsBounded) {
   EXPECT_NEAR(tilt.up()[0], Tuning::kSteepest, 1e-9);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

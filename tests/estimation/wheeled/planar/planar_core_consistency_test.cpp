@@ -8,8 +8,7 @@
 #include "estimation/wheeled/planar/planar_core_fixture.h"
 #include "support/positive_definite.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 /// Wheels slip, a gyro has noise and bias, and a core follows both. A block is 1 s.
 class NoisyDrive {
@@ -225,5 +224,4 @@ TEST(CoreConsistency, TheCovarianceIsNeverNegative) {
   }
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

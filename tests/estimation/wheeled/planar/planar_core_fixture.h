@@ -5,7 +5,6 @@
 
 #include <Eigen/Core>
 #include <cmath>
-#include <random>
 
 #include "estimation/wheeled/planar/planar_core.h"
 

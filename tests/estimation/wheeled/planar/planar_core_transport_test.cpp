@@ -4,8 +4,7 @@
 
 #include "estimation/wheeled/planar/planar_core_fixture.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 constexpr double kDerivative = 1e-8;  // relative, of a central difference of 1e-5
 
@@ -26,8 +25,7 @@ CoreMatrix derivative(const Step& step, const CoreVector& at) {
 }
 
 /// A core whose error state is correlated throughout, in the middle of a block.
-class CoreTransportTest : public testing::Test {
- protected:
+struct CoreTransportTest : testing::Test {
   CoreTransportTest() : core_(core_without_noise()) {
     core_.place({1.0, -2.0, 0.7});
     practise(core_, 5);
@@ -134,5 +132,4 @@ TEST(CoreTransport, TheCovarianceOfAStraightWayIsThatOfTheClosedForm) {
   EXPECT_NEAR((*core.covariance())(PlanarCore::kX, PlanarCore::kX), slips, 1e-9 * slips);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -3,15 +3,13 @@
 
 #include "estimation/wheeled/planar/planar_core_fixture.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 constexpr double kRounding = 1e-12;  // relative
 constexpr double kBase = PlanarCoreParams{}.wheel_base;
 
 /// A block of 0.4 m and 0.3 rad is about to end. The calibration is held, so that it does not walk.
-class CoreUpdateTest : public testing::Test {
- protected:
+struct CoreUpdateTest : testing::Test {
   CoreUpdateTest() {
     practise(core_, 3);
     core_.begin_block(0.1);
@@ -287,5 +285,4 @@ TEST_F(CoreUpdateTest, ABiasThatIsSetIsCorrelatedWithNothing) {
   EXPECT_NEAR(p.row(PlanarCore::kBias).norm(), 9e-6, 1e-18);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

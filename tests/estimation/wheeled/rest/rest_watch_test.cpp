@@ -4,13 +4,9 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
+namespace robot_control::tests {
 
-namespace robot_control {
-namespace {
-
-class RestWatchTest : public testing::Test {
- protected:
+struct RestWatchTest : testing::Test {
   static constexpr double kStep = 0.01;  // s
   static constexpr int kWindow = 25;     // steps
 
@@ -106,7 +102,7 @@ TEST_F(RestWatchTest, ARateThatChangesIsNone) {
 }
 
 // The body still swings after a stop, or turns on wheels that stand.
-TEST_F(RestWatchTest, WhereNoBiasIsKnownARestIsSteadyForASecond) {
+TEST_F(RestWatchTest, ARestIsSteadyForASecondWhereNoBiasIsKnown) {
   bias_.known = false;
   for (const double rate : {0.0265, 0.0209, 0.0089, -0.0014, -0.0065, -0.0065, -0.0065}) {
     EXPECT_EQ(window(rate), RestWindow::kTurned) << rate;
@@ -116,7 +112,7 @@ TEST_F(RestWatchTest, WhereNoBiasIsKnownARestIsSteadyForASecond) {
   EXPECT_NEAR((*watch_.means().gyro)[2], -0.0065, 1e-12);
 }
 
-TEST_F(RestWatchTest, WhereNoBiasIsKnownAGyroThatIsLouderTakesTenSeconds) {
+TEST_F(RestWatchTest, ALouderGyroTakesTenSecondsWhereNoBiasIsKnown) {
   bias_.known = false;
   double time = 0;
   for (int i = 0; window(i % 2 == 0 ? 0.004 : -0.004) == RestWindow::kTurned; ++i) {
@@ -132,7 +128,7 @@ TEST_F(RestWatchTest, AWheelThatMovesBeginsTheTenSecondsAnew) {
   for (int i = 0; i < 38; ++i) EXPECT_EQ(window(0.3), RestWindow::kTurned) << i;
 }
 
-TEST_F(RestWatchTest, WithoutGyroTheWheelsDecide) {
+TEST_F(RestWatchTest, TheWheelsDecideWithoutGyro) {
   for (int i = 0; i < kWindow - 1; ++i) watch_.step({.dt = kStep}, bias_);
   EXPECT_EQ(watch_.step({.dt = kStep}, bias_), RestWindow::kQuiet);
   window(0);
@@ -165,5 +161,4 @@ TEST_F(RestWatchTest, AResetBeginsANewWindow) {
   EXPECT_EQ(window(0), RestWindow::kQuiet);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

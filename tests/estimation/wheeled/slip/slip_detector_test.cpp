@@ -3,8 +3,7 @@
 #include "estimation/wheeled/slip/slip_fixture.h"
 #include "support/constants.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 constexpr double kMinSpan = Tuning::kResidualSpans[0];
 constexpr double kNext = Tuning::kResidualSpans[1];
@@ -39,8 +38,7 @@ TEST(SlipLineOfAFarImu, IsStraightWithoutSlip) {
 }
 
 /// Steps by which the wheels' stamps are late; negative values: early.
-class SlipOfOtherClocks : public SlipFixture, public testing::WithParamInterface<int> {
- protected:
+struct SlipOfOtherClocks : SlipFixture, testing::WithParamInterface<int> {
   SlipOfOtherClocks() {
     body_.late = GetParam();
     body_.detector.set_clock_offset(GetParam() * SlidingBody::kStep);
@@ -83,7 +81,7 @@ TEST_P(SlipOfOtherClocks, AnOffsetThatIsLearnedIsNoSlip) {
 }
 
 // A slide ends while the robot brakes: earlier samples of the IMU are compared with later ones of the wheels.
-TEST_P(SlipOfOtherClocks, BehindASlideTheLineIsStraight) {
+TEST_P(SlipOfOtherClocks, TheLineIsStraightBehindASlide) {
   body_.noise = 0;
   drive(1, 1.0);
   for (int i = 0; i < 60; ++i) body_.step(-1.0);
@@ -109,18 +107,16 @@ TEST_P(SlipOfOtherClocks, ASpinIsProvenWithinTheNextSpan) {
 
 INSTANTIATE_TEST_SUITE_P(Steps, SlipOfOtherClocks, testing::Values(-20, -7, -1, 0, 3, 14, 34));
 
-class SlipOfAFarImu : public SlipFixture {
- protected:
+struct SlipOfAFarImu : SlipFixture {
   SlipOfAFarImu() : SlipFixture({.imu_x = 0.4, .imu_y = -0.2}) {}
 };
 
 // E continues the line of rest: the lever of the IMU does not step it.
-TEST_F(SlipOfAFarImu, BehindARestTheLeverIsNoSlip) {
+TEST_F(SlipOfAFarImu, TheLeverIsNoSlipBehindARest) {
   EXPECT_EQ(drive(2, 0.3), 0);
 }
 
-class SlipDetectorTest : public SlipFixture {
- protected:
+struct SlipDetectorTest : SlipFixture {
   SlipDetectorTest() { learn(); }
 };
 
@@ -231,13 +227,12 @@ TEST_F(SlipFixture, BeginsPessimistic) {
 }
 
 /// Factor on the noise of the data sheet.
-class SlipNoise : public SlipFixture, public testing::WithParamInterface<double> {
- protected:
+struct SlipNoise : SlipFixture, testing::WithParamInterface<double> {
   SlipNoise() { body_.noise = GetParam() * SlipParams{}.accelerometer; }
 };
 
 // A level that is low by chance would prove slip once in two hours at the largest factor.
-TEST_P(SlipNoise, OfTheAccelerometerIsNoSlip) {
+TEST_P(SlipNoise, IsNoSlip) {
   double proven = drive(0.5, 1.0);
   proven += drive(7200);
   EXPECT_EQ(proven, 0);
@@ -298,5 +293,4 @@ TEST(SlipDetector, GarbageLeavesItFinite) {
   }
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

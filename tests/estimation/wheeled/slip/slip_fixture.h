@@ -110,8 +110,7 @@ class SlidingBody {
 };
 
 /// The body stands, then drives at 0.5 m/s with noise of the data sheet for 20 s, in which the levels are learned.
-class SlipFixture : public testing::Test {
- protected:
+struct SlipFixture : testing::Test {
   explicit SlipFixture(const SlipParams& params = {}) : body_(params) {
     body_.noise = params.accelerometer;
     body_.detector.restart_at_rest(0, {0, 0, 1}, {});

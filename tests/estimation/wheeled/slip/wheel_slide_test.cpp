@@ -3,11 +3,9 @@
 #include "estimation/wheeled/slip/slip_fixture.h"
 #include "signals/state_frame.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
-class WheelSlideTest : public SlipFixture {
- protected:
+struct WheelSlideTest : SlipFixture {
   WheelSlideTest() { learn(); }
 
   WheelSlide::Speeds treads() const { return {body_.speed + body_.left, body_.speed + body_.right}; }
@@ -198,5 +196,4 @@ TEST_F(WheelSlideTest, TheEndLeavesNoSlipSideways) {
   EXPECT_EQ(slide_.reasons(), 0u);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -6,8 +6,7 @@
 #include <numbers>
 #include <random>
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 // Bound for the rounding of a few operations on numbers of order 1.
 constexpr double kArcRounding = 1e-15;
@@ -71,5 +70,4 @@ TEST(Sinc, IsOneAtZero) {
   EXPECT_EQ(sinc(0), 1);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

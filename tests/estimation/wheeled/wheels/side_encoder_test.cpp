@@ -5,14 +5,12 @@
 #include "estimation/wheeled/rolling_robot.h"
 #include "support/constants.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 constexpr double kBandwidth = 20;  // Hz
 
 /// The left wheel of a robot that stands at 12.5 rad.
-class SideEncoderTest : public testing::Test {
- protected:
+struct SideEncoderTest : testing::Test {
   SideEncoderTest() {
     set_joints_valid(sensors_, kValidMotion);
     sensors_.joint_count = 2;
@@ -54,8 +52,7 @@ TEST_F(SideEncoderTest, DoesNotLookAtTheOtherSide) {
 }
 
 /// 0.1 m radius; left joints are mirrored.
-class SideEncoderOfFourWheels : public testing::Test {
- protected:
+struct SideEncoderOfFourWheels : testing::Test {
   SideEncoderOfFourWheels() {
     set_joints_valid(sensors_, kValidMotion);
     sensors_.joint_count = 4;
@@ -160,5 +157,4 @@ TEST_F(SideEncoderTest, AWheelThatTurnsBackToZeroHas) {
   for (double angle = 12.5; angle > -2; angle -= 0.5) EXPECT_EQ(read(angle, 0.1), EncoderReading::kTravel) << angle;
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -8,11 +8,9 @@
 #include <random>
 #include <utility>
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
-class SpeedReadings : public testing::Test {
- protected:
+struct SpeedReadings : testing::Test {
   /// A changing speed, read every `gap` s or so, and rounded to `step` m/s.
   SpeedQuantum read(double step, double gap, double count = 1e-4) {
     SpeedQuantum quantum(count);
@@ -46,5 +44,4 @@ TEST_F(SpeedReadings, StepsThatTheEncodersCountExplainsAreNone) {
   EXPECT_EQ(read(0.08, 0.02, 0.001).step(), 0);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests
