@@ -12,9 +12,7 @@ import signal
 import subprocess
 import tempfile
 import time
-from collections.abc import Callable
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 from robot_control._robot_control import RunLogError, save_black_box
@@ -23,6 +21,7 @@ from robot_control.loop.roles import LOOP, TELEMETRY
 
 from bench.log_bench import row
 from bench.participants import START_LIMIT, command, remove_shared_memory, script, support_program
+from bench.rows import Result, Say
 
 ALL_TRIALS = 100
 MAX_MISSING = 10.0  # ms
@@ -31,7 +30,7 @@ A_SECOND = 100_000  # bytes, less than one of run.bag
 PROCESSES = (*LOOP, TELEMETRY)
 
 
-def bench(first: int, trials: int, programs: Path, say: Callable[[str], None]) -> tuple[dict[str, Any], bool]:
+def bench(first: int, trials: int, programs: Path, say: Say) -> Result:
     """The table of `trials` from seed `first` on, and whether all figures meet their bounds."""
     missing: list[float] = []
     bad = 0

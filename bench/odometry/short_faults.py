@@ -2,8 +2,6 @@
 
 One drive in lockstep is recorded, and its samples are spoiled afterwards. The controllers use no pose, so the sensors'
 data do not depend on the estimate. The reference is the same drive with healthy sensors.
-
-    source install/setup.bash; PYTHONPATH=.:$PYTHONPATH /usr/bin/python3 -m bench.odometry.short_faults
 """
 
 from __future__ import annotations
@@ -189,21 +187,3 @@ def _vertical(attitude: Array) -> float:
     """Vertical component of the robot's z axis."""
     x, y, _, _ = attitude
     return float(1 - 2 * (x * x + y * y))
-
-
-def main() -> None:
-    """Prints what is broken, one line each."""
-    sound = drive()
-    plain = estimate(sound)
-    count = 0
-    for kind, sensor, duration in COMBINATIONS:
-        broken = judge(sound, plain, estimate(sound, kind, sensor, duration)).broken()
-        count += bool(broken)
-        if broken:
-            print(f"{sensor} {kind} for {duration} s: {'; '.join(broken)}", flush=True)
-    print(f"undisturbed: tilt {judge(sound, plain, plain).tilt:.2f}°")
-    print(f"{count} of {len(COMBINATIONS)} combinations broken")
-
-
-if __name__ == "__main__":
-    main()

@@ -2,25 +2,16 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 from robot_control import Estimator
-from robot_control.loop.estimator import FLAGS
 
-from bench.odometry.field_drive import Errors, field_drive
+from bench.odometry.field_drive import Errors, field_drive, honesty
 from bench.odometry.recordings import Recording, merged
 
 JITTER = 0.003  # s, of the stamps
 ERRORS = Errors(accelerometer=0.01, slow=0.02, counts=1e6, slip=1e-3)
-
-
-@dataclass(frozen=True)
-class Outcome:
-    """Shares of the time: with the truth in the 95 % ellipse of the position, and with reported slip."""
-
-    within: float
-    slip: float
 
 
 def in_steps(drive: Recording, step: float, rate: float, seed: int) -> Recording:
@@ -42,17 +33,8 @@ def in_steps(drive: Recording, step: float, rate: float, seed: int) -> Recording
     return replace(drive, counts=None, time=time, left=left, right=right, gyro=gyro, accel=accel)
 
 
-def outcome(step: float, rate: float, radius: float, seed: int) -> Outcome:
-    """`radius`: the given one over the true one."""
+def outcome(step: float, rate: float, radius: float, seed: int) -> tuple[float, float]:
+    """`radius`: the given one over the true one; the shares of `honesty`."""
     drive = in_steps(field_drive(ERRORS, seed), step, rate, seed)
     drive = replace(drive, radius=radius * drive.radius)
-    out = Estimator(**drive.geometry()).process(*drive.samples())
-    truth = drive.truth[(drive.truth[:, 0] > drive.rest + 1) & (drive.truth[:, 0] < drive.time[-1])]
-    seen = np.column_stack([np.interp(truth[:, 0], drive.time, out[axis]) for axis in ("x", "y")])
-    rows = np.searchsorted(drive.time, truth[:, 0]).clip(0, drive.time.size - 1)
-    covariance = out["pose_covariance"][rows, :2, :2] + 1e-6 * np.eye(2)
-    off = seen - truth[:, 1:]
-    nees = np.einsum("ni,nij,nj->n", off, np.linalg.inv(covariance), off)
-    slips = out["flags"] & FLAGS["slip"] != 0
-    steps = np.diff(drive.time, prepend=0)
-    return Outcome(float(np.mean(nees < 5.99)), float(steps[slips].sum() / drive.time[-1]))
+    return honesty(drive, Estimator(**drive.geometry()).process(*drive.samples()))
