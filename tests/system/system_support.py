@@ -48,6 +48,11 @@ SETTLING = 0.5
 """s; for 0.3 s after a ramp the estimate still shows single counts of an encoder as 1 cm/s."""
 STALL_CAUSES = {"driver_lost", "controller_lost", "estimator_lost", "monitor_late", "command_stale", "gate_refuses"}
 """Causes that a machine may latch by itself after it stood still for loss_cycles, 20 ms."""
+LISTED_SOURCES = (
+    "/diff_drive_controller/command_sources",
+    str(Path(roslib.packages.get_pkg_dir("robot_control"), "config/command_sources.yaml")),
+)
+"""The parameter of a robot that knows the shipped command sources"""
 LOOP_STALL = 0.016
 """s; of these 20, command and permit may have survived the first 4 (kPermitLife)."""
 LOOP_WITNESS = StallWitness(LOOP_STALL, 85, [0])  # robot.core of robot_params.yaml, above LoopPriority::kDriver
@@ -444,25 +449,34 @@ def running_robot(namespace: str = "") -> Iterator[Robot]:
 
 
 def init_test_node(name: str) -> None:
-    """Initialises the node; SIGINT stays with unittest."""
-    rospy.init_node(name, anonymous=True, disable_signals=True)
+    """Initialises the node, once in a process; SIGINT stays with unittest."""
+    if not rospy.core.is_initialized():
+        rospy.init_node(name, anonymous=True, disable_signals=True)
 
 
 class RobotTestCase(unittest.TestCase):
-    """Tests that share one robot in the root namespace."""
+    """Tests that share one robot in the root namespace, a `shared` one with the other classes of this process."""
 
     robot: Robot
     prefix: Sequence[str] = ()
+    parameters: Sequence[tuple[str, object]] = ()
+    """of the server, from the start of the robot on"""
+    shared: Robot | None = None
+    """set by shared_robot.py, which ends it"""
 
     @classmethod
     def setUpClass(cls) -> None:
         init_test_node(cls.__name__)
-        cls.robot = Robot(prefix=cls.prefix)
-        cls.robot.start()
+        for name, value in cls.parameters:
+            rospy.set_param(name, value)
+        cls.robot = cls.shared or Robot(prefix=cls.prefix)
+        if not cls.robot.nodes:
+            cls.robot.start()
 
     @classmethod
     def tearDownClass(cls) -> None:
-        cls.robot.end()
+        if cls.shared is None:
+            cls.robot.end()
 
 
 def repository() -> Path:

@@ -23,6 +23,11 @@ class ClearanceTest(RobotTestCase):
         super().setUpClass()
         cls.clearance = rospy.Publisher("clearance", Float64, queue_size=1, latch=True)
 
+    @classmethod
+    def tearDownClass(cls) -> None:
+        cls.clearance.publish(math.inf)
+        super().tearDownClass()
+
     def test_it_caps_the_speed_and_gives_it_free_again(self) -> None:
         self.robot.await_ready()
         self.robot.drive_until("0.5 m/s", self.robot.driving, angular=0.0)

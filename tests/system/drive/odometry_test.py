@@ -14,9 +14,10 @@ from system.system_support import DRIVER, ESTIMATOR, LIMIT, RobotTestCase, wait_
 
 
 class OdometryTest(RobotTestCase):
+    parameters = ((f"/{DRIVER}/battery_voltage", 24.0),)
+
     @classmethod
     def setUpClass(cls) -> None:
-        rospy.set_param(f"/{DRIVER}/battery_voltage", 24.0)
         super().setUpClass()
         cls.wheels: Odometry | None = None
         cls.imu: Imu | None = None

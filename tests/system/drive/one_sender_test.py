@@ -8,9 +8,10 @@ from system.system_support import CONTROLLER, LIMIT, Program, RobotTestCase, wai
 
 
 class OneSenderTest(RobotTestCase):
+    parameters = (("/diff_drive_controller/one_sender", True),)
+
     @classmethod
     def setUpClass(cls) -> None:
-        rospy.set_param("/diff_drive_controller/one_sender", True)
         super().setUpClass()
         cls.sender = StampedSender(cls.robot)
 
