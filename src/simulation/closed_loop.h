@@ -11,17 +11,12 @@
 #include <string>
 
 #include "configuration/parameters.h"
-#include "drivers/driver.h"
+#include "drivers/laser_scan.h"
 #include "log/rows/joined_row.h"
 #include "log/rows/row_log.h"
-#include "loop/cycles/controller_cycle.h"
-#include "loop/cycles/driver_cycle.h"
-#include "loop/cycles/estimator_cycle.h"
-#include "loop/cycles/monitor_cycle.h"
 #include "robots/robot.h"
 #include "signals/geometry.h"
 #include "signals/law_snapshot.h"
-#include "simulation/faults/node_faults.h"
 
 namespace robot_control {
 
@@ -29,25 +24,28 @@ class ClosedLoop {
  public:
   /// Reads the robot that the parameters name and places a MuJoCo plant in the scene. Throws RobotError, DriverError,
   /// ParameterError. Telemetry, clock and real-time parameters have no effect.
-  explicit ClosedLoop(const Parameters& parameters) : ClosedLoop(parameters, nullptr) {}
+  explicit ClosedLoop(const Parameters& parameters);
 
   /// Does the same with a robot of any kind, which was composed with these parameters.
   ClosedLoop(const Parameters& parameters, std::shared_ptr<const Robot> robot);
+  ~ClosedLoop();
+  ClosedLoop(ClosedLoop&&) noexcept;
+  ClosedLoop& operator=(ClosedLoop&&) noexcept;
 
   /// Acts like a message received now on cmd_vel: it takes effect in the next step and times out like cmd_vel. The
   /// earliest cycle is 1, because the nodes enter the run in cycle 0.
-  void command(const Twist& twist) noexcept { request({.twist = twist, .mode = zero(twist) ? 0 : mode_}); }
+  void command(const Twist& twist) noexcept;
   /// The same with every part of a request.
-  void request(const Request& content) noexcept { request_ = {.content = content, .count = request_.count + 1}; }
+  void request(const Request& request) noexcept;
 
   /// Sets Request::mode of later commands other than zero, as set_gait of a robot on legs does. It ends with the
   /// permission to move.
-  void choose_mode(std::uint64_t mode) noexcept { mode_ = mode; }
+  void choose_mode(std::uint64_t mode) noexcept;
 
   /// These act like calls of e_stop_trigger and e_stop_reset, and like a message on heartbeat.
-  void e_stop() noexcept { ++operator_input_.e_stop_services; }
-  void e_stop_reset() noexcept { ++operator_input_.resets; }
-  void heartbeat() noexcept { ++operator_input_.heartbeats; }
+  void e_stop() noexcept;
+  void e_stop_reset() noexcept;
+  void heartbeat() noexcept;
 
   /// Acts like a message on clearance, m.
   void clearance(double metres) noexcept;
@@ -70,11 +68,11 @@ class ClosedLoop {
   void inject_fault(const std::string& component, const std::string& kind);
 
   /// Return cycle and time [s] of the sample in the next step.
-  std::uint64_t cycle() const noexcept { return driver_.next_cycle(); }
-  double time() const noexcept { return row_time(cycle(), parameters_.loop.period()); }
+  std::uint64_t cycle() const noexcept;
+  double time() const noexcept;
 
   /// Returns the rows that the four nodes published in the last step.
-  const JoinedRow& row() const noexcept { return row_; }
+  const JoinedRow& row() const noexcept;
 
   /// Returns what the laser measures in the true state of the last step, whichever cycle it is (laser_parameters.h).
   /// Without a laser there are no ranges.
@@ -88,46 +86,16 @@ class ClosedLoop {
   std::unique_ptr<RowLog> set_log(std::unique_ptr<RowLog> log);
 
   /// Returns the reason why the log has ended; "" if it has not.
-  const std::string& log_problem() const noexcept { return log_problem_; }
+  const std::string& log_problem() const noexcept;
 
-  const Robot& robot() const noexcept { return *robot_; }
-  const Parameters& parameters() const noexcept { return parameters_; }
+  const Robot& robot() const noexcept;
+  const Parameters& parameters() const noexcept;
 
  private:
-  /// A channel of this thread with its writer and its reader.
-  template <class Frame>
-  struct Channel {
-    std::unique_ptr<LatestFrames<Frame>> memory = std::make_unique<LatestFrames<Frame>>();
-    std::unique_ptr<OwnFrames<Frame>> frames = std::make_unique<OwnFrames<Frame>>();
-    FrameWriter<Frame> writer{memory.get(), frames.get()};
-    FrameReader<Frame> reader{memory.get(), frames.get()};
-  };
-
-  void hand_over() noexcept;
   void write_down() noexcept;
 
-  Parameters parameters_;
-  std::shared_ptr<const Robot> robot_;
-  std::unique_ptr<Driver> machine_;
-  Channel<SensorFrame> sensors_;
-  Channel<StateFrame> state_;
-  Channel<CommandFrame> command_;
-  Channel<Permit> permit_;
-  DriverCycle driver_;
-  EstimatorCycle estimator_;
-  ControllerCycle controller_;
-  MonitorCycle monitor_;
-  EstimatorFaults estimator_faults_{FaultComponent::kEstimator, state_.writer};
-  ControllerFaults controller_faults_{FaultComponent::kController, command_.writer};
-  MonitorFaults monitor_faults_{FaultComponent::kMonitor, permit_.writer};
-  std::unique_ptr<Retuner> retuner_;
-  VelocityCommand request_;
-  std::uint64_t mode_ = 0;  ///< of later commands
-  OperatorInput operator_input_;
-  InjectedFaults faults_{};
-  JoinedRow row_;
-  std::unique_ptr<RowLog> log_;
-  std::string log_problem_;
+  struct Parts;
+  std::unique_ptr<Parts> parts_;
 };
 
 }  // namespace robot_control

@@ -68,20 +68,20 @@ bool Join::repeats(const Row& row) {
 
 void Join::give_repeated() {
   const auto over = [this](const auto& row) { return std::ranges::count(finished_runs_, head_of(row).run) != 0; };
-  const auto give = [&](auto& queue) {
+  const auto give = [&](auto& queue, auto put) {
     while (!queue.empty() && over(queue.front())) queue.pop_front();
     while (!queue.empty() && run_ == head_of(queue.front()).run && last_cycle_ >= head_of(queue.front()).cycle) {
       const std::uint64_t cycle = head_of(queue.front()).cycle;
       JoinedRow row{.run = run_index_, .cycle = cycle, .time = row_time(cycle, period_)};
       row.repeats = true;
-      row.put(queue.front());
+      put(row.laws, queue.front());
       sink_(row);
       queue.pop_front();
     }
   };
-  give(std::get<1>(repeated_));
-  give(std::get<2>(repeated_));
-  give(std::get<3>(repeated_));
+  give(std::get<1>(repeated_), [](JoinedRow::Laws& laws, const EstimatorTrace& row) { laws.estimator = &row; });
+  give(std::get<2>(repeated_), [](JoinedRow::Laws& laws, const ControllerTrace& row) { laws.controller = &row; });
+  give(std::get<3>(repeated_), [](JoinedRow::Laws& laws, const MonitorTrace& row) { laws.monitor = &row; });
 }
 
 void Join::emit_beyond(std::size_t window) {
