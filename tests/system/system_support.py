@@ -478,6 +478,10 @@ class RobotTestCase(unittest.TestCase):
         if cls.shared is None:
             cls.robot.end()
 
+    def setUp(self) -> None:
+        self.robot.await_ready()
+        self.robot.await_rest()
+
 
 def repository() -> Path:
     return Path(roslib.packages.get_pkg_dir("robot_control"))

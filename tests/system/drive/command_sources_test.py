@@ -44,8 +44,7 @@ class CommandSourcesTest(RobotTestCase):
         cls.state = message
 
     def setUp(self) -> None:
-        self.robot.await_ready()
-        self.robot.await_rest()
+        super().setUp()
         self.sent = 0.0
 
     def send_key(self, linear: float) -> None:

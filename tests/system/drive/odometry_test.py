@@ -36,8 +36,7 @@ class OdometryTest(RobotTestCase):
         cls.imu_count += 1
 
     def setUp(self) -> None:
-        self.robot.await_ready()
-        self.robot.await_rest()
+        super().setUp()
         self.robot.reports.clear()
         wait_for("a standing robot", lambda: "standstill" in self.robot.reports[ESTIMATOR].values.get("flags", ""))
 

@@ -15,10 +15,6 @@ class OneSenderTest(RobotTestCase):
         super().setUpClass()
         cls.sender = StampedSender(cls.robot)
 
-    def setUp(self) -> None:
-        self.robot.await_ready()
-        self.robot.await_rest()
-
     def test_two_stop_it_and_one_drives_on_without_a_reset(self) -> None:
         self.robot.drive_until("0.5 m/s", self.robot.driving)
         other = Program("send_cmd.py", "--seconds", str(LIMIT))

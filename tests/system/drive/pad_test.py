@@ -19,8 +19,7 @@ FORWARD = 0
 
 class PadTest(RobotTestCase):
     def setUp(self) -> None:
-        self.robot.await_ready()
-        self.robot.await_rest()
+        super().setUp()
         self.device = FakePad(self)
         self.plug = self.device.plug
         self.sent: list[float] = []

@@ -56,7 +56,6 @@ class MappingTest(RobotTestCase):
 
     @again_after_a_stall
     def test_a_map_is_saved_and_the_robot_is_found_in_it(self) -> None:
-        self.robot.await_ready()
         self.corrections.clear()
         start = self.robot.pose
         path = Path(tempfile.mkdtemp()) / "room"
