@@ -14,9 +14,9 @@ from robot_control.fleet.v2.messages import Error, RefusedError, decoded, is_tim
 from robot_control.fleet.v2.state import factsheet, visualization
 from robot_control.installed_files import share_file
 from robot_control.setup.description import describe
+from support.virtual_robot import MACHINE, Run, ordered
 
 from bench.fleet.messages import MANUFACTURER, SERIAL, action, header, order, unknown_names
-from bench.fleet.virtual_robot import MACHINE, Run, ordered
 
 jsonschema = pytest.importorskip("jsonschema", reason="needs Debian's python3-jsonschema: scripts/setup --fleet")
 PLACES = [(0.0, 0.0), (1.0, 0.0), (1.5, 0.0), (1.5, 1.0, 0.0)]

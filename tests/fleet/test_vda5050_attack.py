@@ -4,10 +4,10 @@ import json
 
 import pytest
 from robot_control.fleet.client import DUPLICATE_SILENCE
+from support.fleet_attack import mutated
+from support.virtual_robot import Run, ordered
 
-from bench.fleet.attack import mutated
 from bench.fleet.messages import action, header, order
-from bench.fleet.virtual_robot import Run, ordered
 
 pytest.importorskip("jsonschema", reason="needs Debian's python3-jsonschema: scripts/setup --fleet")
 PLACES = [(0.0, 0.0), (1.0, 0.0), (2.0, 0.0)]

@@ -31,12 +31,12 @@ from robot_control.robot import boundary as crossing
 from robot_control.robot.pose import turned
 from robot_control.settings.files import SettingsError
 from sensor_msgs.msg import BatteryState
+from support.fleet_attack import mutated, seeds
 from support.mutants import mutants
 from support.timed import longest, timed
+from support.virtual_robot import MACHINE, Run, VirtualRobot, ordered
 
-from bench.fleet.attack import mutated, seeds
 from bench.fleet.messages import MANUFACTURER, SERIAL, action, header, order
-from bench.fleet.virtual_robot import MACHINE, Run, VirtualRobot, ordered
 
 jsonschema = pytest.importorskip("jsonschema", reason="needs Debian's python3-jsonschema: scripts/setup --fleet")
 STATE = jsonschema.Draft202012Validator(schema("state"))

@@ -12,10 +12,10 @@ from robot_control.fleet.v2.curve import CurveError, points_of
 from robot_control.fleet.v2.messages import RefusedError
 from robot_control.fleet.v2.order import order_of
 from robot_control.robot.pose import Pose
+from support.virtual_robot import Run, VirtualRobot, ordered
 
 from bench.fleet import sequences
 from bench.fleet.messages import action, header, order
-from bench.fleet.virtual_robot import Run, VirtualRobot, ordered
 
 ROOT = Path(__file__).parents[2]
 LINE = [(0.0, 0.0), (1.0, 0.0), (2.0, 0.0), (3.0, 0.0)]
