@@ -20,7 +20,7 @@ from robot_control.data.run_log import read_log
 from robot_control.loop.roles import LOOP, TELEMETRY
 
 from bench.log_bench import row
-from bench.participants import START_LIMIT, command, remove_shared_memory, script, support_program
+from bench.participants import START_LIMIT, await_log, command, remove_shared_memory, script, support_program
 from bench.rows import Result, Say
 
 ALL_TRIALS = 100
@@ -85,11 +85,7 @@ def trial(nodes: list[subprocess.Popen[bytes]], folder: Path, programs: Path, se
         RuntimeError: a node ended before, or the black box has a gap.
         RunLogError: it cannot be read.
     """
-    end = time.monotonic() + START_LIMIT
-    while not (log := folder / "run.bag").exists() or log.stat().st_size < A_SECOND:
-        if time.monotonic() > end:
-            raise RuntimeError("no second of rows was written")
-        time.sleep(0.05)
+    await_log(folder / "run.bag", A_SECOND)
     time.sleep(np.random.default_rng(seed).uniform(0, MAX_DRIVE))
     ended = [name for name, node in zip(PROCESSES, nodes, strict=True) if node.poll() is not None]
     os.killpg(nodes[0].pid, signal.SIGKILL)

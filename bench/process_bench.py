@@ -20,7 +20,7 @@ from robot_control.data.replay.recorded_setup import recorded_setup
 from robot_control.loop.roles import CONTROLLER, LOOP, TELEMETRY
 
 from bench.log_bench import row
-from bench.participants import START_LIMIT, command, remove_shared_memory
+from bench.participants import START_LIMIT, await_log, command, remove_shared_memory
 from bench.robot_corpus import DIFFBOT
 from bench.rows import Result, Say
 
@@ -115,7 +115,7 @@ def replayed_run(seed: int, programs: Path, say: Say, robot: str = DIFFBOT) -> t
         (folder / "script.csv").write_text(script(60 * LAP))
         nodes = Nodes(programs, folder, robot)
         try:
-            await_rows(folder / "run.bag")
+            await_log(folder / "run.bag", LAP)
             for _ in range(EVENTS):
                 time.sleep(random.uniform(0, MAX_PAUSE))
                 nodes.act(random.choice(ACTS), random.choice(LOOP), random.uniform(0, MAX_STOP))
@@ -129,15 +129,6 @@ def replayed_run(seed: int, programs: Path, say: Say, robot: str = DIFFBOT) -> t
     for sentence in (*report["differences"][:5], *report["gaps"]):
         say(f"seed {seed}: {sentence}")
     return list(report["laws"].values()), report["different_rows"] + len(report["header"])
-
-
-def await_rows(log: Path) -> None:
-    """Waits for rows. Raises RuntimeError: none are written in time."""
-    end = time.monotonic() + START_LIMIT
-    while not log.exists() or log.stat().st_size < LAP:
-        if time.monotonic() > end:
-            raise RuntimeError("no row was written")
-        time.sleep(0.05)
 
 
 def script(cycles: int) -> str:
