@@ -23,17 +23,22 @@ def cases(name: str) -> dict[str, type[unittest.TestCase]]:
     return {each.__name__: each for each in found if issubclass(each, unittest.TestCase)}
 
 
-if __name__ == "__main__":
-    for name in NAMES:
-        globals().update(cases(name))
+def main() -> None:
+    """Entry point; the classes become those of this module, where rostest looks for them."""
+    classes = {name: each for file in NAMES for name, each in cases(file).items()}
+    globals().update(classes)
     init_test_node(f"{NAMES[0]}_test")
     LegsTestCase.shared = True
     RobotTestCase.shared = robot = Robot()
-    for each in [each for each in globals().values() if isinstance(each, type) and issubclass(each, RobotTestCase)]:
-        for parameter, value in each.parameters:
-            rospy.set_param(parameter, value)
+    for each in classes.values():
+        for name, value in each.parameters if issubclass(each, RobotTestCase) else ():
+            rospy.set_param(name, value)
     try:
         rostest.rosrun("robot_control", f"{'_'.join(NAMES)}_test", "__main__")
     finally:
         robot.end()
         LegsTestCase.end_launch()
+
+
+if __name__ == "__main__":
+    main()
