@@ -229,6 +229,18 @@ def truncated_messages(topics: Mapping[str, type]) -> Iterator[None]:
             publisher.unregister()
 
 
+class Latest:
+    """The newest message of a topic."""
+
+    def __init__(self, topic: str, kind: type) -> None:
+        self.message: Any = None
+        self.count = 0
+        self._subscriber = rospy.Subscriber(topic, kind, self._receive)
+
+    def _receive(self, message: object) -> None:
+        self.message, self.count = message, self.count + 1
+
+
 class Report(NamedTuple):
     """A node's newest status on /diagnostics."""
 
@@ -249,8 +261,8 @@ class Robot:
         self.stall_witness = LOOP_WITNESS
         self.nodes: dict[str, Program] = {}
         self.odom: Odometry | None = None
-        self.joints: JointState | None = None
-        self.wheels: tuple[float, ...] = ()
+        self._joints: Latest | None = None
+        self._wheels: Latest | None = None
         self.status: SafetyStatus | None = None
         self.revoked: tuple[str, ...] = ()
         """Senders whose motion is refused until they send zero."""
@@ -259,11 +271,8 @@ class Robot:
         self.odom_count = 0
         self._moved_at = -math.inf  # s, monotonic
         self._stopped_at = -math.inf  # s, monotonic
-        self.joints_count = 0
         self._subscribers = [
             rospy.Subscriber(self.name("odom"), Odometry, self._receive_odom),
-            rospy.Subscriber(self.name("joint_states"), JointState, self._receive_joints),
-            rospy.Subscriber(self.name("joint_commands"), Float64MultiArray, self._receive_wheels),
             rospy.Subscriber(self.name("safety_status"), SafetyStatus, self._receive_status),
             rospy.Subscriber(self.name("drive_state"), DriveState, self._receive_drive_state),
             rospy.Subscriber("/diagnostics", DiagnosticArray, self._receive_diagnostics),
@@ -394,6 +403,19 @@ class Robot:
         return self.odom is not None and time.monotonic() - self._moved_at > SETTLING
 
     @property
+    def joints(self) -> JointState:
+        """The newest joint_states; few tests need the 100 messages of each second."""
+        latest = self._joints = self._joints or Latest(self.name("joint_states"), JointState)
+        wait_for("joint_states", lambda: latest.message is not None)
+        return latest.message
+
+    @property
+    def wheels(self) -> tuple[float, ...]:
+        """The newest targets on joint_commands, from the first question on."""
+        self._wheels = self._wheels or Latest(self.name("joint_commands"), Float64MultiArray)
+        return () if self._wheels.message is None else tuple(self._wheels.message.data)
+
+    @property
     def pose(self) -> Pose:
         """Estimated, in odom."""
         assert self.odom is not None
@@ -415,13 +437,6 @@ class Robot:
         self.odom_count += 1
         if not abs(self.speed) < STANDING:
             self._moved_at = time.monotonic()
-
-    def _receive_joints(self, message: JointState) -> None:
-        self.joints = message
-        self.joints_count += 1
-
-    def _receive_wheels(self, message: Float64MultiArray) -> None:
-        self.wheels = tuple(message.data)
 
     def _receive_drive_state(self, message: DriveState) -> None:
         self.revoked = tuple(message.revoked)

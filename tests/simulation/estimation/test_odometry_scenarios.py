@@ -59,6 +59,7 @@ def test_a_seed_gives_the_same_bits_and_another_one_other_noise_and_another_robo
     assert draw_errors(1) != draw_errors(2)
 
 
+@pytest.mark.nightly
 @pytest.mark.parametrize("scenario", SCENARIOS)
 def test_every_run_begins_at_rest_and_no_monitor_stops_it(scenario):
     recording = record(shortened(scenario, 0, 20_000))
@@ -69,6 +70,7 @@ def test_every_run_begins_at_rest_and_no_monitor_stops_it(scenario):
     assert not recording.stopped
 
 
+@pytest.mark.nightly
 def test_on_the_square_nominal_wheels_return_to_where_they_began():
     """The wheels return except for 12.5 mrad, on squares whose corners are at most 5.7 m away. That bound has
     several parts. Whole cycles make 0.5 ms of 1 rad/s in each of four turns, and the brakes take a share of each turn.
@@ -85,6 +87,7 @@ def test_on_the_square_nominal_wheels_return_to_where_they_began():
         assert np.ptp(line) == pytest.approx(SIDE, abs=0.0125 * 5.7)
 
 
+@pytest.mark.nightly
 def test_the_pitching_ground_pitches_by_a_degree_and_no_wheel_slips():
     truth = truth_of(record(shortened("waves", 1, 60_000)))
     moving = np.abs(truth.linear) > 0.05
@@ -93,6 +96,7 @@ def test_the_pitching_ground_pitches_by_a_degree_and_no_wheel_slips():
     assert (truth.slip > SLIPPING).any(axis=1).mean() < 0.005
 
 
+@pytest.mark.nightly
 def test_slip_runs_slip_between_stretches_of_grip():
     """One run of each kind is driven. Calibrated wheels are wrong by more than 0.2 m in most."""
     wrong = []
@@ -107,6 +111,7 @@ def test_slip_runs_slip_between_stretches_of_grip():
     assert np.mean(wrong) > 0.5
 
 
+@pytest.mark.nightly
 def test_within_default_limits_on_dry_ground_nothing_slips():
     truth = truth_of(record(shortened("random", 3, 60_000)))
     assert (truth.slip > SLIPPING).any(axis=1).mean() < 0.002

@@ -17,8 +17,8 @@ from robot_control.drive.path.waypoints import PathError
 from robot_control.msg import LocalizationState
 from robot_control.robot.pose import Pose, yaw_of
 from system.console.console_support import ConsoleTestCase
-from system.navigation.navigation_support import Latest, missing, missing_mrpt, share
-from system.system_support import Program, again_after_a_stall, wait_for
+from system.navigation.navigation_support import missing, missing_mrpt, share
+from system.system_support import Latest, Program, again_after_a_stall, wait_for
 
 from bench.console.browser import Browser
 from bench.navigation.scene_map import read_scene, true_map

@@ -20,6 +20,7 @@ from system.fake_pad import FakePad
 from system.pseudo_terminal import PseudoTerminal
 from system.system_support import (
     LISTED_SOURCES,
+    Latest,
     NoBool,
     Program,
     RobotTestCase,
@@ -33,15 +34,14 @@ class CommandSourcesTest(RobotTestCase):
 
     @classmethod
     def setUpClass(cls) -> None:
-        cls.state = DriveState()
         super().setUpClass()
-        cls.subscriber = rospy.Subscriber("drive_state", DriveState, cls.receive)
+        cls.latest = Latest("drive_state", DriveState)
         cls.key = rospy.Publisher("key_vel", TwistStamped, queue_size=1, tcp_nodelay=True)
         cls.pause = rospy.Publisher("pause", Bool, queue_size=1, tcp_nodelay=True)
 
-    @classmethod
-    def receive(cls, message: DriveState) -> None:
-        cls.state = message
+    @property
+    def state(self) -> DriveState:
+        return self.latest.message or DriveState()
 
     def setUp(self) -> None:
         super().setUp()
