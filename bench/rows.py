@@ -7,7 +7,7 @@ from typing import Any
 
 Row = dict[str, Any]
 Result = tuple[dict[str, Any], bool]
-"""What is printed, and whether every bound holds"""
+"""the printed content, and whether every bound holds"""
 Say = Callable[[str], None]
 """Receives progress and what breaks a bound"""
 

@@ -38,7 +38,7 @@ def nodes(state):
 
 
 def end_of(run):
-    """Where it stands when its order is completed, which compares within 2 cm."""
+    """The place of the robot when its order is completed; it compares within 2 cm."""
     run.until_over()
     return pytest.approx((run.robot.pose.x, run.robot.pose.y), abs=0.02)
 

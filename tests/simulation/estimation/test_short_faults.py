@@ -64,9 +64,9 @@ def estimate(sound, kind=None, sensor="", duration=0.0):
 
 
 def judge(sound, plain, spoiled):
-    """The bounds that do not hold, on speed and tilt two seconds after the rest began, and on the drive that follows:
-    the worst second of the forward speed over the wheels', and the end of its path beside that of the undisturbed
-    estimate `plain`.
+    """The bounds that do not hold. Speed and tilt are those two seconds after the rest began. Of the drive that follows
+    count the worst second of the forward speed over the wheels', and the end of its path. The path of the undisturbed
+    estimate `plain` bounds it.
     """
     time, true = sound[0][::10], sound[2][::10]
     settled, again = np.searchsorted(time, (SETTLED, AGAIN))
