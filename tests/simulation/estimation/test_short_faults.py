@@ -64,8 +64,8 @@ def estimate(sound, kind=None, sensor="", duration=0.0):
 
 
 def judge(sound, plain, spoiled):
-    """The bounds that do not hold. Speed and tilt are those two seconds after the rest began. Of the drive that follows
-    count the worst second of the forward speed over the wheels', and the end of its path. The path of the undisturbed
+    """The bounds that do not hold. Speed and tilt are those two seconds after the rest began. The drive that follows
+    counts with the worst second of the forward speed over the wheels', and with its end. The path of the undisturbed
     estimate `plain` bounds it.
     """
     time, true = sound[0][::10], sound[2][::10]
