@@ -12,9 +12,7 @@ import signal
 import subprocess
 import tempfile
 import time
-from collections.abc import Callable
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 from robot_control._robot_control import RunLogError, save_black_box
@@ -22,7 +20,8 @@ from robot_control.data.run_log import read_log
 from robot_control.loop.roles import LOOP, TELEMETRY
 
 from bench.log_bench import row
-from bench.participants import START_LIMIT, command, remove_shared_memory, script, support_program
+from bench.participants import START_LIMIT, await_log, command, remove_shared_memory, script, support_program
+from bench.rows import Result, Say
 
 ALL_TRIALS = 100
 MAX_MISSING = 10.0  # ms
@@ -31,7 +30,7 @@ A_SECOND = 100_000  # bytes, less than one of run.bag
 PROCESSES = (*LOOP, TELEMETRY)
 
 
-def bench(first: int, trials: int, programs: Path, say: Callable[[str], None]) -> tuple[dict[str, Any], bool]:
+def bench(first: int, trials: int, programs: Path, say: Say) -> Result:
     """The table of `trials` from seed `first` on, and whether all figures meet their bounds."""
     missing: list[float] = []
     bad = 0
@@ -86,11 +85,7 @@ def trial(nodes: list[subprocess.Popen[bytes]], folder: Path, programs: Path, se
         RuntimeError: a node ended before, or the black box has a gap.
         RunLogError: it cannot be read.
     """
-    end = time.monotonic() + START_LIMIT
-    while not (log := folder / "run.bag").exists() or log.stat().st_size < A_SECOND:
-        if time.monotonic() > end:
-            raise RuntimeError("no second of rows was written")
-        time.sleep(0.05)
+    await_log(folder / "run.bag", A_SECOND)
     time.sleep(np.random.default_rng(seed).uniform(0, MAX_DRIVE))
     ended = [name for name, node in zip(PROCESSES, nodes, strict=True) if node.poll() is not None]
     os.killpg(nodes[0].pid, signal.SIGKILL)

@@ -17,6 +17,7 @@ from typing import Any
 from robot_control.installed_files import share_file
 
 from bench.markdown import ALLOWED, NO_BOUND
+from bench.rows import Result, Say
 
 PARTS = (
     "kinematics",
@@ -226,8 +227,8 @@ def bench(
     first: int,
     runs: int | None,
     run_program: Callable[..., dict[str, Any]],
-    say: Callable[[str], None],
-) -> tuple[dict[str, Any], bool]:
+    say: Say,
+) -> Result:
     """The rows of these parts, and whether each meets its bound. `run_program` runs the program of this name."""
     rows = []
     for part in parts:

@@ -14,7 +14,6 @@ import signal
 import subprocess
 import tempfile
 import time
-from collections.abc import Callable
 from contextlib import nullcontext
 from dataclasses import dataclass
 from pathlib import Path
@@ -28,7 +27,7 @@ from robot_control.loop.roles import DRIVER, LOOP, TELEMETRY
 
 from bench.participants import START_LIMIT, command, script
 from bench.robot_corpus import DIFFBOT, QUADBOT, robot_names
-from bench.rows import compared
+from bench.rows import Result, Say, compared
 
 SECONDS = 600.0
 FOUR_WHEELS = "jackal"
@@ -72,9 +71,7 @@ class Recorded:
     page: float  # MB
 
 
-def bench(
-    share: float, programs: Path, keep: Path | None, say: Callable[[str], None], robot: str = DIFFBOT
-) -> tuple[dict[str, Any], bool]:
+def bench(share: float, programs: Path, keep: Path | None, say: Say, robot: str = DIFFBOT) -> Result:
     """Records `share` of ten minutes for each robot of this robot's kind; returns the table, and whether all figures
     meet their bounds.
 

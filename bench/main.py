@@ -10,6 +10,7 @@ robots that were left out, and "table" holds lines to be shown above the rows.
 from __future__ import annotations
 
 import argparse
+import importlib
 import json
 import subprocess
 import sys
@@ -27,6 +28,7 @@ from bench.faults.fault_sequence import ALL_RUNS
 from bench.navigation import bench as navigation
 from bench.release.sender_sequences import sender_rows
 from bench.robot_corpus import DIFFBOT, OWN
+from bench.rows import Result
 from bench.runs import seed_programs
 from bench.runs.address import check_address
 from bench.runs.runner import Processes, Runner
@@ -83,11 +85,7 @@ def run_program(program: Path, *arguments: str | Path) -> dict[str, Any]:
 
 def programs_of(given: argparse.Namespace) -> Callable[..., dict[str, Any]]:
     """Runs a program of bench/programs by its name."""
-
-    def program(name: str, *arguments: str | int) -> dict[str, Any]:
-        return run_program(given.programs / name, *map(str, arguments))
-
-    return program
+    return lambda name, *arguments: run_program(given.programs / name, *map(str, arguments))
 
 
 def say(text: str) -> None:
@@ -111,32 +109,7 @@ def opened_runner(given: argparse.Namespace) -> Iterator[Runner]:
         yield cluster
 
 
-def run_many(name: str, given: argparse.Namespace, runner: Runner) -> tuple[dict[str, Any], bool]:
-    """The benchmarks of `ON_CLUSTERS` but the programs among them."""
-    if name == "campaign":
-        from bench.faults import campaign
-
-        return campaign.bench(given.first, given.runs or ALL_RUNS, say, runner, given.wheel_command, robot=given.robot)
-    if name == "devices":
-        from bench.devices import bench as devices
-
-        return devices.bench(given.first, given.runs or devices.ALL_RUNS, say, runner, programs_of(given))
-    if name == "driving":
-        from bench.drives import normal_driving
-
-        return normal_driving.bench(given.share, say, runner, given.errors, given.wheel_command)
-    if name == "odometry":
-        from bench.odometry import bench as odometry
-
-        count = given.runs or odometry.SEEDS
-        which = given.only or odometry.ALL
-        return odometry.bench(given.first, count, say, given.errors, plots=given.plots, scenarios=which, runner=runner)
-    from bench import tuning
-
-    return tuning.bench(given.first, given.runs or tuning.ALL_RUNS, say, runner)
-
-
-def run_seed_program(name: str, given: argparse.Namespace) -> tuple[dict[str, Any], bool]:
+def run_seed_program(name: str, given: argparse.Namespace, runner: Runner) -> Result:
     """One of `SEED_PROGRAMS`: it uses all processors by itself, or runs in blocks on the workers of a cluster."""
     runs = given.runs or SEED_PROGRAMS[name]
     machine = []
@@ -145,48 +118,10 @@ def run_seed_program(name: str, given: argparse.Namespace) -> tuple[dict[str, An
     if given.scheduler is None:
         result = run_program(given.programs / f"bench_{name}", str(given.first), str(runs), *machine)
     else:
-        with opened_runner(given) as runner:
-            result = seed_programs.run_seeds(name, given.first, runs, say, runner, *machine)
+        result = seed_programs.run_seeds(name, given.first, runs, say, runner, *machine)
     if name == "release" and given.robot == DIFFBOT:  # the senders know no robot
-        with opened_runner(given) as runner:
-            result["rows"] += sender_rows(given.first, runs, say, runner)
+        result["rows"] += sender_rows(given.first, runs, say, runner)
     return result, all(row["value"] == 0 for row in result["rows"] if row["name"].endswith("sequences failed"))
-
-
-def _replay(given: argparse.Namespace) -> tuple[dict[str, Any], bool]:
-    from bench.faults import replayed
-
-    return replayed.bench(given.first, given.runs or replayed.ALL_RUNS, say)
-
-
-def _hostile(given: argparse.Namespace) -> tuple[dict[str, Any], bool]:
-    from bench import hostile
-
-    return hostile.bench(given.first, given.runs or hostile.ALL_RUNS, say)
-
-
-def _record(given: argparse.Namespace) -> tuple[dict[str, Any], bool]:
-    from bench import log_bench
-
-    return log_bench.bench(given.share, given.programs, given.keep, say, given.robot)
-
-
-def _blackbox(given: argparse.Namespace) -> tuple[dict[str, Any], bool]:
-    from bench import black_box_bench
-
-    return black_box_bench.bench(given.first, given.runs or black_box_bench.ALL_TRIALS, given.programs, say)
-
-
-def _processes(given: argparse.Namespace) -> tuple[dict[str, Any], bool]:
-    from bench import process_bench
-
-    return process_bench.bench(given.first, given.runs or process_bench.ALL_RUNS, given.programs, say, given.robot)
-
-
-def _console(given: argparse.Namespace) -> tuple[dict[str, Any], bool]:
-    from bench.console import bench as console
-
-    return console.bench(given.share, say)
 
 
 def _parts_of(name: str, given: argparse.Namespace) -> list[str]:
@@ -194,78 +129,62 @@ def _parts_of(name: str, given: argparse.Namespace) -> list[str]:
     return [part for part in given.parts if part in PARTS[name]] or list(PARTS[name])
 
 
-def _realtime(given: argparse.Namespace) -> tuple[dict[str, Any], bool]:
-    from bench.realtime import bench as realtime
-
-    return realtime.bench(_parts_of("realtime", given), given.runs or 0, given.programs, say)
-
-
-def _fleet(given: argparse.Namespace) -> tuple[dict[str, Any], bool]:
-    from bench.fleet import bench as fleet
-
-    return fleet.bench(_parts_of("fleet", given), given.first, given.runs, say)
+def _odometry(bench: Any, given: argparse.Namespace, runner: Runner) -> Result:  # noqa: ANN401 (a module)
+    count, which = given.runs or bench.SEEDS, given.only or bench.ALL
+    result: Result = bench.bench(
+        given.first, count, say, given.errors, plots=given.plots, scenarios=which, runner=runner
+    )
+    return result
 
 
-def _navigation(given: argparse.Namespace) -> tuple[dict[str, Any], bool]:
-    return navigation.bench(_parts_of("navigation", given), given.first, given.runs, given.programs, say)
-
-
-def _data_return(given: argparse.Namespace) -> tuple[dict[str, Any], bool]:
-    from bench.data_return import bench as data_return
-
-    return data_return.bench(_parts_of("data_return", given), given.first, given.share, given.programs, say)
-
-
-def _drive(given: argparse.Namespace) -> tuple[dict[str, Any], bool]:
-    from bench.drives import drive_promises
-
-    return drive_promises.bench(say, given.wheel_command)
-
-
-def _slopes(_given: argparse.Namespace) -> tuple[dict[str, Any], bool]:
-    from bench.drives import slopes
-
-    return slopes.bench(say)
-
-
-def _board_clock(given: argparse.Namespace) -> tuple[dict[str, Any], bool]:
-    from bench.devices import board_clock
-
-    return board_clock.bench(programs_of(given), given.share, say)
-
-
-def _legs(given: argparse.Namespace) -> tuple[dict[str, Any], bool]:
-    return legs.bench(_parts_of("legs", given), given.first, given.runs, programs_of(given), say)
-
-
-TRIALS = {
-    "replay": _replay,
-    "legs": _legs,
-    "hostile": _hostile,
-    "record": _record,
-    "blackbox": _blackbox,
-    "processes": _processes,
-    "drive": _drive,
-    "slopes": _slopes,
-    "board_clock": _board_clock,
-    "console": _console,
-    "fleet": _fleet,
-    "data_return": _data_return,
-    "realtime": _realtime,
-    "navigation": _navigation,
+TRIALS: dict[str, tuple[str, Callable[[Any, argparse.Namespace, Runner], Result]]] = {
+    "campaign": (
+        "faults.campaign",
+        lambda m, g, runner: m.bench(g.first, g.runs or ALL_RUNS, say, runner, g.wheel_command, robot=g.robot),
+    ),
+    "devices": (
+        "devices.bench",
+        lambda m, g, runner: m.bench(g.first, g.runs or m.ALL_RUNS, say, runner, programs_of(g)),
+    ),
+    "driving": ("drives.normal_driving", lambda m, g, runner: m.bench(g.share, say, runner, g.errors, g.wheel_command)),
+    "odometry": ("odometry.bench", _odometry),
+    "tuning": ("tuning", lambda m, g, runner: m.bench(g.first, g.runs or m.ALL_RUNS, say, runner)),
+    "replay": ("faults.replayed", lambda m, g, _: m.bench(g.first, g.runs or m.ALL_RUNS, say)),
+    "hostile": ("hostile", lambda m, g, _: m.bench(g.first, g.runs or m.ALL_RUNS, say)),
+    "record": ("log_bench", lambda m, g, _: m.bench(g.share, g.programs, g.keep, say, g.robot)),
+    "blackbox": ("black_box_bench", lambda m, g, _: m.bench(g.first, g.runs or m.ALL_TRIALS, g.programs, say)),
+    "processes": ("process_bench", lambda m, g, _: m.bench(g.first, g.runs or m.ALL_RUNS, g.programs, say, g.robot)),
+    "drive": ("drives.drive_promises", lambda m, g, _: m.bench(say, g.wheel_command)),
+    "slopes": ("drives.slopes", lambda m, _, __: m.bench(say)),
+    "board_clock": ("devices.board_clock", lambda m, g, _: m.bench(programs_of(g), g.share, say)),
+    "legs": ("legs", lambda m, g, _: m.bench(_parts_of("legs", g), g.first, g.runs, programs_of(g), say)),
+    "console": ("console.bench", lambda m, g, _: m.bench(g.share, say)),
+    "realtime": (
+        "realtime.bench",
+        lambda m, g, _: m.bench(_parts_of("realtime", g), g.runs or 0, g.programs, say),
+    ),
+    "fleet": ("fleet.bench", lambda m, g, _: m.bench(_parts_of("fleet", g), g.first, g.runs, say)),
+    "navigation": (
+        "navigation.bench",
+        lambda m, g, _: m.bench(_parts_of("navigation", g), g.first, g.runs, g.programs, say),
+    ),
+    "data_return": (
+        "data_return.bench",
+        lambda m, g, _: m.bench(_parts_of("data_return", g), g.first, g.share, g.programs, say),
+    ),
 }
+"""Modules, which are loaded when they are asked for, and calls of them"""
 
 
-def run(name: str, given: argparse.Namespace) -> tuple[dict[str, Any], bool]:
+def run(name: str, given: argparse.Namespace) -> Result:
     """The result of NAME, and whether it meets its bounds."""
-    if name in SEED_PROGRAMS:
-        return run_seed_program(name, given)
-    if name in ON_CLUSTERS:
-        with opened_runner(given) as runner:
-            return run_many(name, given, runner)
-    if name in TRIALS:
-        return TRIALS[name](given)
-    return run_program(given.programs / f"bench_{name}", given.params), True
+    if name in MEASURED:
+        return run_program(given.programs / f"bench_{name}", given.params), True
+    with opened_runner(given) as runner:
+        if name in SEED_PROGRAMS:
+            return run_seed_program(name, given, runner)
+        module, call = TRIALS[name]
+        return call(importlib.import_module(f"bench.{module}"), given, runner)
 
 
 def to_table(result: dict[str, Any]) -> str:
@@ -369,17 +288,20 @@ def parse(arguments: Sequence[str] | None = None) -> argparse.Namespace:
         parser.error(f"no benchmark {', '.join(unknown)}; there are {', '.join(NAMES)}")
     given.names = given.names or list(MEASURED)
     alone = [name for name in given.names if name not in ON_CLUSTERS]
-    if given.scheduler is not None and alone:
-        parser.error(f"{', '.join(alone)} cannot run on a cluster; {', '.join(ON_CLUSTERS)} can")
-    if given.markdown and given.errors != LEVELS[0]:
-        parser.error(f"--markdown writes the tables of {LEVELS[0]}, not of --errors {given.errors}")
-    if given.markdown and given.wheel_command != WHEEL_COMMANDS[0]:
-        parser.error(f"--markdown writes the tables of --wheel-command {WHEEL_COMMANDS[0]}")
     other = [name for name in given.names if name not in BY_ROBOT]
-    if given.robot != DIFFBOT and (other or given.markdown):
-        parser.error(f"--robot {given.robot} is for {', '.join(BY_ROBOT)} without --markdown")
-    if given.markdown and given.only:
-        parser.error("--markdown writes the tables of all scenarios, not of --only some")
+    writes = "--markdown writes the tables of"
+    for wrong, why in (
+        (given.scheduler and alone, f"{', '.join(alone)} cannot run on a cluster; {', '.join(ON_CLUSTERS)} can"),
+        (given.markdown and given.errors != LEVELS[0], f"{writes} {LEVELS[0]}, not of --errors {given.errors}"),
+        (given.markdown and given.wheel_command != WHEEL_COMMANDS[0], f"{writes} --wheel-command {WHEEL_COMMANDS[0]}"),
+        (
+            given.robot != DIFFBOT and (other or given.markdown),
+            f"--robot {given.robot} is for {', '.join(BY_ROBOT)} without --markdown",
+        ),
+        (given.markdown and given.only, f"{writes} all scenarios, not of --only some"),
+    ):
+        if wrong:
+            parser.error(why)
     if given.scheduler is not None:
         try:
             check_address(given.scheduler, insecure=given.insecure)

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+import subprocess
+import time
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 
 from robot_control.installed_files import share_file
@@ -44,6 +46,15 @@ def remove_shared_memory(bus: str) -> None:
     """Removes the shared memory that killed nodes have left."""
     for path in Path("/dev/shm").glob(f"robot_control.*.{bus}.*"):
         path.unlink(missing_ok=True)
+
+
+def await_log(bag: Path, size: int, nodes: Iterable[subprocess.Popen[bytes]] = ()) -> None:
+    """Waits until the log has so many bytes. Raises RuntimeError: it has not in time, or a node has ended."""
+    end = time.monotonic() + START_LIMIT
+    while not bag.exists() or bag.stat().st_size < size:
+        if time.monotonic() > end or any(node.poll() is not None for node in nodes):
+            raise RuntimeError(f"the nodes have not begun to write {bag.name}")
+        time.sleep(0.05)
 
 
 def script(cycles: int) -> str:

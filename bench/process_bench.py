@@ -12,9 +12,7 @@ import signal
 import subprocess
 import tempfile
 import time
-from collections.abc import Callable
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 from robot_control._robot_control import replay_log
@@ -22,8 +20,9 @@ from robot_control.data.replay.recorded_setup import recorded_setup
 from robot_control.loop.roles import CONTROLLER, LOOP, TELEMETRY
 
 from bench.log_bench import row
-from bench.participants import START_LIMIT, command, remove_shared_memory
+from bench.participants import START_LIMIT, await_log, command, remove_shared_memory
 from bench.robot_corpus import DIFFBOT
+from bench.rows import Result, Say
 
 ALL_RUNS = 20
 EVENTS = 12  # of each run
@@ -76,9 +75,7 @@ class Nodes:
         return subprocess.Popen(self._commands[node], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
 
 
-def bench(
-    first: int, runs: int, programs: Path, say: Callable[[str], None], robot: str = DIFFBOT
-) -> tuple[dict[str, Any], bool]:
+def bench(first: int, runs: int, programs: Path, say: Say, robot: str = DIFFBOT) -> Result:
     """The table of `runs` from seed `first` on, and whether every compared row is the same."""
     compared = missed = failed = 0
     for seed in range(first, first + runs):
@@ -105,9 +102,7 @@ def bus() -> str:
     return f"processes-{os.getpid()}"
 
 
-def replayed_run(
-    seed: int, programs: Path, say: Callable[[str], None], robot: str = DIFFBOT
-) -> tuple[list[dict[str, int]], int]:
+def replayed_run(seed: int, programs: Path, say: Say, robot: str = DIFFBOT) -> tuple[list[dict[str, int]], int]:
     """Counts of each law, and the number of rows with a different field; `say` receives what differs or is not
     compared.
 
@@ -120,7 +115,7 @@ def replayed_run(
         (folder / "script.csv").write_text(script(60 * LAP))
         nodes = Nodes(programs, folder, robot)
         try:
-            await_rows(folder / "run.bag")
+            await_log(folder / "run.bag", LAP)
             for _ in range(EVENTS):
                 time.sleep(random.uniform(0, MAX_PAUSE))
                 nodes.act(random.choice(ACTS), random.choice(LOOP), random.uniform(0, MAX_STOP))
@@ -134,15 +129,6 @@ def replayed_run(
     for sentence in (*report["differences"][:5], *report["gaps"]):
         say(f"seed {seed}: {sentence}")
     return list(report["laws"].values()), report["different_rows"] + len(report["header"])
-
-
-def await_rows(log: Path) -> None:
-    """Waits for rows. Raises RuntimeError: none are written in time."""
-    end = time.monotonic() + START_LIMIT
-    while not log.exists() or log.stat().st_size < LAP:
-        if time.monotonic() > end:
-            raise RuntimeError("no row was written")
-        time.sleep(0.05)
 
 
 def script(cycles: int) -> str:

@@ -31,7 +31,7 @@ from robot_control.loop.closed_loop import ClosedLoop, Log
 from robot_control.loop.signal_names import causes_in
 
 from bench.robot_corpus import DIFFBOT, robot_names, urdf_of
-from bench.rows import plain
+from bench.rows import Result, Say, plain
 from bench.runs.runner import Processes, Runner
 
 ROBOTS = (DIFFBOT, "kobuki", "boxer", "jackal", "pmb2")
@@ -253,9 +253,7 @@ def _one(seed: int) -> Tuned:
     return carry_out(robot_of(seed), seed)
 
 
-def bench(
-    first: int, runs: int, say: Callable[[str], None], runner: Runner | None = None
-) -> tuple[dict[str, Any], bool]:
+def bench(first: int, runs: int, say: Say, runner: Runner | None = None) -> Result:
     """Runs `runs` seeds from `first` on, except those of absent robots; returns the table, and whether there was no
     fault.
     """

@@ -3,11 +3,8 @@
 from __future__ import annotations
 
 import itertools
-import os
 import statistics
 import time
-from collections.abc import Callable
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -17,10 +14,10 @@ from robot_control.watch.console.settings import Settings
 
 from bench.console.browser import Browser
 from bench.console.page import Page
-from bench.console.process import Console, memory_of, wait_for
+from bench.console.process import Console, cost_of, wait_for
 from bench.console.proxy import Proxy
 from bench.console.robot import Robot
-from bench.rows import compared
+from bench.rows import Result, Say, compared
 
 PRESSED = """
 addEventListener("keydown", (event) => { window.at = Date.now() - (performance.now() - event.timeStamp); }, true);
@@ -45,7 +42,7 @@ BOUNDS = {
 }
 
 
-def bench(share: float, say: Callable[[str], None]) -> tuple[dict[str, Any], bool]:
+def bench(share: float, say: Say) -> Result:
     """All figures; `share` of the presses, losses and seconds."""
     robot = Robot()
     proxy = Proxy()
@@ -116,9 +113,7 @@ def _clock(log: Any) -> Any:  # noqa: ANN401 (of run_log)
     return log["stamp_ns"] + log["slipped_ns"]
 
 
-def _links(
-    console: Console, proxy: Proxy, robot: Robot, losses: int, say: Callable[[str], None]
-) -> dict[str, tuple[float, str]]:
+def _links(console: Console, proxy: Proxy, robot: Robot, losses: int, say: Say) -> dict[str, tuple[float, str]]:
     loop, beside, beyond, count, refused = ClosedLoop(), [], [], 0, 0
     _, cookie = console.log_in()
     for delay, jitter in DELAYS:
@@ -176,18 +171,17 @@ def _cost(console: Console, seconds: float) -> tuple[tuple[int, int, int], dict[
     pages = [Page(console.origin, console.origin, cookie) for _ in range(3)]
     pages[0].send({"type": "take", "force": True})
     time.sleep(3.0)
-    pid, busy, before = console.process.pid, time.monotonic_ns(), _processor(console.process.pid)
-    memory = memory_of(pid)
+    busy, (before, memory) = time.monotonic_ns(), cost_of(console.process.pid)
     time.sleep(seconds)
-    used = (_processor(pid) - before) / (1e-9 * (time.monotonic_ns() - busy))
+    after, grown = cost_of(console.process.pid)
     window = (quiet, busy, time.monotonic_ns())
-    grown = memory_of(pid) - memory
+    used = (after - before) / (1e-9 * (window[2] - busy))
     for page in pages:
         page.end()
     return window, {
         "server, three pages": (100 * used, "% of a core"),
-        "server, memory": (memory + grown, "MiB"),
-        "server, memory, growth": (grown, f"MiB in {seconds:.0f} s"),
+        "server, memory": (grown / 2**20, "MiB"),
+        "server, memory, growth": ((grown - memory) / 2**20, f"MiB in {seconds:.0f} s"),
     }
 
 
@@ -196,8 +190,3 @@ def _chain(log: Any, window: tuple[int, int, int]) -> dict[str, tuple[float, str
     parts = [chain[(stamps > a) & (stamps < b) & ~np.isnan(chain)] for a, b in itertools.pairwise(window)]
     without, with_pages = (float(np.percentile(part, 99)) for part in parts)
     return {"p99 of the chain": (with_pages / without, f"times the {1e-3 * without:.0f} us without pages")}
-
-
-def _processor(pid: int) -> float:
-    fields = Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()
-    return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")

@@ -119,7 +119,9 @@ class Console:
         self._folder.cleanup()
 
 
-def memory_of(pid: int) -> float:
-    """MiB of a process in memory."""
+def cost_of(pid: int) -> tuple[float, int]:
+    """s of processor time of a process, and bytes in memory."""
+    fields = Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()
     pages = int(Path(f"/proc/{pid}/statm").read_text().split()[1])
-    return pages * os.sysconf("SC_PAGE_SIZE") / 2**20
+    used = (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
+    return used, pages * os.sysconf("SC_PAGE_SIZE")

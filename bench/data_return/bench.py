@@ -8,9 +8,8 @@ import random
 import statistics
 import tempfile
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 from robot_control.data.data_return.parts import MANIFEST, GapError, put_together, read_manifest
@@ -20,9 +19,8 @@ from bench.data_return.server import KINDS, missing
 from bench.data_return.system import System
 from bench.realtime.chain import CHAIN, ros_master
 from bench.realtime.loops import FREE_WHEELS, loop_for
-from bench.rows import bounded
+from bench.rows import Result, Row, Say, bounded, judged
 
-Say = Callable[[str], None]
 FILES, BYTES = 200, 2_000_000_000
 LOSSES = {"cut": 25, "stall": 25, "data_return killed": 10, "far side killed": 10}
 """at random moments of the whole upload; a share of it has as many per byte, but one of each at least"""
@@ -40,7 +38,7 @@ BLOCKS, SECONDS = 7, 15.0
 """of the loop with and without an upload, alternating"""
 
 
-def bench(parts: Sequence[str], first: int, share: float, programs: Path, say: Say) -> tuple[dict[str, Any], bool]:
+def bench(parts: Sequence[str], first: int, share: float, programs: Path, say: Say) -> Result:
     """The rows of these parts, and whether all bounds hold.
 
     Raises:
@@ -48,7 +46,7 @@ def bench(parts: Sequence[str], first: int, share: float, programs: Path, say: S
     """
     if why := missing():
         raise RuntimeError(why)
-    rows: list[dict[str, Any]] = []
+    rows: list[Row] = []
     with ros_master() as environment:
         for kind in KINDS if "upload" in parts else ():
             rows += _upload(kind, first, share, environment, say)
@@ -56,10 +54,7 @@ def bench(parts: Sequence[str], first: int, share: float, programs: Path, say: S
             rows += _cost(environment, programs, say)
     for hashes in (True, False) if "changes" in parts else ():
         rows += _changes(first, share, say, hashes=hashes)
-    return {"bench": "data_return", "rows": rows}, all(
-        row["value"] >= row["reference"] if row["name"].startswith("lowest") else row["value"] <= row["reference"]
-        for row in rows
-    )
+    return judged("data_return", rows)
 
 
 class _Files:
@@ -111,7 +106,7 @@ class _Files:
         return sum(len(each) + sum(part.size for part in read_manifest(each)["parts"]) for each in manifests)
 
 
-def _upload(kind: str, seed: int, share: float, environment: dict[str, str], say: Say) -> list[dict[str, Any]]:
+def _upload(kind: str, seed: int, share: float, environment: dict[str, str], say: Say) -> list[Row]:
     source = random.Random(seed)
     with System(kind, environment, bandwidth=LINK, local_quota=BYTES * share / 2e9) as system:
         files = _Files(system.logs, share, source)
@@ -144,7 +139,7 @@ def _upload(kind: str, seed: int, share: float, environment: dict[str, str], say
     ]
 
 
-def _changes(first: int, share: float, say: Say, *, hashes: bool) -> list[dict[str, Any]]:
+def _changes(first: int, share: float, say: Say, *, hashes: bool) -> list[Row]:
     kind = f"changes, remote {'with' if hashes else 'without'} hashes"
     count = max(1, round(CHANGES * share))
     with tempfile.TemporaryDirectory(prefix="data-return-bench-") as folder:
@@ -159,7 +154,7 @@ def _changes(first: int, share: float, say: Say, *, hashes: bool) -> list[dict[s
     ]
 
 
-def _cost(environment: dict[str, str], programs: Path, say: Say) -> list[dict[str, Any]]:
+def _cost(environment: dict[str, str], programs: Path, say: Say) -> list[Row]:
     """The far side has the lowest priority, too: on a robot it is another machine."""
     alone, beside, rates = [], [], []
     with System("sftp", environment, bandwidth=BANDWIDTH, prefix=("chrt", "--idle", "0")) as system:

@@ -1,7 +1,7 @@
 """Every answer of the drives is lost, damaged, shifted by a byte or late, while all orders arrive: when is the robot at
 rest?
 
-The robot drives at a random speed, and turns. At a random phase of its exchanges the answers fail for `FAULT_TIME`,
+The robot drives at a random speed, and turns. At a random phase of its exchanges the answers fail for a time,
 while the request for motion goes on. It must be at rest within the time that docs/drivers.md states of these drives.
 It stays there also when the answers are good again: only the operator's reset ends the stop.
 """
@@ -30,6 +30,7 @@ class AnswerTrial:
     wheel_command: str
     kind: str
     seed: int
+    lasting: float = FAULT_TIME
 
 
 def time_to_rest(trial: AnswerTrial) -> float:
@@ -41,7 +42,7 @@ def time_to_rest(trial: AnswerTrial) -> float:
     loop.run(random.uniform(1.5, 2.5), request)
     component = "bus" if DRIVES[trial.drive].driver == "can" else "line"
     loop.inject_fault(component, trial.kind)
-    fault = loop.run(FAULT_TIME, request)
+    fault = loop.run(trial.lasting, request)
     loop.inject_fault(component, "ok")
     after = loop.run(AFTER_TIME, request)
     base = loop.robot["wheel_base"]

@@ -24,6 +24,7 @@ from bench.devices.loss_trial import (
 )
 from bench.devices.slope_trial import as_stated
 from bench.markdown import ALLOWED
+from bench.rows import Result, Row, Say, judged
 from bench.runs.runner import Runner
 
 ALL_RUNS = 100
@@ -33,12 +34,8 @@ DRIVE_TIME = 300.0  # s
 ODOMETRY, RIPPLE = 1.2, 2.0
 """Bounds of a drive with lost frames, and with late frames as well, by the undisturbed one."""
 
-Row = dict[str, Any]
 
-
-def bench(
-    first: int, runs: int, say: Callable[[str], None], runner: Runner, program: Callable[..., dict[str, Any]]
-) -> tuple[dict[str, Any], bool]:
+def bench(first: int, runs: int, say: Say, runner: Runner, program: Callable[..., dict[str, Any]]) -> Result:
     """The table, and whether every figure keeps its bound.
 
     Args:
@@ -53,7 +50,7 @@ def bench(
     rows += answer_rows(first, runs, say, runner)
     rows += slope_rows(first, runs, say, runner)
     rows += drive_rows(first, max(60.0, DRIVE_TIME * min(runs, ALL_RUNS) / ALL_RUNS), say, runner)
-    return {"bench": "devices", "rows": rows}, all(row["value"] <= row["reference"] for row in rows)
+    return judged("devices", rows)
 
 
 def row(name: str, value: float, unit: str, allowed: float) -> Row:
@@ -62,7 +59,7 @@ def row(name: str, value: float, unit: str, allowed: float) -> Row:
     return {"name": name, "value": value, "unit": unit, "reference": allowed, "reference_name": ALLOWED, "ratio": ratio}
 
 
-def loss_rows(first: int, runs: int, say: Callable[[str], None], runner: Runner) -> list[Row]:
+def loss_rows(first: int, runs: int, say: Say, runner: Runner) -> list[Row]:
     """Per dialect and kind of loss: broken rules, and the latest times until it is seen and until the brake."""
     kinds = [(device, kind) for device, latest_of in (LATEST | SERIAL_LATEST).items() for kind in latest_of]
     trials = [LossTrial(dialect, kind, seed) for dialect, kind in kinds for seed in range(first, first + runs)]
@@ -82,7 +79,7 @@ def loss_rows(first: int, runs: int, say: Callable[[str], None], runner: Runner)
     return rows
 
 
-def answer_rows(first: int, runs: int, say: Callable[[str], None], runner: Runner) -> list[Row]:
+def answer_rows(first: int, runs: int, say: Say, runner: Runner) -> list[Row]:
     """Per drive, wheel command and fault of its answers: the latest rest."""
     rows = []
     for (drive, command), stated in STATED.items():
@@ -96,7 +93,7 @@ def answer_rows(first: int, runs: int, say: Callable[[str], None], runner: Runne
     return rows
 
 
-def slope_rows(first: int, runs: int, say: Callable[[str], None], runner: Runner) -> list[Row]:
+def slope_rows(first: int, runs: int, say: Say, runner: Runner) -> list[Row]:
     """Silence on a slope: a tenth of `runs`."""
     seeds = range(first, first + max(1, runs // 10))
     items = [(dialect, seed) for dialect in DIALECTS for seed in seeds]
@@ -107,7 +104,7 @@ def slope_rows(first: int, runs: int, say: Callable[[str], None], runner: Runner
     return [row(f"{name} silence on 5°: not as docs/drivers.md states", count, "", 0) for name, count in other.items()]
 
 
-def drive_rows(first: int, seconds: float, say: Callable[[str], None], runner: Runner) -> list[Row]:
+def drive_rows(first: int, seconds: float, say: Say, runner: Runner) -> list[Row]:
     """False stops, and the ratios of odometry's error and of the ripple, of `DRIVES` drives."""
     seeds = range(first, first + DRIVES)
     kinds = [(dialect, bus) for dialect in (*DIALECTS, *SERIAL) for bus in BUSES]

@@ -8,6 +8,7 @@ from typing import Any
 from bench.devices.bench import row
 from bench.devices.disturbed_drive import BUSES, DisturbedDrive, rms, run_drive
 from bench.devices.loss_trial import BOARD
+from bench.rows import Result, Say, judged
 from bench.runs.runner import Processes
 
 ODOMETRY = 1.1
@@ -16,9 +17,7 @@ SECONDS = 1800.0
 SEEDS = 8
 
 
-def bench(
-    program: Callable[..., dict[str, Any]], share: float, say: Callable[[str], None]
-) -> tuple[dict[str, Any], bool]:
+def bench(program: Callable[..., dict[str, Any]], share: float, say: Say) -> Result:
     """The table, and whether every figure keeps its bound.
 
     Args:
@@ -32,4 +31,4 @@ def bench(
     errors = [figures.odometry for figures in Processes().outcomes(run_drive, drives, say)]
     ratio = rms(errors[1::2]) / rms(errors[::2])
     rows.append(row(f"error of the odometry, {SEEDS} seeds, of that with exact stamps", ratio, "", ODOMETRY))
-    return {"bench": "board_clock", "rows": rows}, all(each["value"] <= each["reference"] for each in rows)
+    return judged("board_clock", rows)

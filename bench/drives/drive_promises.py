@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Callable, Iterator
-from typing import Any
 
 import numpy as np
 
@@ -15,6 +14,7 @@ from bench.drives import drive_figures as measured
 from bench.drives.drive_figures import Figure
 from bench.drives.wheel_command import for_drives
 from bench.robot_corpus import DIFFBOT, robot_names
+from bench.rows import Result, Say
 
 ROBOTS = (DIFFBOT, "kobuki", "boxer", "jackal")  # 12 kg; 2 kg; 450 kg; a skid steer of 18 kg
 FULL = 1.0  # m/s, the default limit
@@ -140,7 +140,7 @@ def promises(robot: str, wheel_command: str) -> Iterator[Figure]:
         yield from part(robot)
 
 
-def bench(say: Callable[[str], None], wheel_command: str = "torque") -> tuple[dict[str, Any], bool]:
+def bench(say: Say, wheel_command: str = "torque") -> Result:
     """The result, and whether every present robot keeps every promise."""
     rows, absent, good = [], [], True
     for robot in ROBOTS:

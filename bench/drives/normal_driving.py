@@ -2,19 +2,13 @@
 stalls. Wheels slip on ice, and on robots that turn astride a bump. A robot that got stuck there is stalled, and so is a
 wheel that stands before a bump under all of its torque. The turns of turning_drive.py are driven by every robot as
 well.
-
-python3 -m bench.drives.normal_driving --share 0.1     # a tenth of the two hours
 """
 
 from __future__ import annotations
 
-import argparse
 import math
-import sys
 import time
-from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from typing import Any
 
 import numpy as np
 from robot_control.data.intervals import intervals
@@ -25,10 +19,10 @@ from robot_control.loop.signal_names import causes_in, mask_of
 
 from bench.drives import turning_drive
 from bench.drives.normal_drive import LINEAR_LIMIT, WHEEL_COLUMNS, NormalDrive, area_of
-from bench.drives.sensor_errors import LEVELS, plant_parameters
-from bench.drives.wheel_command import WHEEL_COMMANDS, for_drives
+from bench.drives.sensor_errors import plant_parameters
+from bench.drives.wheel_command import for_drives
 from bench.robot_corpus import DIFFBOT, SCENES, robot_names, scene_of, urdf_of
-from bench.rows import plain
+from bench.rows import Result, Say, plain
 from bench.runs.runner import Processes, Runner
 
 RATES = {1000: 960.0, 100: 240.0, 2000: 120.0}  # Hz → s in each scene, of the project's own robot
@@ -153,11 +147,11 @@ def _turn(job: tuple[str, int, str, str]) -> turning_drive.Turning:
 
 def bench(
     share: float,
-    say: Callable[[str], None],
+    say: Say,
     runner: Runner | None = None,
     errors: str = "data_sheet",
     wheel_command: str = "torque",
-) -> tuple[dict[str, Any], bool]:
+) -> Result:
     """The result, and whether no drive had a fault; `say` receives the faults."""
     began = time.monotonic()
     drives = all_drives(share, errors, wheel_command)
@@ -192,20 +186,3 @@ def bench(
     amiss = [str(outcome) for outcome in driven if outcome.causes or outcome.warnings]
     amiss += [str(turning) for turning in turned if turning.causes or turning.warnings]
     return {"bench": "driving", "rows": rows, "amiss": amiss}, not amiss
-
-
-def main(arguments: Sequence[str] | None = None) -> int:
-    """Exit code 0 if no drive had a fault."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--share", type=float, default=1.0, help="of the two hours")
-    parser.add_argument("--errors", choices=LEVELS, default=LEVELS[0], help="of the sensors")
-    parser.add_argument("--wheel-command", choices=WHEEL_COMMANDS, default=WHEEL_COMMANDS[0], help="of the drives")
-    given = parser.parse_args(arguments)
-    result, fine = bench(given.share, print, errors=given.errors, wheel_command=given.wheel_command)
-    for row in result["rows"]:
-        print(f"{row['name']:<24}{row['value']:12.5g} {row['unit']}")
-    return 0 if fine else 1
-
-
-if __name__ == "__main__":
-    sys.exit(main())

@@ -9,17 +9,17 @@ from __future__ import annotations
 
 import itertools
 import tempfile
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from math import pi, radians
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 from robot_control.loop.closed_loop import ClosedLoop
 from scipy.spatial.transform import Rotation
 
 from bench.drives.wheel_command import WHEEL_COMMANDS, for_drives
+from bench.rows import Result, Row, Say, compared, judged
 
 SLOPES = (0, 5, 10, 15)  # degrees
 RATES = (20, 30, 50, 100, 1000)  # Hz
@@ -67,7 +67,7 @@ def stop_on(slope: float, rate: int, heading: float, wheel_command: str, speed: 
     return Stop(way - planned, stands, int(causes))
 
 
-def worst(slopes: Sequence[float], rates: Sequence[int], headings: int, wheel_command: str) -> list[dict[str, Any]]:
+def worst(slopes: Sequence[float], rates: Sequence[int], headings: int, wheel_command: str) -> list[Row]:
     """A row for each slope [degrees] and rate: the longest way beyond the plan; infinite if a robot does not stand."""
     rows = []
     for slope, rate in itertools.product(slopes, rates):
@@ -76,16 +76,15 @@ def worst(slopes: Sequence[float], rates: Sequence[int], headings: int, wheel_co
             for speed, number in itertools.product(SPEEDS, range(headings))
         ]
         value = max(stop.beyond if stop.stands and not stop.causes else np.inf for stop in stops)
-        name = f"{wheel_command}, {slope}°, {rate} Hz"
-        rows.append({"name": name, "value": value, "unit": "m", "reference": BEYOND, "ratio": value / BEYOND})
-    return [row | {"reference_name": "what is allowed"} for row in rows]
+        rows.append(compared(f"{wheel_command}, {slope}°, {rate} Hz", value, "m", BEYOND, "what is allowed"))
+    return rows
 
 
-def bench(say: Callable[[str], None]) -> tuple[dict[str, Any], bool]:
+def bench(say: Say) -> Result:
     """The result, and whether every stop keeps its bound."""
     rows = []
     for wheel_command in WHEEL_COMMANDS:
         for slope in SLOPES:
             rows += worst([slope], RATES, HEADINGS, wheel_command)
             say(f"{wheel_command}, {slope}°: {max(row['value'] for row in rows[-len(RATES) :]):.3f} m beyond the plan")
-    return {"bench": "slopes", "rows": rows}, all(row["value"] <= BEYOND for row in rows)
+    return judged("slopes", rows)

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import time
 from collections import Counter
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import partial
 from typing import Any
@@ -22,7 +22,7 @@ from bench.faults.fault_sequence import ANGULAR_LIMIT, LINEAR_LIMIT, FaultSequen
 from bench.faults.sequence_judge import RULES, judge
 from bench.faults.sequence_run import make_loop, run_sequence
 from bench.robot_corpus import DIFFBOT, QUADBOT, robot_names
-from bench.rows import plain
+from bench.rows import Result, Say, plain
 from bench.runs.runner import Processes, Runner
 
 
@@ -97,7 +97,7 @@ def run_seed(seed: int, robots: Sequence[str], wheel_command: str = "torque", ro
 
 def campaign(
     seeds: Sequence[int],
-    say: Callable[[str], None],
+    say: Say,
     runner: Runner | None = None,
     wheel_command: str = "torque",
     *,
@@ -131,12 +131,12 @@ def result_of(tally: Tally, seconds: float) -> dict[str, Any]:
 def bench(
     first: int,
     runs: int,
-    say: Callable[[str], None],
+    say: Say,
     runner: Runner | None = None,
     wheel_command: str = "torque",
     *,
     robot: str = DIFFBOT,
-) -> tuple[dict[str, Any], bool]:
+) -> Result:
     """The result, and whether the robot survived every sequence."""
     began = time.monotonic()
     if runs == 1:

@@ -6,7 +6,7 @@ scripts/bench replay --first 17 --runs 1
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -17,7 +17,7 @@ from bench.faults.fault_sequence import ALL_RUNS as CAMPAIGN_RUNS
 from bench.faults.fault_sequence import draw_sequence
 from bench.faults.sequence_run import loop_arguments, run_sequence
 from bench.robot_corpus import robot_names
-from bench.rows import plain
+from bench.rows import Result, Say, plain
 
 ALL_RUNS = 200
 STEP = CAMPAIGN_RUNS // ALL_RUNS  # from one seed to the next, so that the sequences cover the whole campaign
@@ -70,7 +70,7 @@ def replay_seed(seed: int, robots: Sequence[str], tally: Tally) -> None:
         tally.failed.append("\n    ".join([f"seed {seed}: {sequence.describe()}", *found]))
 
 
-def replay_seeds(seeds: Sequence[int], say: Callable[[str], None]) -> Tally:
+def replay_seeds(seeds: Sequence[int], say: Say) -> Tally:
     """Runs all seeds; `say` receives every failure."""
     tally = Tally()
     robots = robot_names()
@@ -82,7 +82,7 @@ def replay_seeds(seeds: Sequence[int], say: Callable[[str], None]) -> Tally:
     return tally
 
 
-def bench(first: int, runs: int, say: Callable[[str], None]) -> tuple[dict[str, Any], bool]:
+def bench(first: int, runs: int, say: Say) -> Result:
     """The result, and whether every row of every sequence was computed again, bit by bit."""
     tally = replay_seeds(range(first, first + runs * STEP, STEP), say)
 

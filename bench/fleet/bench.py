@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import statistics
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from concurrent.futures import ProcessPoolExecutor
 from itertools import pairwise
 from typing import Any
@@ -15,9 +15,8 @@ from robot_control.fleet.v2.curve import points_of
 from bench.fleet import sequences
 from bench.fleet.broker import missing
 from bench.fleet.system import KEEP_ALIVE, System
-from bench.rows import bounded
+from bench.rows import Result, Row, Say, bounded, judged
 
-Say = Callable[[str], None]
 Places = list[tuple[float, ...]]
 BLOCK = 5_000
 """sequences in one process"""
@@ -47,14 +46,14 @@ LOSSES = (
 )
 
 
-def bench(parts: Sequence[str], first: int, runs: int | None, say: Say) -> tuple[dict[str, Any], bool]:
+def bench(parts: Sequence[str], first: int, runs: int | None, say: Say) -> Result:
     """The rows of these parts, and whether all bounds hold. `runs`: sequences, losses of each kind, or
     minutes of the cost.
 
     Raises:
         RuntimeError: a package is missing.
     """
-    rows: list[dict[str, Any]] = []
+    rows: list[Row] = []
     if "sequences" in parts:
         rows += _sequences(first, runs or sequences.ALL_SEQUENCES, say)
     if set(parts) - {"sequences"}:
@@ -70,13 +69,10 @@ def bench(parts: Sequence[str], first: int, runs: int | None, say: Say) -> tuple
                 rows += _cost(system, runs or 1, say)
         finally:
             system.end()
-    good = all(row["value"] <= row["reference"] or row["name"].startswith("lowest") for row in rows)
-    return {"bench": "fleet", "rows": rows}, good and all(
-        row["value"] >= row["reference"] for row in rows if row["name"].startswith("lowest")
-    )
+    return judged("fleet", rows)
 
 
-def _sequences(first: int, count: int, say: Say) -> list[dict[str, Any]]:
+def _sequences(first: int, count: int, say: Say) -> list[Row]:
     failed, decisions = 0, 0
     starts = range(first, first + count, BLOCK)
     with ProcessPoolExecutor() as pool:
@@ -99,7 +95,7 @@ class _Figures:
         self.unfinished = 0
 
 
-def _orders(system: System, say: Say) -> list[dict[str, Any]]:
+def _orders(system: System, say: Say) -> list[Row]:
     found = _Figures()
     for event in EVENTS:
         for name in SHAPES:
@@ -185,7 +181,7 @@ def _beside(way: Sequence[Sequence[float]], point: Sequence[float]) -> float:
     return best
 
 
-def _losses(system: System, runs: int, say: Say) -> list[dict[str, Any]]:
+def _losses(system: System, runs: int, say: Say) -> list[Row]:
     failed, wills = 0, [0.0]
     for number in range(runs):
         say(f"losses: round {number + 1} of {runs}")
@@ -254,7 +250,7 @@ def _fresh(system: System) -> bool:
     return bool(system.state)
 
 
-def _cost(system: System, minutes: int, say: Say) -> list[dict[str, Any]]:
+def _cost(system: System, minutes: int, say: Say) -> list[Row]:
     system.place()
     system.send([(0.0, 0.0), (0.8, 0.0)])
     system.await_end()
@@ -274,5 +270,5 @@ def _cost(system: System, minutes: int, say: Say) -> list[dict[str, Any]]:
     share = 100 * (after - before) / (time.monotonic() - began)
     return [
         bounded("client, driving", share, "% of a core", 3.0),
-        bounded(f"client, growth in {minutes} min", grown - memory, "MB", 2.0),
+        bounded(f"client, growth in {minutes} min", (grown - memory) / 1e6, "MB", 2.0),
     ]

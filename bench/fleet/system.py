@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import contextlib
 import math
-import os
 import signal
 import subprocess
 import tempfile
@@ -21,7 +20,7 @@ from nav_msgs.msg import Odometry
 from robot_control.fleet.master import Master
 from robot_control.robot.pose import Pose, pose_of
 
-from bench.console.process import program
+from bench.console.process import cost_of, program
 from bench.console.proxy import Proxy
 from bench.console.robot import Robot
 from bench.fleet.broker import Broker
@@ -97,12 +96,9 @@ class System:
         """SIGSTOP or SIGCONT."""
         self._programs[name].send_signal(signal.SIGCONT if go_on else signal.SIGSTOP)
 
-    def cost(self, name: str) -> tuple[float, float]:
-        """s of processor time, and MB."""
-        pid = self._programs[name].pid
-        fields = Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()
-        memory = int(Path(f"/proc/{pid}/statm").read_text().split()[1]) * os.sysconf("SC_PAGE_SIZE") / 1e6
-        return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK"), memory
+    def cost(self, name: str) -> tuple[float, int]:
+        """s of processor time, and bytes."""
+        return cost_of(self._programs[name].pid)
 
     @property
     def state(self) -> dict[str, Any]:

@@ -2,18 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
 from bench.navigation import goals
+from bench.rows import Result, Say, judged
 
-Say = Callable[[str], None]
 PARTS = ("map", "localization", "goals", "faults", "cost")
 MAPPING = ("map", "localization")
 
 
-def bench(parts: Sequence[str], first: int, runs: int | None, programs: Path, say: Say) -> tuple[dict[str, Any], bool]:
+def bench(parts: Sequence[str], first: int, runs: int | None, programs: Path, say: Say) -> Result:
     """The rows of these parts, and whether all bounds hold. `runs`: tours of each scene, drives of each kind, or
     blocks of the costs.
 
@@ -29,7 +29,7 @@ def bench(parts: Sequence[str], first: int, runs: int | None, programs: Path, sa
         from bench.navigation import costs  # noqa: PLC0415 (needs ROS's messages of navigation)
 
         rows += costs.rows_of(runs or costs.BLOCKS, programs, say)
-    return {"bench": "navigation", "rows": rows}, all(row["value"] <= row["reference"] for row in rows)
+    return judged("navigation", rows)
 
 
 def _of_mrpt(parts: Sequence[str], first: int, runs: int | None, say: Say) -> list[dict[str, Any]]:

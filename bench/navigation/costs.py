@@ -14,7 +14,6 @@ import subprocess
 import tempfile
 import time
 import xmlrpc.client
-from collections.abc import Callable
 from concurrent.futures import ProcessPoolExecutor
 from pathlib import Path
 from typing import Any
@@ -26,13 +25,12 @@ from geometry_msgs.msg import PoseStamped
 from nav_msgs.msg import OccupancyGrid
 from robot_control._navigation import write_map
 
-from bench.console.process import free_port, wait_for
+from bench.console.process import cost_of, free_port, wait_for
 from bench.navigation.goals import scene_of
 from bench.realtime.chain import CHAIN
 from bench.realtime.loops import FREE_WHEELS, Loop
-from bench.rows import bounded
+from bench.rows import Row, Say, bounded
 
-Say = Callable[[str], None]
 BLOCKS, WINDOWS = 5, 5
 """loops; windows of each with the nodes, and as many without them"""
 SECONDS, SETTLING = 1.6, 0.4
@@ -79,9 +77,8 @@ class System:
 
     def used(self, name: str) -> tuple[float, float]:
         """s of processor time, and MB."""
-        fields = Path(f"/proc/{self.pids[name]}/stat").read_text().rpartition(")")[2].split()
-        pages = int(Path(f"/proc/{self.pids[name]}/statm").read_text().split()[1])
-        return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK"), pages * os.sysconf("SC_PAGE_SIZE") / 1e6
+        used, size = cost_of(self.pids[name])
+        return used, size / 1e6
 
     def end(self) -> None:
         """Ends all of it."""
@@ -90,9 +87,9 @@ class System:
         self._process.wait()
 
 
-def rows_of(blocks: int, programs: Path, say: Say) -> list[dict[str, Any]]:
+def rows_of(blocks: int, programs: Path, say: Say) -> list[Row]:
     """`blocks`: those of each of the two set-ups; 150 take an hour."""
-    rows: list[dict[str, Any]] = []
+    rows: list[Row] = []
     ratios: list[float] = []
     for with_map in (False, True):
         say(f"cost: {'localization' if with_map else 'slam'} and navigate, {blocks} blocks")
@@ -103,7 +100,7 @@ def rows_of(blocks: int, programs: Path, say: Say) -> list[dict[str, Any]]:
     return [*rows, bounded("chain, p99, to that without the nodes", statistics.median(ratios), "median", 1.1)]
 
 
-def _of_one(with_map: bool, blocks: int, programs: Path) -> tuple[list[dict[str, Any]], list[float]]:  # noqa: FBT001
+def _of_one(with_map: bool, blocks: int, programs: Path) -> tuple[list[Row], list[float]]:  # noqa: FBT001
     with tempfile.TemporaryDirectory(prefix="navigation-bench-") as folder:
         system = System(Path(folder), with_map=with_map)
         try:

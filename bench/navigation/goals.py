@@ -4,9 +4,7 @@ from __future__ import annotations
 
 import heapq
 import math
-from collections.abc import Callable
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,7 +13,7 @@ from robot_control.installed_files import share_file
 from bench.navigation.scene_map import Map, Obstacle, read_scene, true_map
 from bench.navigation.tour import LASER
 from bench.navigation.virtual import Lies, Place, Robot, Trip
-from bench.rows import bounded
+from bench.rows import Row, Say, bounded
 from bench.runs.runner import Processes
 
 SCENES = ("room", "crowd")
@@ -159,7 +157,7 @@ LIES = {
 }
 
 
-def goals(first: int, runs: int, say: Callable[[str], None]) -> list[dict[str, Any]]:
+def goals(first: int, runs: int, say: Say) -> list[Row]:
     """Rows of `goals`; `runs`: goals in each scene."""
     rows = []
     for scene in SCENES:
@@ -170,7 +168,7 @@ def goals(first: int, runs: int, say: Callable[[str], None]) -> list[dict[str, A
     return rows
 
 
-def _goal_rows(scene: str, trips: list[tuple[Trip, bool, float]], say: Callable[[str], None]) -> list[dict[str, Any]]:
+def _goal_rows(scene: str, trips: list[tuple[Trip, bool, float]], say: Say) -> list[Row]:
     reached = [(trip, way) for trip, _, way in trips if trip.state == "reached"]
     wrong = [trip for trip, infeasible, _ in trips if trip.state != "reached" and not infeasible]
     for trip in wrong:
@@ -198,7 +196,7 @@ def _goal_rows(scene: str, trips: list[tuple[Trip, bool, float]], say: Callable[
     ]
 
 
-def faults(first: int, runs: int, say: Callable[[str], None]) -> list[dict[str, Any]]:
+def faults(first: int, runs: int, say: Say) -> list[Row]:
     """Rows of `faults`; `runs`: drives with each lie."""
     rows = []
     for lie, cause in LIES.items():

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import tempfile
-from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -16,9 +15,8 @@ from bench.navigation.mapping import build_map, text_of
 from bench.navigation.moved import partly_moved
 from bench.navigation.scene_map import Map
 from bench.navigation.tour import LASER, SCAN_PERIOD, TOURS, Sight, drive, errors, new_loop
-from bench.rows import bounded
+from bench.rows import Row, Say, bounded
 
-Say = Callable[[str], None]
 Followed = tuple[str, tuple[float, float, float], NDArray[np.float64]]
 """state, pose (x m, y m, yaw rad) and covariance"""
 SCENE = "room"
@@ -112,7 +110,7 @@ def global_start(grid: Map, sights: list[Sight], seed: int) -> tuple[bool, bool]
     return state == "localized" and away < FOUND, state == "localized" and away >= FOUND
 
 
-def rows_of(first: int, runs: int, say: Say) -> list[dict[str, Any]]:
+def rows_of(first: int, runs: int, say: Say) -> list[Row]:
     """Every figure of the drives is that of the worst one."""
     grid, _, _ = build_map(list(drive(new_loop(SCENE, first), TOURS[SCENE])))
     rows, drives = [], []

@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,9 +13,8 @@ from robot_control.installed_files import share_file
 from bench.navigation.moved import distances
 from bench.navigation.scene_map import Map, read_scene
 from bench.navigation.tour import LASER, SCAN_PERIOD, TOURS, Sight, drive, errors, new_loop
-from bench.rows import bounded
+from bench.rows import Row, Say, bounded
 
-Say = Callable[[str], None]
 OCCUPIED = 65  # %
 RUNS = 2
 
@@ -61,7 +58,7 @@ def judge(scene: str, seed: int) -> dict[str, float]:
     }
 
 
-def rows_of(first: int, runs: int, say: Say) -> list[dict[str, Any]]:
+def rows_of(first: int, runs: int, say: Say) -> list[Row]:
     """Every figure is that of the worst tour."""
     rows = []
     for scene in TOURS:

@@ -1,28 +1,23 @@
 """`scripts/bench odometry` runs every scenario with every seed on all processors; it prints a table, promises and
 plots.
-
-python3 -P -m bench.odometry.bench --runs 3 --only slip,waves --plots FOLDER
 """
 
 from __future__ import annotations
 
-import argparse
-import sys
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from functools import partial
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from bench.drives.sensor_errors import LEVELS
 from bench.odometry import parts
 from bench.odometry.judge import Run, run
 from bench.odometry.promises import Promise, all_promises, runs_of
 from bench.odometry.scenarios import SCENARIOS
 from bench.odometry.table import table
-from bench.rows import plain
+from bench.rows import Result, Say, compared, plain
 from bench.runs.runner import Processes, Runner
 
 SEEDS = 50
@@ -34,27 +29,26 @@ SLOW_SCENARIOS = ("umbmark", "random", "standstill", "waves")  # so that all pro
 def all_runs(
     seeds: Sequence[int],
     scenarios: Sequence[str],
-    say: Callable[[str], None],
+    say: Say,
     level: str = "data_sheet",
     *,
     pictured: int | None = None,
-    cache: Path | None = None,
     runner: Runner | None = None,
 ) -> list[Run]:
     """Runs in the order of scenarios and seeds. `level`: one of sensor_errors.LEVELS. `pictured`: the seed whose runs
-    keep the data of a plot. `cache`: folder of recordings, which are used if they exist.
+    keep the data of a plot.
     """
     order = sorted(scenarios, key=lambda name: SLOW_SCENARIOS.index(name) if name in SLOW_SCENARIOS else 9)
     work = [(scenario, seed) for scenario in order for seed in seeds]
     runner = runner or Processes()
-    runs = list(runner.outcomes(partial(_one, level=level, pictured=pictured, cache=cache), work, say))
+    runs = list(runner.outcomes(partial(_one, level=level, pictured=pictured), work, say))
     numbers = {name: number for number, name in enumerate(SCENARIOS)}
     return sorted(runs, key=lambda each: (numbers[each.scenario], each.seed))
 
 
-def _one(work: tuple[str, int], level: str, pictured: int | None, cache: Path | None) -> Run:
+def _one(work: tuple[str, int], level: str, pictured: int | None) -> Run:
     scenario, seed = work
-    return run(scenario, seed, level, picture=seed == pictured, cache=cache)
+    return run(scenario, seed, level, picture=seed == pictured)
 
 
 def result_of(
@@ -62,16 +56,11 @@ def result_of(
 ) -> dict[str, Any]:
     """As the benchmark programs print it; `seconds` of wall-clock time, `beside` the outcomes of `parts`."""
     rows = [
-        {
-            "name": promise.name,
-            "value": float(promise.value),
-            "unit": promise.unit,
-            "reference": promise.bound,
-            "reference_name": ("the least" if promise.least else "the most") + " promised",
-            "ratio": float(promise.value / promise.bound),
-            "kept": bool(promise.kept),
-        }
-        for promise in every_promise(runs, level, beside)
+        compared(
+            each.name, float(each.value), each.unit, each.bound, f"the {'least' if each.least else 'most'} promised"
+        )
+        | {"kept": bool(each.kept)}
+        for each in every_promise(runs, level, beside)
     ]
     for scenario in SCENARIOS:
         pitch = [each.pitch for each in runs_of(runs, scenario)]
@@ -79,18 +68,8 @@ def result_of(
             rows.append(plain("waves, pitch RMS", float(np.rad2deg(np.median(pitch))), "°"))
     rows.append(plain("seeds", len({each.seed for each in runs}), ""))
     rows.append(plain("wall-clock time", seconds, "s"))
-    errors = [
-        {
-            "scenario": each.scenario,
-            "seed": each.seed,
-            "distance": each.distance,
-            "position": each.position,
-            "yaw": each.yaw,
-            "stopped": each.stopped,
-            "invalid": each.invalid,
-        }
-        for each in runs
-    ]
+    listed = ("scenario", "seed", "distance", "position", "yaw", "stopped", "invalid")
+    errors = [{name: getattr(each, name) for name in listed} for each in runs]
     lines = (table(runs) if runs else []) + (parts.table(beside) if beside else [])
     return {"bench": "odometry", "rows": rows, "table": lines, "runs": errors}
 
@@ -103,24 +82,22 @@ def every_promise(runs: Sequence[Run], level: str, beside: Sequence[parts.Outcom
 def bench(
     first: int,
     count: int,
-    say: Callable[[str], None],
+    say: Say,
     level: str = "data_sheet",
     *,
     plots: Path | None = None,
-    cache: Path | None = None,
     scenarios: Sequence[str] = ALL,
     runner: Runner | None = None,
-) -> tuple[dict[str, Any], bool]:
+) -> Result:
     """The result, and whether every promise is kept; `say` receives progress and broken promises."""
     began = time.monotonic()
-    for folder in (plots, cache):
-        if folder is not None:
-            folder.mkdir(parents=True, exist_ok=True)
+    if plots is not None:
+        plots.mkdir(parents=True, exist_ok=True)
     pictured = None if plots is None else first
     seeds = range(first, first + count)
     named = [scenario for scenario in scenarios if scenario != PARTS]
-    runs = all_runs(seeds, named, say, level, pictured=pictured, cache=cache, runner=runner)
-    beside = parts.all_outcomes(seeds, say, level, cache, runner) if PARTS in scenarios else []
+    runs = all_runs(seeds, named, say, level, pictured=pictured, runner=runner)
+    beside = parts.all_outcomes(seeds, say, level, runner) if PARTS in scenarios else []
     if plots is not None:
         from bench.odometry.plots import draw_all  # noqa: PLC0415 (matplotlib takes half a second to load)
 
@@ -129,32 +106,3 @@ def bench(
     for promise in broken:
         say(str(promise))
     return result_of(runs, time.monotonic() - began, level, beside), not broken
-
-
-def main(arguments: Sequence[str] | None = None) -> int:
-    """Exit code 0: every promise is kept."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--first", type=int, default=0, help="first seed")
-    parser.add_argument("--runs", type=int, default=SEEDS, help="number of seeds")
-    parser.add_argument("--only", default=",".join(ALL), help="scenarios, with commas between")
-    parser.add_argument("--errors", choices=LEVELS, default=LEVELS[0], help="of the sensors")
-    parser.add_argument("--plots", type=Path, help="folder for the pictures")
-    parser.add_argument("--cache", type=Path, help="folder of recordings: taken from there, or put there")
-    given = parser.parse_args(arguments)
-    result, good = bench(
-        given.first,
-        given.runs,
-        print,
-        given.errors,
-        plots=given.plots,
-        cache=given.cache,
-        scenarios=given.only.split(","),
-    )
-    print("\n".join(result["table"]))
-    for row in result["rows"]:
-        print(f"{row['name']:<36}{row['value']:12.5g} {row['unit']:<12}{row['reference']:10.4g}  {row.get('kept', '')}")
-    return 0 if good else 1
-
-
-if __name__ == "__main__":
-    sys.exit(main())

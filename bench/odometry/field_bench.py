@@ -10,9 +10,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from robot_control import Estimator
-from robot_control.loop.estimator import FLAGS
 
-from bench.odometry.field_drive import Errors, field_drive
+from bench.odometry.field_drive import Errors, field_drive, honesty
 from bench.odometry.recordings import FloatArray, simple_path
 
 FIELD = Errors()
@@ -56,17 +55,13 @@ def outcome(errors: Errors, seed: int) -> Outcome:
         return np.asarray(seen - truth[:, 1:])
 
     ours, simple = away(out["x"], out["y"]), away(*simple_path(drive)[:, :2].T)
-    rows = np.searchsorted(drive.time, truth[:, 0]).clip(0, drive.time.size - 1)
-    covariance = out["pose_covariance"][rows, :2, :2] + 1e-6 * np.eye(2)
-    nees = np.einsum("ni,nij,nj->n", ours, np.linalg.inv(covariance), ours)
-    steps = np.diff(drive.time, prepend=0)
-    slips = out["flags"] & FLAGS["slip"] != 0
+    within, slip = honesty(drive, out)
     return Outcome(
         ours=float(np.hypot(*ours[-1])),
         simple=float(np.hypot(*simple[-1])),
         distance=float(np.hypot(*np.diff(truth[:, 1:], axis=0).T).sum()),
-        slip=float(steps[slips].sum() / drive.time[-1]),
-        within=float(np.mean(nees[truth[:, 0] > errors.rest + 1] < 5.99)),
+        slip=slip,
+        within=within,
     )
 
 

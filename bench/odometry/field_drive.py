@@ -15,6 +15,7 @@ from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
+from robot_control.loop.estimator import FLAGS, Estimate
 
 from bench.odometry.recordings import Recording, merged
 
@@ -149,6 +150,19 @@ def _inertial(
     accel[:, :2] += slow * np.minimum(1.0, share)[:, None]
     accel += np.column_stack([mean(along), mean(across), np.full(n, _GRAVITY)])
     return gyro, accel
+
+
+def honesty(drive: Recording, out: Estimate) -> tuple[float, float]:
+    """Shares of the time: with the truth in the 95 % ellipse of the position, and with reported slip."""
+    truth = drive.truth[(drive.truth[:, 0] > drive.rest + 1) & (drive.truth[:, 0] < drive.time[-1])]
+    seen = np.column_stack([np.interp(truth[:, 0], drive.time, out[axis]) for axis in ("x", "y")])
+    rows = np.searchsorted(drive.time, truth[:, 0]).clip(0, drive.time.size - 1)
+    covariance = out["pose_covariance"][rows, :2, :2] + 1e-6 * np.eye(2)
+    off = seen - truth[:, 1:]
+    nees = np.einsum("ni,nij,nj->n", off, np.linalg.inv(covariance), off)
+    slips = out["flags"] & FLAGS["slip"] != 0
+    steps = np.diff(drive.time, prepend=0)
+    return float(np.mean(nees < 5.99)), float(steps[slips].sum() / drive.time[-1])
 
 
 def save(drive: Recording, path: Path) -> None:

@@ -16,7 +16,6 @@ from __future__ import annotations
 import dataclasses
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,7 +24,7 @@ from bench.odometry.consistency import Notice, nees, notice, pose_error, twist_e
 from bench.odometry.drives import FIRST_STAND
 from bench.odometry.methods import METHODS, raw_wheels
 from bench.odometry.picture import Picture, picture_of
-from bench.odometry.recording import Recording, recorded
+from bench.odometry.recording import Recording, record
 from bench.odometry.scenarios import draw_trial
 from bench.odometry.tested_estimator import OURS, estimate, resets_of, true_track
 from bench.odometry.truth import Array, Track, Truth, after_resets, moving, truth_of, wrapped
@@ -60,12 +59,9 @@ class Run:
     picture: Picture | None = None
 
 
-def run(
-    scenario: str, seed: int, level: str = "data_sheet", *, picture: bool = False, cache: Path | None = None
-) -> Run:
-    """Drives, estimates and compares. `level`: one of sensor_errors.LEVELS. `cache`: folder of recordings."""
-    drive = recorded(lambda: draw_trial(scenario, seed, level), f"{scenario}_{seed}_{level}", cache)
-    return judge(drive, picture=picture)
+def run(scenario: str, seed: int, level: str = "data_sheet", *, picture: bool = False) -> Run:
+    """Drives, estimates and compares. `level`: one of sensor_errors.LEVELS."""
+    return judge(record(draw_trial(scenario, seed, level)), picture=picture)
 
 
 def judge(recording: Recording, *, picture: bool = False) -> Run:

@@ -13,7 +13,7 @@ are right is shown by `drawn`.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
@@ -30,10 +30,11 @@ from bench.odometry.errors import GYRO_BIAS, GYRO_SCALE, Errors, draw_errors
 from bench.odometry.methods import bias_of_first_rest, raw_wheels
 from bench.odometry.program import Program
 from bench.odometry.promises import Promise
-from bench.odometry.recording import recorded
+from bench.odometry.recording import record
 from bench.odometry.scenarios import Trial
 from bench.odometry.tested_estimator import OURS, estimate
 from bench.odometry.truth import Array, Track, moving, truth_of
+from bench.rows import Say
 from bench.runs.runner import Processes, Runner
 
 STREAM = 3  # index of this random stream; errors.py and scenarios.py use others
@@ -121,11 +122,11 @@ def draw(name: str, seed: int, level: str) -> Trial:
     return Trial("parts", seed, errors, seed, {"mujoco_plant": plant}, commands(case, seed))
 
 
-def outcome(work: tuple[str, int], level: str, cache: Path | None) -> Outcome:
-    """One drive, recorded or from the cache."""
+def outcome(work: tuple[str, int], level: str) -> Outcome:
+    """One drive."""
     name, seed = work
     case = CASES[name]
-    drive = recorded(lambda: draw(name, seed, level), f"parts_{name.replace(', ', '-')}_{seed}_{level}", cache)
+    drive = record(draw(name, seed, level))
     truth, ours = truth_of(drive), estimate(drive)
     paths = {OURS: ours.path, WHEELS: raw_wheels(drive), GYRO: bias_of_first_rest(drive, case.rest)}
     rows = np.arange(SAMPLE, len(truth.linear), SAMPLE)
@@ -142,16 +143,10 @@ def _away(path: Track, true: Track) -> float:
     return float(np.hypot(path.x[-1] - true.x[-1], path.y[-1] - true.y[-1]))
 
 
-def all_outcomes(
-    seeds: Sequence[int],
-    say: Callable[[str], None],
-    level: str,
-    cache: Path | None = None,
-    runner: Runner | None = None,
-) -> list[Outcome]:
-    """Outcomes of all cases. `cache`: folder of recordings."""
+def all_outcomes(seeds: Sequence[int], say: Say, level: str, runner: Runner | None = None) -> list[Outcome]:
+    """Outcomes of all cases."""
     work = [(name, seed) for name in CASES for seed in seeds]
-    return list((runner or Processes()).outcomes(partial(outcome, level=level, cache=cache), work, say))
+    return list((runner or Processes()).outcomes(partial(outcome, level=level), work, say))
 
 
 def errors_of(outcomes: Sequence[Outcome], case: str, method: str = OURS) -> Array:

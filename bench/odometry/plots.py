@@ -14,9 +14,9 @@ import numpy as np
 from robot_control.ui.picture_style import STYLE
 
 from bench.odometry.consistency import ROLLING, SLIPPING
-from bench.odometry.judge import SAMPLE, Run
+from bench.odometry.judge import Run
 from bench.odometry.picture import Picture
-from bench.odometry.promises import CALIBRATED, RAW, SIMPLE, mean_nees, runs_of
+from bench.odometry.promises import CALIBRATED, RAW, SIMPLE, runs_of
 from bench.odometry.tested_estimator import OURS
 
 if TYPE_CHECKING:
@@ -39,10 +39,6 @@ def draw_all(runs: Sequence[Run], folder: Path) -> None:
     with plt.style.context(STYLE):
         if "umbmark" in present:
             _save(_umbmark(runs_of(runs, "umbmark")), folder / "umbmark.png")
-        if "random" in present:
-            _save(_consistency(runs_of(runs, "random")), folder / "nees.png")
-        if "random" in pictured:
-            _save(_random_drive(pictured["random"]), folder / "random_drive.png")
         if "slip" in pictured:
             _save(_slip(pictured["slip"]), folder / "slip.png")
 
@@ -85,58 +81,6 @@ def _returns(axes: Axes, runs: Sequence[Run], methods: Sequence[str], scale: flo
 def _head(figure: plt.Figure, text: str) -> None:
     figure.suptitle(text, fontsize=14, fontweight="bold", x=0.01, ha="left")
     figure.get_layout_engine().set(w_pad=0.12, h_pad=0.1, wspace=0.03)
-
-
-def _random_drive(picture: Picture) -> plt.Figure:
-    figure, (plan, errors) = plt.subplots(1, 2, figsize=(16, 7.5), layout="constrained", width_ratios=(1, 1.2))
-    for method in (RAW, SIMPLE):
-        path = picture.paths[method]
-        plan.plot(path.x, path.y, color=COLOURS[method], linewidth=1, label=method)
-    plan.plot(picture.truth.x, picture.truth.y, color=TRUE, linewidth=2.2, label="true")
-    path = picture.paths[OURS]
-    plan.plot(path.x, path.y, color=COLOURS[OURS], linewidth=1.2, linestyle=(0, (4, 2)), label=OURS)
-    plan.plot(0, 0, "o", color=TRUE, markersize=7)
-    centre = [(np.max(line) + np.min(line)) / 2 for line in (picture.truth.x, picture.truth.y)]
-    reach = 0.6 * max(np.ptp(picture.truth.x), np.ptp(picture.truth.y))
-    plan.set(xlim=(centre[0] - reach, centre[0] + reach), ylim=(centre[1] - reach, centre[1] + reach))
-    plan.set_aspect("equal")
-    plan.set(xlabel="x [m]", ylabel="y [m]")
-    plan.set_title("The way")
-    plan.legend(loc="best")
-    errors.fill_between(
-        picture.distance, 1e-4, 2 * picture.deviation, color=COLOURS[OURS], alpha=0.18, lw=0, label="ours, 2 σ"
-    )
-    for method, error in picture.error.items():
-        errors.plot(
-            picture.distance, error, color=COLOURS[method], linewidth=2.2 if method == OURS else 1.2, label=method
-        )
-    errors.plot(picture.distance, 0.005 * picture.distance, color="black", lw=1, ls=":", label="0.5 % of the way")
-    errors.set_yscale("log")
-    top = 2 * max(error.max() for error in picture.error.values())
-    errors.set(xlim=(0, picture.distance[-1]), ylim=(1e-3, top), xlabel="way [m]", ylabel="position error [m]")
-    errors.set_title("Position error")
-    errors.legend(loc="lower right", ncols=2, fontsize=10, frameon=True, framealpha=0.85, edgecolor="none")
-    _head(figure, f"Random drive of {picture.time[-1] / 60:.0f} minutes, {picture.distance[-1]:.0f} m")
-    return figure
-
-
-def _consistency(runs: Sequence[Run]) -> plt.Figure:
-    figure, axes = plt.subplots(2, 1, figsize=(12, 7), sharex=True, layout="constrained")
-    for panel, what, ideal in ((axes[0], "pose", 3), (axes[1], "twist", 2)):
-        times, means, low, high = mean_nees(runs, what)
-        inside = 100 * np.mean((means >= low) & (means <= high))
-        panel.fill_between(
-            times, low, high, color="#1f5fa8", alpha=0.15, lw=0, label=f"95 % of means of {len(runs)} runs"
-        )
-        panel.axhline(ideal, color="#1f5fa8", linewidth=1)
-        panel.plot(times, means, ".-", color=COLOURS[OURS], label="mean over the runs")
-        names = "x, y, yaw" if what == "pose" else "forward speed, yaw rate"
-        panel.set_title(f"NEES of ({names}): inside at {inside:.0f} % of the times")
-        panel.set(ylabel="NEES", ylim=(0, None))
-        panel.legend(loc="upper right")
-    axes[1].set(xlabel=f"time [s], every {SAMPLE:.0f} s", xlim=(0, None))
-    _head(figure, f"Random drive: how honest the covariance is, {len(runs)} robots")
-    return figure
 
 
 def _slip(picture: Picture) -> plt.Figure:

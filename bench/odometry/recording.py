@@ -1,25 +1,16 @@
-"""The measurements of a trial's sensors beside the truth, in memory or as .npz: estimators are tried on them offline.
-
-python3 -P -m bench.odometry.recording FOLDER slip 0 30     # seeds 0 … 29 → FOLDER/slip_0.npz …
-"""
+"""The measurements of a trial's sensors beside the truth: estimators are tried on them offline."""
 
 from __future__ import annotations
 
-import argparse
-import dataclasses
-import json
 import tempfile
-from collections.abc import Callable
 from dataclasses import dataclass
-from pathlib import Path
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 from robot_control.loop.closed_loop import ClosedLoop
 
 from bench.odometry.errors import Errors
-from bench.odometry.scenarios import SCENARIOS, Trial, draw_trial
+from bench.odometry.scenarios import Trial
 
 Array = NDArray[np.float64]
 TRUTH_EVERY = 10  # cycles: 10 ms, ten times as fast as odometry is published and faster than any slip
@@ -58,25 +49,6 @@ class Recording:
     errors: Errors
     marks: dict[str, list[int]]
 
-    def save(self, path: Path) -> None:
-        """Writes .npz; numbers and dicts go into the JSON text `about`."""
-        arrays: dict[str, Any] = {}
-        about: dict[str, Any] = {}
-        for field in dataclasses.fields(self):
-            value = getattr(self, field.name)
-            (arrays if isinstance(value, np.ndarray) else about)[field.name] = value
-        about["errors"] = dataclasses.asdict(self.errors)
-        np.savez(path, about=json.dumps(about), **arrays)
-
-
-def load_recording(path: Path) -> Recording:
-    """Reads what `save` wrote."""
-    with np.load(path) as file:
-        about: dict[str, Any] = json.loads(str(file["about"]))
-        arrays = {key: file[key] for key in file.files if key != "about"}
-    about["errors"] = Errors(**about["errors"])
-    return Recording(**about, **arrays)
-
 
 def record(trial: Trial) -> Recording:
     """Drives a trial and records it."""
@@ -104,17 +76,6 @@ def record(trial: Trial) -> Recording:
     )
 
 
-def recorded(draw: Callable[[], Trial], name: str, cache: Path | None) -> Recording:
-    """The recording of that name from the cache; it is driven if it is not there."""
-    path = None if cache is None else cache / f"{name}.npz"
-    if path is not None and path.exists():
-        return load_recording(path)
-    recording = record(draw())
-    if path is not None:
-        recording.save(path)
-    return recording
-
-
 def _loop(trial: Trial) -> ClosedLoop:
     if not trial.scene:
         return ClosedLoop(params=trial.params, seed=trial.plant_seed)
@@ -122,22 +83,3 @@ def _loop(trial: Trial) -> ClosedLoop:
         scene.write(trial.scene)
         scene.flush()
         return ClosedLoop(params=trial.params, seed=trial.plant_seed, scene=scene.name)
-
-
-def main() -> None:
-    """Records trials into a folder."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("folder", type=Path)
-    parser.add_argument("scenario", choices=list(SCENARIOS))
-    parser.add_argument("first", type=int)
-    parser.add_argument("seeds", type=int)
-    given = parser.parse_args()
-    given.folder.mkdir(parents=True, exist_ok=True)
-    for seed in range(given.first, given.first + given.seeds):
-        path = given.folder / f"{given.scenario}_{seed}.npz"
-        record(draw_trial(given.scenario, seed)).save(path)
-        print(path, flush=True)
-
-
-if __name__ == "__main__":
-    main()

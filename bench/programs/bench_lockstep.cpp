@@ -4,7 +4,6 @@
 /// four processes in lockstep on a bus of their own. The figures are simulated seconds per second, median over the
 /// rounds, and the ratio to the bare loop of the same round.
 
-#include <iostream>
 #include <string>
 #include <vector>
 
@@ -17,7 +16,7 @@ namespace {
 constexpr int kRounds = 7;
 constexpr std::uint64_t kCycles = 40'000;
 
-int run(const std::string& path) {
+void run(const std::string& path) {
   const Parameters parameters = read_parameters(path);
   const DriveTrain robot = read_drive_train(load_description(parameters.urdf), parameters.robot);
   std::vector<double> bare;
@@ -33,21 +32,11 @@ int run(const std::string& path) {
   print("lockstep", {{reference, median(bare), unit, median(bare), "itself", 1},
                      {"ClosedLoop", median(closed), unit, median(bare), reference, median_ratio(closed, bare)},
                      {"four processes", median(four), unit, median(bare), reference, median_ratio(four, bare)}});
-  return 0;
 }
 
 }  // namespace
 }  // namespace robot_control::bench
 
 int main(int argc, char** argv) {
-  if (argc != 2) {
-    std::cerr << "usage: bench_lockstep PARAMS.yaml\n";
-    return 2;
-  }
-  try {
-    return robot_control::bench::run(argv[1]);
-  } catch (const std::exception& error) {
-    std::cerr << "bench_lockstep: " << error.what() << "\n";
-    return 1;
-  }
+  return robot_control::bench::run_with_parameters(argc, argv, robot_control::bench::run);
 }

@@ -5,7 +5,6 @@
 /// is mj_step of the model with native friction. The figures are cycles per second, median over the rounds, and the
 /// ratio to the bare loop of the same round.
 
-#include <iostream>
 #include <string>
 #include <vector>
 
@@ -84,7 +83,7 @@ class Bare {
   MujocoData data_;
 };
 
-int run(const std::string& path) {
+void run(const std::string& path) {
   const Parameters parameters = read_parameters(path);
   const double period = parameters.loop.period();
   const DriveTrain robot = read_drive_train(load_description(parameters.urdf), parameters.robot);
@@ -120,21 +119,11 @@ int run(const std::string& path) {
                   {"plant", median(plants), unit, median(bares), reference, median_ratio(plants, bares)},
                   {"plant, sensors err", median(errings), unit, median(bares), reference, median_ratio(errings, bares)},
                   {"native mj_step", median(natives), unit, median(bares), reference, median_ratio(natives, bares)}});
-  return 0;
 }
 
 }  // namespace
 }  // namespace robot_control::bench
 
 int main(int argc, char** argv) {
-  if (argc != 2) {
-    std::cerr << "usage: bench_plant PARAMS.yaml\n";
-    return 2;
-  }
-  try {
-    return robot_control::bench::run(argv[1]);
-  } catch (const std::exception& error) {
-    std::cerr << "bench_plant: " << error.what() << "\n";
-    return 1;
-  }
+  return robot_control::bench::run_with_parameters(argc, argv, robot_control::bench::run);
 }

@@ -7,7 +7,6 @@
 /// allowed (serial_cycle.h).
 
 #include <filesystem>
-#include <iostream>
 #include <string>
 #include <vector>
 
@@ -93,7 +92,7 @@ void add(std::vector<Row>& rows, const std::string& name, const Timing& timing) 
   rows.push_back({name + " allocations", static_cast<double>(timing.allocations), "per block of 2000", 0, "none", 0});
 }
 
-int run(const std::string& path) {
+void run(const std::string& path) {
   const Parameters parameters = read_parameters(path);
   ClosedLoop loop(parameters);
   const DriveTrain& robot = drive_train_of(loop.robot().machine());
@@ -160,21 +159,11 @@ int run(const std::string& path) {
   add_serial_cycle<BoardMachine>(rows, "board", {.mode = JointMode::kEffort, .effort = 0});
   add_serial_cycle<RoboclawMachine>(rows, "roboclaw", {.mode = JointMode::kDriveVelocity, .velocity = 5});
   print("step", rows);
-  return 0;
 }
 
 }  // namespace
 }  // namespace robot_control::bench
 
 int main(int argc, char** argv) {
-  if (argc != 2) {
-    std::cerr << "usage: bench_step PARAMS.yaml\n";
-    return 2;
-  }
-  try {
-    return robot_control::bench::run(argv[1]);
-  } catch (const std::exception& error) {
-    std::cerr << "bench_step: " << error.what() << "\n";
-    return 1;
-  }
+  return robot_control::bench::run_with_parameters(argc, argv, robot_control::bench::run);
 }

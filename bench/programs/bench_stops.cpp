@@ -40,25 +40,15 @@ std::vector<Row> virtual_time(const std::string& path) {
   return stop_rows(measured);
 }
 
-int run(const std::string& path) {
+void run(const std::string& path) {
   std::vector<Row> rows = lost_nodes(path);
   for (const Row& row : virtual_time(path)) rows.push_back(row);
   print("stops", rows);
-  return 0;
 }
 
 }  // namespace
 }  // namespace robot_control::bench
 
 int main(int argc, char** argv) {
-  if (argc != 2) {
-    std::cerr << "usage: bench_stops PARAMS.yaml\n";
-    return 2;
-  }
-  try {
-    return robot_control::bench::run(argv[1]);
-  } catch (const std::exception& error) {
-    std::cerr << "bench_stops: " << error.what() << "\n";
-    return 1;
-  }
+  return robot_control::bench::run_with_parameters(argc, argv, robot_control::bench::run);
 }

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
+#include <exception>
 #include <limits>
 #include <string>
 #include <thread>
@@ -60,6 +61,21 @@ inline void print(const std::string& bench, const std::vector<Row>& rows) {
         row.ratio);
   }
   std::printf("\n]}\n");
+}
+
+/// The main function of a program that is called with PARAMS.yaml; `run` throws what ends it with an error.
+inline int run_with_parameters(int argc, char** argv, void (*run)(const std::string& path)) {
+  if (argc != 2) {
+    std::fprintf(stderr, "usage: %s PARAMS.yaml\n", argv[0]);
+    return 2;
+  }
+  try {
+    run(argv[1]);
+    return 0;
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "%s: %s\n", argv[0], error.what());
+    return 1;
+  }
 }
 
 }  // namespace robot_control::bench

@@ -2,18 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
 from bench.realtime import chain, cost, jitter, scale
 from bench.realtime.jitter import BLOCKS
 from bench.realtime.machine import require_programs
+from bench.rows import Result, Say
 
 PARTS = {"jitter": jitter.bench, "chain": chain.bench, "cost": cost.bench, "scale": scale.bench}
 
 
-def bench(parts: Sequence[str], blocks: int, programs: Path, say: Callable[[str], None]) -> tuple[dict[str, Any], bool]:
+def bench(parts: Sequence[str], blocks: int, programs: Path, say: Say) -> Result:
     """The table of these parts, and whether all figures meet their bounds."""
     require_programs()
     blocks = blocks or BLOCKS

@@ -9,7 +9,7 @@ from __future__ import annotations
 import os
 import subprocess
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
@@ -21,7 +21,7 @@ from robot_control.loop.roles import DRIVER
 from bench.realtime.cost import free_port
 from bench.realtime.jitter import median_interval
 from bench.realtime.loops import FREE_WHEELS, loop_for
-from bench.rows import bounded, compared
+from bench.rows import Row, Say, bounded, compared
 
 HOPS = 2  # driver → estimator → controller
 SECONDS = 4.0
@@ -107,7 +107,7 @@ def block(programs: Path, environment: dict[str, str]) -> dict[str, float]:
     }
 
 
-def bench(blocks: int, programs: Path, say: Callable[[str], None]) -> tuple[list[dict[str, Any]], bool]:
+def bench(blocks: int, programs: Path, say: Say) -> tuple[list[Row], bool]:
     """The rows, and whether both bounds are met."""
     measured: list[dict[str, float]] = []
     with ros_master() as environment:

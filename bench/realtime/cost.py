@@ -10,7 +10,7 @@ import socket
 import subprocess
 import tempfile
 import time
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
@@ -20,7 +20,7 @@ from robot_control.loop.roles import DRIVER, HARDWARE_DRIVER, LOOP, TELEMETRY
 
 from bench.participants import START_LIMIT
 from bench.realtime.machine import start_cyclictest
-from bench.rows import bounded, compared
+from bench.rows import Row, Say, bounded, compared
 
 MASTER = "rosmaster"
 SECONDS = 30.0
@@ -112,7 +112,7 @@ def bare_wake_ups() -> float:
         process.communicate()
 
 
-def bench(_blocks: int, programs: Path, say: Callable[[str], None]) -> tuple[list[dict[str, Any]], bool]:
+def bench(_blocks: int, programs: Path, say: Say) -> tuple[list[Row], bool]:
     """The rows, and whether all figures meet their bounds."""
     with tempfile.TemporaryDirectory(prefix="cost-") as folder:
         others = {node: ["rosrun", "robot_control", node] for node in (*LOOP[1:], TELEMETRY)}

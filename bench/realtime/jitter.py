@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 from robot_control.data.run_log import FloatArray, Log
@@ -12,7 +11,7 @@ from robot_control.setup.doctor.measure import interval
 
 from bench.realtime.loops import loop_for
 from bench.realtime.machine import latencies, load, shallow_sleep, start_cyclictest
-from bench.rows import bounded, compared
+from bench.rows import Row, Say, bounded, compared
 
 MAX_RATIO = 1.3
 BLOCKS = 10
@@ -32,9 +31,9 @@ def median_interval(values: Sequence[float]) -> tuple[float, float, float]:
     return low, float(np.median(values)), high
 
 
-def bench(blocks: int, programs: Path, say: Callable[[str], None]) -> tuple[list[dict[str, Any]], bool]:
+def bench(blocks: int, programs: Path, say: Say) -> tuple[list[Row], bool]:
     """The rows, and whether no lower end exceeds the bound."""
-    rows: list[dict[str, Any]] = []
+    rows: list[Row] = []
     good = True
     for busy in (False, True):
         for shallow in (False, True):

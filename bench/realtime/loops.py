@@ -12,7 +12,7 @@ from pathlib import Path
 from robot_control.data.run_log import Log, read_log
 from robot_control.loop.roles import DRIVER, LOOP, TELEMETRY
 
-from bench.participants import START_LIMIT, command, remove_shared_memory, script
+from bench.participants import START_LIMIT, await_log, command, remove_shared_memory, script
 
 FIRST = 1000
 """cycles that are not judged: the nodes start one after the other"""
@@ -44,11 +44,7 @@ class Loop:
 
     def await_start(self) -> None:
         """Waits until all nodes write."""
-        end = time.monotonic() + START_LIMIT
-        while not self._bag.exists() or self._bag.stat().st_size < SOME_ROWS:
-            if time.monotonic() > end or any(process.poll() is not None for process in self.processes):
-                raise RuntimeError(f"the nodes have not begun to write {self._bag.name}")
-            time.sleep(0.05)
+        await_log(self._bag, SOME_ROWS, self.processes)
 
     def end(self) -> Log:
         """Ends the nodes, telemetry last; returns the rows without their start and their end."""

@@ -4,16 +4,14 @@ from __future__ import annotations
 
 import os
 import time
-from collections.abc import Callable
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 from robot_control.data.run_log import Log
 
 from bench.realtime.loops import FIRST, LAST, Loop
 from bench.realtime.machine import latencies, start_cyclictest
-from bench.rows import bounded, compared
+from bench.rows import Row, Say, bounded, compared
 
 NUMBERS = (1, 2, 4, 6, 8)
 MIN_ROBOTS = 4
@@ -30,9 +28,9 @@ def missed(rows: Log) -> float:
     return 100 * (counted + slips) / cycles
 
 
-def bench(_blocks: int, programs: Path, say: Callable[[str], None]) -> tuple[list[dict[str, Any]], bool]:
+def bench(_blocks: int, programs: Path, say: Say) -> tuple[list[Row], bool]:
     """The rows, and whether so many robots miss no more than that."""
-    rows: list[dict[str, Any]] = []
+    rows: list[Row] = []
     carried = 0
     cores = len(os.sched_getaffinity(0))
     for number in NUMBERS:

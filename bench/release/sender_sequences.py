@@ -20,7 +20,7 @@ from robot_control.robot.pose import Pose
 
 from bench.release.path_jumps import MAX_EXCESS, excess
 from bench.release.senders import CommandSender, GoalSender, PadSender, PathSender, TeleopSender
-from bench.rows import plain
+from bench.rows import Row, Say, plain
 from bench.runs.runner import Runner
 
 PERIOD = 0.02  # s between two passes
@@ -282,7 +282,7 @@ def run_sequence(seed: int) -> Outcome:
     return KINDS[seed % len(KINDS)](seed)
 
 
-def sender_rows(first: int, runs: int, say: Callable[[str], None], runner: Runner) -> list[dict[str, Any]]:
+def sender_rows(first: int, runs: int, say: Say, runner: Runner) -> list[Row]:
     """Rows of `scripts/bench release`: the numbers of sequences, of failures, and of passes in motion."""
     failed = moving = 0
     for one in runner.outcomes(run_sequence, range(first, first + runs), say, chunk=50):

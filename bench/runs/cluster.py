@@ -24,6 +24,7 @@ from distributed import Client, Future, Security
 from distributed.client import CancelledError
 from distributed.scheduler import KilledWorker
 
+from bench.rows import Say
 from bench.runs.address import check_address
 from bench.runs.identity import UNKNOWN, Identity, identity
 from bench.runs.runner import Item, Outcome, with_progress
@@ -72,7 +73,7 @@ class _Work:
     """One call of `outcomes`."""
 
     one: Callable[[Any], Any]
-    say: Callable[[str], None]
+    say: Say
     open: deque[_Chunk]
     running: dict[str, tuple[_Chunk, Future]] = field(default_factory=dict)  # by the worker's address
     ready: queue.Queue[tuple[str, Future]] = field(default_factory=queue.Queue)
@@ -108,7 +109,7 @@ class Cluster:
         self._client.close()
 
     def outcomes(
-        self, one: Callable[[Item], Outcome], items: Sequence[Item], say: Callable[[str], None], chunk: int = 1
+        self, one: Callable[[Item], Outcome], items: Sequence[Item], say: Say, chunk: int = 1
     ) -> Iterator[Outcome]:
         """Yields outcomes as `Runner.outcomes` does.
 

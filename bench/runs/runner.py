@@ -10,6 +10,8 @@ import time
 from collections.abc import Callable, Iterator, Sequence
 from typing import Protocol, TypeVar
 
+from bench.rows import Say
+
 Item = TypeVar("Item")
 Outcome = TypeVar("Outcome")
 
@@ -21,7 +23,7 @@ class Runner(Protocol):
     """A place where items run."""
 
     def outcomes(
-        self, one: Callable[[Item], Outcome], items: Sequence[Item], say: Callable[[str], None], chunk: int = 1
+        self, one: Callable[[Item], Outcome], items: Sequence[Item], say: Say, chunk: int = 1
     ) -> Iterator[Outcome]:
         """Yields `one(item)` of every item, in the order of `items`.
 
@@ -40,7 +42,7 @@ class Processes:
         self._count = count
 
     def outcomes(
-        self, one: Callable[[Item], Outcome], items: Sequence[Item], say: Callable[[str], None], chunk: int = 1
+        self, one: Callable[[Item], Outcome], items: Sequence[Item], say: Say, chunk: int = 1
     ) -> Iterator[Outcome]:
         """Yields outcomes as `Runner.outcomes` does."""
         if self._count == 1:
@@ -50,7 +52,7 @@ class Processes:
             yield from with_progress(pool.imap(one, items, chunksize=chunk), len(items), say)
 
 
-def with_progress(outcomes: Iterator[Outcome], total: int, say: Callable[[str], None]) -> Iterator[Outcome]:
+def with_progress(outcomes: Iterator[Outcome], total: int, say: Say) -> Iterator[Outcome]:
     """The same outcomes; every `REPORT_EVERY` s one line says how many are done and how long the rest takes."""
     began = last = time.monotonic()
     for done, outcome in enumerate(outcomes, 1):

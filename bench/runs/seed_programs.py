@@ -5,11 +5,11 @@ from __future__ import annotations
 import json
 import subprocess
 import time
-from collections.abc import Callable
 from functools import partial
 from pathlib import Path
 from typing import Any
 
+from bench.rows import Say
 from bench.runs.runner import Runner
 
 PROGRAMS = Path(__file__).resolve().parents[2] / "build" / "robot_control" / "bench"
@@ -24,9 +24,7 @@ def run_block(name: str, more: tuple[str, ...], block: tuple[int, int]) -> tuple
     return result, done.stderr
 
 
-def run_seeds(
-    name: str, first: int, runs: int, say: Callable[[str], None], runner: Runner, *more: str
-) -> dict[str, Any]:
+def run_seeds(name: str, first: int, runs: int, say: Say, runner: Runner, *more: str) -> dict[str, Any]:
     """The result of all seeds: the sums of the blocks' counts, and the speed of all of them; `more` follows the seeds
     on the program's command line.
     """

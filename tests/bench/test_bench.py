@@ -5,42 +5,24 @@ import pytest
 
 from bench import main as bench
 from bench.participants import support_program
+from bench.rows import compared, plain
 from bench.runs import seed_programs
 from bench.runs.runner import Processes
 
 ROW = '{"name": "gate step", "value": 88.5, "unit": "ns", "reference": 59, "reference_name": "kernel", "ratio": 1.5}'
 
 
-def test_every_figure_stands_beside_its_ratio():
-    row = {
-        "name": "gate step",
-        "value": 88.5,
-        "unit": "ns",
-        "reference": 59.0,
-        "reference_name": "kernel",
-        "ratio": 1.5,
-    }
-    line = bench.to_table({"bench": "step", "rows": [row]}).splitlines()[1]
-    assert line.split() == ["gate", "step", "88.5", "ns", "59", "1.500", "of", "kernel"]
-
-
-def test_a_count_has_no_reference():
-    row = {"name": "gate allocations", "value": 0, "unit": "", "reference": 0, "reference_name": "none", "ratio": 0}
-    assert bench.to_table({"bench": "step", "rows": [row]}).splitlines()[1].split() == ["gate", "allocations", "0"]
-
-
-def test_robots_that_are_absent_are_named_as_not_judged():
-    row = {"name": "diffbot overshoot", "value": 0.1, "unit": "%", "reference": 0, "reference_name": "", "ratio": 0}
-    table = bench.to_table({"bench": "drive", "rows": [row], "not_judged": ["kobuki", "jackal"]})
-    assert "not judged: kobuki, jackal; no descriptions here" in table.splitlines()[-1]
-    assert "not judged" not in bench.to_table({"bench": "drive", "rows": [row], "not_judged": []})
-
-
-def test_a_table_stands_above_the_rows():
-    row = {"name": "seeds", "value": 3, "unit": "", "reference": 0, "reference_name": "", "ratio": 0}
-    lines = bench.to_table({"bench": "odometry", "rows": [row], "table": ["a line", "another"]}).splitlines()
+def test_figures_stand_beside_their_ratios_below_a_table_and_above_what_is_not_judged():
+    rows = [compared("gate step", 88.5, "ns", 59.0, "kernel"), plain("gate allocations", 0, "")]
+    result = {"bench": "step", "rows": rows}
+    name, figure, count = bench.to_table(result | {"not_judged": []}).splitlines()
+    assert name.startswith("step")
+    assert figure.split() == ["gate", "step", "88.5", "ns", "59", "1.500", "of", "kernel"]
+    assert count.split() == ["gate", "allocations", "0"]
+    result |= {"table": ["a line", "another"], "not_judged": ["kobuki", "jackal"]}
+    lines = bench.to_table(result).splitlines()
     assert lines[:3] == ["a line", "another", ""]
-    assert lines[3].startswith("odometry")
+    assert "not judged: kobuki, jackal; no descriptions here" in lines[-1]
 
 
 def program(folder, text, name="bench_step"):

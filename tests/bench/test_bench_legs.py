@@ -3,10 +3,11 @@
 import pytest
 
 from bench import legs, markdown
+from bench.rows import plain
 
 
 def measured(name, value):
-    return {"name": name, "value": value, "unit": "m", "reference": 0, "reference_name": "", "ratio": 0}
+    return plain(name, value, "m")
 
 
 @pytest.mark.parametrize(

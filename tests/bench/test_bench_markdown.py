@@ -1,15 +1,11 @@
 import re
 
 from bench import markdown
+from bench.rows import compared
 
 
 def row(name, value, reference=0.0, reference_name="none", unit="ns"):
-    ratio = value / reference if reference else 0.0
-    return {"name": name, "value": value, "unit": unit} | {
-        "reference": reference,
-        "reference_name": reference_name,
-        "ratio": ratio,
-    }
+    return compared(name, value, unit, reference, reference_name)
 
 
 def test_a_figure_stands_beside_its_ratio():
@@ -43,12 +39,6 @@ def test_only_the_place_of_the_benchmark_is_replaced():
     assert "old" not in done
     assert done.startswith("a\n<!-- scripts/bench step -->\n\n| figure |")
     assert done.endswith("<!-- end -->\nb\n<!-- scripts/bench plant -->\nkept\n<!-- end -->\n")
-
-
-def test_a_page_without_a_place_gets_one_at_its_end():
-    done = markdown.replaced("a\n", {"bench": "frames", "rows": [row("lost", 1.0)]})
-    assert done.startswith("a\n\n<!-- scripts/bench frames -->\n\n| figure |")
-    assert done.endswith("\n\n<!-- end -->\n")
 
 
 def test_a_benchmark_without_a_file_creates_it_and_replaces_its_table_later(tmp_path, monkeypatch):

@@ -15,9 +15,9 @@ from robot_control.fleet.v2.state import factsheet, visualization
 from robot_control.installed_files import share_file
 from robot_control.settings.files import SettingsError
 from robot_control.setup.description import describe
+from support.virtual_robot import MACHINE, Run, ordered
 
 from bench.fleet.messages import MANUFACTURER, SERIAL, action, header, order, unknown_names
-from bench.fleet.virtual_robot import MACHINE, Run
 
 jsonschema = pytest.importorskip("jsonschema", reason="needs Debian's python3-jsonschema: scripts/setup --fleet")
 PLACES = [(0.0, 0.0), (1.0, 0.0), (1.5, 0.0), (1.5, 1.0, 0.0)]
@@ -32,9 +32,7 @@ def valid(topic, message):
 
 
 def test_every_message_of_an_order_with_all_that_can_happen_is_valid():
-    run = Run()
-    run.send(order(PLACES, 2, actions={2: [action("horn", 1, "SOFT", volume=3)], 5: [action("horn", 2)]}))
-    run.step(3.0)
+    run = ordered(order(PLACES, 2, actions={2: [action("horn", 1, "SOFT", volume=3)], 5: [action("horn", 2)]}), 3.0)
     run.send({**header(), "actions": [action("startPause", 3, "HARD"), action("factsheetRequest", 4)]})
     run.step(1.0)
     run.robot.given = replace(
@@ -206,8 +204,7 @@ def test_header_ids_grow_over_restarts_with_one_write_per_thousand(tmp_path):
 
 def test_what_was_saved_outlives_and_another_file_is_moved_aside(tmp_path):
     path = tmp_path / "r1.json"
-    run = Run()
-    run.send(order(PLACES))
+    run = ordered(order(PLACES))
     Memory(path).save(vehicle=run.client.vehicle.dump())
     again = Memory(path)
     assert again["vehicle"]["ids"][0] == "o1"

@@ -4,10 +4,10 @@ import json
 
 import pytest
 from robot_control.fleet.client import DUPLICATE_SILENCE
+from support.fleet_attack import mutated
+from support.virtual_robot import Run, ordered
 
-from bench.fleet.attack import mutated
 from bench.fleet.messages import action, header, order
-from bench.fleet.virtual_robot import Run
 
 pytest.importorskip("jsonschema", reason="needs Debian's python3-jsonschema: scripts/setup --fleet")
 PLACES = [(0.0, 0.0), (1.0, 0.0), (2.0, 0.0)]
@@ -82,9 +82,7 @@ def test_a_retained_message_is_refused_for_its_age_is_not_known():
 
 
 def test_a_second_client_of_the_serial_number_makes_the_robot_stand_until_a_person_or_the_master_resumes():
-    run = Run()
-    run.send(order(PLACES))
-    run.step(2.0)
+    run = ordered(order(PLACES), 2.0)
     assert run.robot.motion.linear > 0.2
     run.client.receive("connection", b'{"connectionState": "ONLINE"}', run.now)
     run.step(3.0)

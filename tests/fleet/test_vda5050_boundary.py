@@ -31,12 +31,12 @@ from robot_control.robot import boundary as crossing
 from robot_control.robot.pose import turned
 from robot_control.settings.files import SettingsError
 from sensor_msgs.msg import BatteryState
+from support.fleet_attack import mutated, seeds
 from support.mutants import mutants
 from support.timed import longest, timed
+from support.virtual_robot import MACHINE, Run, VirtualRobot, ordered
 
-from bench.fleet.attack import mutated, seeds
 from bench.fleet.messages import MANUFACTURER, SERIAL, action, header, order
-from bench.fleet.virtual_robot import MACHINE, Run, VirtualRobot
 
 jsonschema = pytest.importorskip("jsonschema", reason="needs Debian's python3-jsonschema: scripts/setup --fleet")
 STATE = jsonschema.Draft202012Validator(schema("state"))
@@ -101,8 +101,7 @@ def test_the_largest_order_is_decoded_and_checked_in_time():
 
 
 def refused(message, words):
-    run = Run()
-    run.send(message)
+    run = ordered(message)
     (error,) = run.state["errors"]
     assert words in error["errorDescription"]
     assert not run.state["nodeStates"]
@@ -138,9 +137,7 @@ def test_weights_far_apart_are_refused_and_equal_ones_of_any_size_are_a_curve():
 
 
 def test_each_action_of_a_message_is_taken_for_itself():
-    run = Run()
-    run.send(order(PLACES))
-    run.step(2.0)
+    run = ordered(order(PLACES), 2.0)
     state = run.send({**header(), "actions": [action("dance", 1), action("startPause", 2), action("cancelOrder", 3)]})
     assert {each["actionId"]: each["actionStatus"] for each in state["actionStates"]}["1"] == "FAILED"
     assert state["paused"]
@@ -160,9 +157,7 @@ def test_instant_actions_that_never_end_are_bounded_and_a_pause_is_taken():
 
 
 def test_a_flood_of_what_concerns_the_order_is_bounded_and_each_of_it_is_taken():
-    run = Run()
-    run.send(order(PLACES))
-    run.step(2.0)
+    run = ordered(order(PLACES), 2.0)
     for kind in ("startPause", "cancelOrder"):
         for first in range(0, 960, 32):
             flood = [action(kind, f"{kind} {first + number}") for number in range(32)]
@@ -278,9 +273,7 @@ def test_a_pause_at_the_robot_while_an_order_is_taken_counts(at):
 
 
 def test_a_path_held_at_the_robot_that_is_not_answered_holds_nothing_up():
-    run = Run()
-    run.send(order(PLACES))
-    run.step(2.0)
+    run = ordered(order(PLACES), 2.0)
     run.robot.given = replace(run.robot.given, held_by="paused at the robot")
     run.step(0.1)
     run.robot.begin = run.robot.begun.append  # its answer comes late

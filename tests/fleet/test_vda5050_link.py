@@ -12,9 +12,9 @@ from robot_control.fleet.master import Master
 from robot_control.fleet.memory import Memory
 from robot_control.fleet.settings import Settings
 from robot_control.robot.boundary import Boundary
+from support.virtual_robot import Run
 
 from bench.fleet.broker import Broker, missing
-from bench.fleet.virtual_robot import Run
 
 pytestmark = pytest.mark.skipif(bool(missing()), reason=missing())
 ACTIONS = "uagv/v2/robot_control/r1/instantActions"

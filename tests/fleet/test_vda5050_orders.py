@@ -12,10 +12,10 @@ from robot_control.fleet.v2.curve import CurveError, points_of
 from robot_control.fleet.v2.messages import RefusedError
 from robot_control.fleet.v2.order import order_of
 from robot_control.robot.pose import Pose
+from support.virtual_robot import Run, VirtualRobot, ordered
 
 from bench.fleet import sequences
 from bench.fleet.messages import action, header, order
-from bench.fleet.virtual_robot import Run, VirtualRobot
 
 ROOT = Path(__file__).parents[2]
 LINE = [(0.0, 0.0), (1.0, 0.0), (2.0, 0.0), (3.0, 0.0)]
@@ -35,6 +35,12 @@ def statuses(state):
 
 def nodes(state):
     return [(each["nodeId"], each["released"]) for each in state["nodeStates"]]
+
+
+def end_of(run):
+    """The place of the robot when its order is completed; it compares within 2 cm."""
+    run.until_over()
+    return pytest.approx((run.robot.pose.x, run.robot.pose.y), abs=0.02)
 
 
 def malformed(**changes):
@@ -107,8 +113,7 @@ def test_the_first_node_is_one_on_which_the_robot_stands():
 
 
 def test_another_order_is_refused_while_one_is_executed():
-    run = Run()
-    run.send(order(LINE))
+    run = ordered(order(LINE))
     state = run.send(order(LINE, name="o2"))
     assert (state["orderId"], kinds(state)) == ("o1", ["orderError"])
     references = {each["referenceKey"]: each["referenceValue"] for each in state["errors"][0]["errorReferences"]}
@@ -117,16 +122,12 @@ def test_another_order_is_refused_while_one_is_executed():
 
 
 def test_a_horizon_counts_as_executing():
-    run = Run()
-    run.send(order(LINE, 1))
-    run.step(1.0)
+    run = ordered(order(LINE, 1), 1.0)
     assert kinds(run.send(order(LINE, name="o2"))) == ["orderError"]
 
 
 def test_another_order_is_taken_after_the_last_one():
-    run = Run()
-    run.send(order(LINE[:2], actions={2: [action("horn", 1, "SOFT")]}))
-    run.step(6.0)
+    run = ordered(order(LINE[:2], actions={2: [action("horn", 1, "SOFT")]}), 6.0)
     assert kinds(run.send(order(LINE[1:], name="o2", first=0))) == ["orderError"]  # its action runs
     run.robot.ended.append(("1", "FINISHED", "ok"))
     run.step(0.1)
@@ -135,8 +136,7 @@ def test_another_order_is_taken_after_the_last_one():
 
 
 def test_an_update_with_a_lower_id_is_refused_and_the_order_goes_on():
-    run = Run()
-    run.send(order(LINE, 2, update=5))
+    run = ordered(order(LINE, 2, update=5))
     state = run.send(order(LINE[1:], update=4, first=1))
     assert (state["orderUpdateId"], kinds(state)) == (5, ["orderUpdateError"])
     run.step(6.0)
@@ -144,9 +144,7 @@ def test_an_update_with_a_lower_id_is_refused_and_the_order_goes_on():
 
 
 def test_the_same_update_is_ignored():
-    run = Run()
-    run.send(order(LINE))
-    run.step(1.0)
+    run = ordered(order(LINE), 1.0)
     before = len(run.states)
     state = run.send(order(LINE))
     assert kinds(state) == []
@@ -155,8 +153,7 @@ def test_the_same_update_is_ignored():
 
 
 def test_an_update_is_stitched_to_the_last_released_node_not_to_the_last_one():
-    run = Run()
-    run.send(order(LINE, 2))
+    run = ordered(order(LINE, 2))
     assert kinds(run.send(order(LINE[3:], update=1, first=3))) == ["orderUpdateError"]
     state = run.send(order(LINE[1:3], update=1, first=1))
     assert kinds(state) == []
@@ -164,16 +161,14 @@ def test_an_update_is_stitched_to_the_last_released_node_not_to_the_last_one():
 
 
 def test_the_decision_point_is_node_and_sequence():
-    run = Run()
-    run.send(order(LINE, 2))
+    run = ordered(order(LINE, 2))
     other = order(LINE[1:], update=1, first=1)
     other["nodes"][0]["nodeId"] = other["edges"][0]["startNodeId"] = "n9"
     assert kinds(run.send(other)) == ["orderUpdateError"]
 
 
 def test_a_horizon_can_be_changed_and_removed():
-    run = Run()
-    run.send(order(LINE, 2, actions={4: [action("horn", 1)]}))
+    run = ordered(order(LINE, 2, actions={4: [action("horn", 1)]}))
     assert statuses(run.state) == {"1": "WAITING"}
     state = run.send(order([(1.0, 0.0), (1.0, 1.0)], 1, update=1, first=1, actions={4: [action("horn", 2)]}))
     assert nodes(state) == [("n1", True), ("n2", False)]
@@ -184,8 +179,7 @@ def test_a_horizon_can_be_changed_and_removed():
 
 
 def test_the_stitching_node_keeps_its_content():
-    run = Run()
-    run.send(order(LINE, 2, actions={2: [action("horn", 1, "HARD")]}))
+    run = ordered(order(LINE, 2, actions={2: [action("horn", 1, "HARD")]}))
     run.send(order(LINE[1:], update=1, first=1, actions={2: [action("horn", 2)]}))
     assert statuses(run.state) == {"1": "WAITING"}
     run.step(7.0)
@@ -193,45 +187,38 @@ def test_the_stitching_node_keeps_its_content():
 
 
 def test_a_completed_order_is_continued_at_its_last_node():
-    run = Run()
-    run.send(order(LINE[:2]))
+    run = ordered(order(LINE[:2]))
     run.until_over()
     assert kinds(run.send(order(LINE[2:], update=1, first=2))) == ["orderUpdateError"]
     state = run.send(order(LINE[1:], update=2, first=1))
     assert kinds(state) == []
     assert nodes(state) == [("n2", True), ("n3", True)]
-    run.until_over()
-    assert run.robot.pose.x == pytest.approx(3.0, abs=0.02)
+    assert end_of(run) == (3.0, 0.0)
 
 
 def test_a_node_that_was_reached_is_not_measured_again():
-    run = Run()
-    run.send(order(LINE[:2]))
+    run = ordered(order(LINE[:2]))
     run.until_over()
     run.robot.pose = Pose(0.947, 0.0, 0.0)  # localization corrects the place
     run.step(0.1)
     assert kinds(run.send(order(LINE[1:], update=1, first=1))) == []
-    run.until_over()
-    assert run.robot.pose.x == pytest.approx(3.0, abs=0.02)
+    assert end_of(run) == (3.0, 0.0)
 
 
 def test_a_robot_stands_on_the_node_that_it_reached_last_until_it_drives():
-    run = Run()
-    run.send(order(LINE[:2]))
+    run = ordered(order(LINE[:2]))
     run.until_over()
     run.robot.pose = Pose(0.947, 0.0, 0.0)  # localization corrects the place
     run.step(0.1)
     elsewhere = order([(1.2, 0.0), *LINE[2:]], name="o2", first=1)
     assert kinds(run.send(elsewhere)) == ["orderError"]
     assert kinds(run.send(order(LINE[1:], name="o2", first=1))) == []
-    run.until_over()
-    assert run.robot.pose.x == pytest.approx(3.0, abs=0.02)
+    assert end_of(run) == (3.0, 0.0)
 
 
 @pytest.mark.parametrize("drop", ["cancelOrder", "MANUAL", "initPosition"])
 def test_a_dropped_order_is_continued_only_on_its_last_node(drop):
-    run = Run()
-    run.send(order(LINE[:1]))
+    run = ordered(order(LINE[:1]))
     if drop == "cancelOrder":
         run.send(order(LINE, update=1))
         run.step(1.5)
@@ -250,8 +237,7 @@ def test_a_dropped_order_is_continued_only_on_its_last_node(drop):
     run.robot.pose = Pose(0.0, 0.0, 0.0)
     run.step(0.1)
     assert kinds(run.send(order(LINE, update=2))) == []
-    run.until_over()
-    assert run.robot.pose.x == pytest.approx(3.0, abs=0.02)
+    assert end_of(run) == (3.0, 0.0)
 
 
 def test_a_loop_passes_one_node_twice():
@@ -269,9 +255,7 @@ def test_a_loop_passes_one_node_twice():
 
 
 def test_an_error_is_reported_until_an_order_is_accepted():
-    run = Run()
-    run.send(order(LINE, name=""))
-    run.step(31.0)
+    run = ordered(order(LINE, name=""), 31.0)
     assert kinds(run.state) == ["validationError"]
     assert kinds(run.send(order(LINE))) == []
 
@@ -280,9 +264,7 @@ def test_an_error_is_reported_until_an_order_is_accepted():
 
 
 def test_cancel_order_stops_between_nodes_and_keeps_the_ids():
-    run = Run()
-    run.send(order(LINE, actions={0: [action("horn", 1)], 4: [action("horn", 2)]}))
-    run.step(2.0)
+    run = ordered(order(LINE, actions={0: [action("horn", 1)], 4: [action("horn", 2)]}), 2.0)
     state = run.send(instant(action("cancelOrder", "c", "HARD")))
     assert statuses(state) == {"1": "FAILED", "2": "FAILED", "c": "RUNNING"}
     assert state["nodeStates"]
@@ -318,9 +300,7 @@ def test_cancel_order_without_an_order_fails_with_its_id():
 
 
 def cancelled():
-    run = Run()
-    run.send(order(LINE))
-    run.step(1.5)
+    run = ordered(order(LINE), 1.5)
     run.send(instant(action("cancelOrder", "c")))
     run.step(3.0)
     assert not run.client.vehicle.executing
@@ -331,8 +311,7 @@ def test_after_a_cancel_an_order_begins_at_a_temporary_node():
     run = cancelled()
     x = run.robot.pose.x
     assert kinds(run.send(order([(x, 0.0), (x, 1.0)], name="o2"))) == []
-    run.until_over()
-    assert (run.robot.pose.x, run.robot.pose.y) == pytest.approx((x, 1.0), abs=0.02)
+    assert end_of(run) == (x, 1.0)
 
 
 def test_after_a_cancel_an_order_begins_at_the_last_node_with_a_wide_deviation():
@@ -341,8 +320,7 @@ def test_after_a_cancel_an_order_begins_at_the_last_node_with_a_wide_deviation()
     wide["nodes"][0]["nodePosition"]["allowedDeviationXY"] = 2.0
     assert kinds(run.send(wide)) == []
     goal = run.robot.pose.x
-    run.until_over()
-    assert run.robot.pose.x == pytest.approx(3.0, abs=0.02)
+    assert end_of(run) == (3.0, 0.0)
     assert min(run.speeds[-100:]) >= 0
     assert goal < 3.0
 
@@ -432,8 +410,7 @@ def test_max_speed_holds_on_its_edge():
 def test_an_edge_is_driven_forwards_or_backwards(fields, sign, kind):
     run = Run(VirtualRobot(yaw=0.0 if sign > 0 else math.pi))
     run.send(order(LINE[:2], orientationType=kind, **fields))
-    run.until_over()
-    assert run.robot.pose.x == pytest.approx(1.0, abs=0.02)
+    assert end_of(run) == (1.0, 0.0)
     assert (max(run.speeds), min(run.speeds)) == pytest.approx((0.5, 0.0) if sign > 0 else (0.0, -0.5), abs=0.02)
 
 
@@ -457,8 +434,7 @@ def test_an_edge_without_length_turns_the_robot_on_the_spot():
         run.step(0.02)
     assert run.robot.pose.yaw == pytest.approx(math.pi / 2, abs=0.02)
     assert (run.robot.pose.x, run.robot.pose.y) == (0.0, 0.0)
-    run.until_over()
-    assert (run.robot.pose.x, run.robot.pose.y) == pytest.approx((0.0, 1.0), abs=0.02)
+    assert end_of(run) == (0.0, 1.0)
     field_refused(Run(), order([(0.0, 0.0)] * 2, orientation=1.0, orientationType="GLOBAL"), "orientation")
 
 
@@ -487,9 +463,7 @@ def test_an_orientation_within_its_deviation_needs_no_turn():
 
 @pytest.mark.parametrize("after", ["startPause", "cancelOrder", "restart"])
 def test_a_turn_on_the_first_node_is_paused_cancelled_and_kept_as_any_way(after):
-    run = Run()
-    run.send(order([(0.0, 0.0, math.pi / 2), (1.0, 0.0)]))
-    run.step(0.5)
+    run = ordered(order([(0.0, 0.0, math.pi / 2), (1.0, 0.0)]), 0.5)
     if after == "restart":
         run.restart()
     else:
@@ -537,10 +511,8 @@ def test_a_trajectory_is_a_nurbs():
         "controlPoints": [{"x": 0, "y": 0}, {"x": 1, "y": 0, "weight": math.sqrt(0.5)}, {"x": 1, "y": 1}],
     }
     assert [math.hypot(x, y - 1) for x, y in points_of(arc)] == pytest.approx([1.0] * len(points_of(arc)))
-    run = Run()
-    run.send(order([(0.0, 0.0), (1.0, 1.0)], trajectory=arc))
-    run.until_over()
-    assert (run.robot.pose.x, run.robot.pose.y) == pytest.approx((1.0, 1.0), abs=0.02)
+    run = ordered(order([(0.0, 0.0), (1.0, 1.0)], trajectory=arc))
+    assert end_of(run) == (1.0, 1.0)
     cubic = {
         "degree": 1,
         "knotVector": [0, 0, 0.5, 1, 1],
@@ -576,9 +548,7 @@ def test_a_corner_of_a_trajectory_needs_rotation_to_be_allowed():
 
 
 def test_a_pause_stands_and_the_order_goes_on_after_it():
-    run = Run()
-    run.send(order(LINE))
-    run.step(2.0)
+    run = ordered(order(LINE), 2.0)
     state = run.send(instant(action("startPause", "p", "HARD")))
     assert state["paused"]
     assert statuses(state) == {"p": "RUNNING"}
@@ -587,8 +557,7 @@ def test_a_pause_stands_and_the_order_goes_on_after_it():
     assert run.robot.motion.linear == 0.0
     assert run.state["nodeStates"]
     assert not run.send(instant(action("stopPause", "s")))["paused"]
-    run.until_over()
-    assert run.robot.pose.x == pytest.approx(3.0, abs=0.02)
+    assert end_of(run) == (3.0, 0.0)
 
 
 def test_an_instant_action_that_comes_twice_runs_once():
@@ -637,9 +606,7 @@ def test_a_node_is_reached_within_its_deviation_with_its_edge():
 
 
 def test_no_stop_at_a_node_where_the_base_goes_on():
-    run = Run()
-    run.send(order(LINE, 2, maxSpeed=0.4))
-    run.step(1.5)
+    run = ordered(order(LINE, 2, maxSpeed=0.4), 1.5)
     run.send(order(LINE[1:], update=1, first=1, maxSpeed=0.4))
     passing = []
     while run.robot.pose.x < 2.5:
@@ -650,8 +617,7 @@ def test_no_stop_at_a_node_where_the_base_goes_on():
 
 
 def test_a_new_base_is_requested_before_the_robot_brakes():
-    run = Run()
-    run.send(order([(0.0, 0.0), (3.0, 0.0), (4.0, 0.0)], 2))
+    run = ordered(order([(0.0, 0.0), (3.0, 0.0), (4.0, 0.0)], 2))
     while not run.state["newBaseRequest"]:
         run.step(0.02)
     assert run.robot.pose.x == pytest.approx(3.0 - 0.5**2 / 0.6 - 1.0, abs=0.15)
@@ -659,9 +625,7 @@ def test_a_new_base_is_requested_before_the_robot_brakes():
 
 
 def test_a_person_who_drives_clears_the_order():
-    run = Run()
-    run.send(order(LINE, actions={4: [action("horn", 1)]}))
-    run.step(1.0)
+    run = ordered(order(LINE, actions={4: [action("horn", 1)]}), 1.0)
     run.robot.given = replace(run.robot.given, mode="MANUAL")
     run.step(3.0)
     assert run.state["operatingMode"] == "MANUAL"
@@ -672,9 +636,7 @@ def test_a_person_who_drives_clears_the_order():
 
 
 def test_after_a_stop_nothing_moves_by_itself():
-    run = Run()
-    run.send(order(LINE))
-    run.step(2.0)
+    run = ordered(order(LINE), 2.0)
     run.robot.given = replace(run.robot.given, may_drive=False, stopped=True)
     run.step(3.0)
     assert run.state["safetyState"]["eStop"] == "MANUAL"
@@ -686,15 +648,12 @@ def test_after_a_stop_nothing_moves_by_itself():
     assert run.state["paused"]
     assert run.robot.motion.linear == 0.0
     run.send(instant(action("stopPause", 2)))
-    run.until_over()
-    assert run.robot.pose.x == pytest.approx(3.0, abs=0.02)
+    assert end_of(run) == (3.0, 0.0)
     assert kinds(run.state) == []
 
 
 def test_a_gap_of_the_messages_pauses_no_order_and_a_stop_that_was_not_seen_does():
-    run = Run()
-    run.send(order(LINE, 2))
-    run.step(6.0)
+    run = ordered(order(LINE, 2), 6.0)
     run.robot.given = replace(run.robot.given, silent=True)
     run.step(1.0)
     run.send(order(LINE[1:], update=1, first=1))
@@ -710,9 +669,7 @@ def test_a_gap_of_the_messages_pauses_no_order_and_a_stop_that_was_not_seen_does
 
 
 def test_after_a_restart_the_order_stands_paused():
-    run = Run()
-    run.send(order(LINE, actions={6: [action("horn", 1)]}))
-    run.step(2.0)
+    run = ordered(order(LINE, actions={6: [action("horn", 1)]}), 2.0)
     run.restart()
     run.step(3.0)
     assert run.state["paused"]
@@ -765,9 +722,7 @@ def test_hard_runs_alone_and_in_its_sequence():
 
 
 def test_an_action_of_an_edge_ends_with_it():
-    run = Run()
-    run.send(order(LINE, actions={1: [action("horn", 1)], 3: [action("horn", 2)]}))
-    run.step(1.0)
+    run = ordered(order(LINE, actions={1: [action("horn", 1)], 3: [action("horn", 2)]}), 1.0)
     assert statuses(run.state) == {"1": "RUNNING", "2": "WAITING"}
     run.step(2.5)
     assert run.state["lastNodeId"] == "n1"
@@ -775,9 +730,7 @@ def test_an_action_of_an_edge_ends_with_it():
 
 
 def test_an_edge_of_the_horizon_is_entered_when_it_is_released():
-    run = Run()
-    run.send(order(LINE, 1, actions={1: [action("horn", 1)]}))
-    run.step(1.0)
+    run = ordered(order(LINE, 1, actions={1: [action("horn", 1)]}), 1.0)
     assert statuses(run.state) == {"1": "WAITING"}
     run.send(order(LINE, update=1, actions={1: [action("horn", 2)]}))
     run.step(0.1)

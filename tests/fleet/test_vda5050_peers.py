@@ -9,9 +9,9 @@ import pytest
 from robot_control.fleet.v2.messages import time_text
 from robot_control.fleet.v2.state import visualization
 from support.pypi_package import imported
+from support.virtual_robot import Run
 
 from bench.fleet.messages import MANUFACTURER, SERIAL
-from bench.fleet.virtual_robot import Run
 
 TARGET = f"{MANUFACTURER}/{SERIAL}"
 TOPIC = f"uagv/v2/{TARGET}"

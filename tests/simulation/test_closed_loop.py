@@ -36,15 +36,6 @@ def loop():
     return ClosedLoop()
 
 
-def test_tracks_the_command_on_a_physical_plant(loop):
-    log = drive(loop, 12.0)
-    steady = log["time"] >= 2.0
-    for wanted, name in zip(COMMAND, ("truth_linear", "truth_angular"), strict=False):
-        true = log[name][steady]
-        assert abs(true.mean() / wanted - 1) < 0.01
-        assert np.max(np.abs(true / wanted - 1)) < 0.05
-
-
 COMMANDS = [(0.5, 0.2), (-0.5, 0.2), (0.0, 1.0), (0.8, -0.5)]  # m/s, rad/s
 
 
@@ -90,8 +81,7 @@ def test_drives_again_after_a_reset_at_rest_without_a_jump(loop):
     assert log["truth_linear"][-1] == pytest.approx(0.5, rel=0.01)
 
 
-@pytest.mark.parametrize("scene", [None, SLOPE], ids=["flat", "slope"])
-@pytest.mark.parametrize("command", [(0.5, 0.2), (-0.5, 0.0)])
+@pytest.mark.parametrize(("scene", "command"), [(None, (0.5, 0.2)), (SLOPE, (-0.5, 0.0))])
 def test_stands_within_a_millimetre_for_a_minute(scene, command):
     """The limit holds from the first cycle of standstill, with the hand-over between drive and brake."""
     loop = ClosedLoop(scene=scene)
@@ -205,34 +195,11 @@ def test_a_command_script_speaks_like_a_sender(tmp_path):
     assert np.array_equal(commands["truth_x"], log["truth_x"][:2400])
 
 
-@pytest.mark.parametrize("rate", [100, 500, 1000, 2000])
-def test_tracks_at_every_rate(rate):
-    gains = {"pid_kp": 0.17, "pid_ki": 0.6} if rate == 100 else {}  # 2, 20 would be unstable at that rate
-    loop = ClosedLoop({"robot": {"rate": rate}, "diff_drive_controller": gains})
-    log = drive(loop, 5.0)
-    assert log["truth_linear"][-1] == pytest.approx(0.5, rel=0.02)
-
-
 def test_takes_lists():
     wheels = {"left_wheel_joints": ["left_wheel_joint"], "right_wheel_joints": ("right_wheel_joint",)}
     drive(ClosedLoop({"robot": {**wheels, "centre_of_gravity": np.array([0.0, 0.0, 0.1])}}), 0.1)
     with pytest.raises(RobotError, match=r"no_such_joint"):
         ClosedLoop({"robot": {**wheels, "right_wheel_joints": ["no_such_joint"]}})
-
-
-@pytest.mark.parametrize("rate", [100, 250, 333, 500, 2000])
-def test_derived_gains_hold_the_commanded_motion_at_every_rate(rate):
-    """The sensors err; 1 % is the promise for 1 kHz. Then the brake holds, and nothing disturbs it.
-
-    The errors are those of the data sheet: with a wrong centre of gravity the slow loops of 100 Hz need more than 2 s.
-    """
-    loop = ClosedLoop({"robot": {"rate": rate}, "mujoco_plant": {"sensor_errors": "data_sheet"}})
-    log = drive(loop, 4.0)
-    steady = log["time"] > 2.0
-    assert np.mean(log["truth_linear"][steady]) == pytest.approx(0.5, rel=0.01)
-    assert np.mean(log["truth_angular"][steady]) == pytest.approx(0.2, rel=0.01)
-    drive(loop, 3.0, (0.0, 0.0))
-    assert moved(drive(loop, 5.0, (0.0, 0.0))) < 1e-3
 
 
 @pytest.mark.parametrize(("gains", "cycles"), [({}, 2), ({"pid_kp": 1.0, "pid_ki": 5.0}, 7)])
@@ -253,19 +220,27 @@ def test_refuses_wrong_parameters_all_at_once():
         assert word in str(refusal.value)
 
 
-def test_refuses_a_scene_that_does_not_compile(tmp_path):
-    scene = tmp_path / "scene.xml"
-    scene.write_text("<mujoco><worldbody><geom type='no_such_type'/></worldbody></mujoco>")
-    with pytest.raises(DriverError, match=r"no_such_type|keyword"):
-        ClosedLoop(scene=scene)
+INERTIAL = "<inertial><mass value='1'/><inertia ixx='1' iyy='1' izz='1' ixy='0' ixz='0' iyz='0'/></inertial>"
 
 
-def test_refuses_a_robot_without_wheels(tmp_path):
-    urdf = tmp_path / "robot.urdf"
-    inertial = "<inertial><mass value='1'/><inertia ixx='1' iyy='1' izz='1' ixy='0' ixz='0' iyz='0'/></inertial>"
-    urdf.write_text(f"<robot name='r'><link name='base_link'>{inertial}</link></robot>")
-    with pytest.raises(RobotError, match=r"left_wheel_joint"):
-        ClosedLoop(urdf=urdf)
+@pytest.mark.parametrize(
+    ("what", "text", "error", "said"),
+    [
+        (
+            "scene",
+            "<mujoco><worldbody><geom type='no_such_type'/></worldbody></mujoco>",
+            DriverError,
+            "no_such_type|keyw",
+        ),
+        ("urdf", f"<robot name='r'><link name='base_link'>{INERTIAL}</link></robot>", RobotError, "left_wheel_joint"),
+        ("urdf", None, RobotError, r"given\.xml"),
+    ],
+)
+def test_refuses_a_file_that_is_none(tmp_path, what, text, error, said):
+    if text is not None:
+        (tmp_path / "given.xml").write_text(text)
+    with pytest.raises(error, match=said):
+        ClosedLoop(**{what: tmp_path / "given.xml"})
 
 
 @pytest.mark.parametrize("command", [5, (1,), (1, 2, 3, 4), lambda t: None, lambda t: "fast"])
@@ -280,8 +255,3 @@ def test_refuses_to_step_inside_its_own_run(loop):
         loop.run(0.01, lambda t: loop.step() and (0, 0))
     with pytest.raises(RuntimeError, match="command function"):
         loop.run(0.01, lambda t: loop.reset() or (0, 0))
-
-
-def test_refuses_a_missing_file():
-    with pytest.raises((RobotError, ParameterError), match=r"nowhere.urdf"):
-        ClosedLoop(urdf="/nowhere.urdf")

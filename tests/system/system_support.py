@@ -48,6 +48,11 @@ SETTLING = 0.5
 """s; for 0.3 s after a ramp the estimate still shows single counts of an encoder as 1 cm/s."""
 STALL_CAUSES = {"driver_lost", "controller_lost", "estimator_lost", "monitor_late", "command_stale", "gate_refuses"}
 """Causes that a machine may latch by itself after it stood still for loss_cycles, 20 ms."""
+LISTED_SOURCES = (
+    "/diff_drive_controller/command_sources",
+    str(Path(roslib.packages.get_pkg_dir("robot_control"), "config/command_sources.yaml")),
+)
+"""The parameter of a robot that knows the shipped command sources"""
 LOOP_STALL = 0.016
 """s; of these 20, command and permit may have survived the first 4 (kPermitLife)."""
 LOOP_WITNESS = StallWitness(LOOP_STALL, 85, [0])  # robot.core of robot_params.yaml, above LoopPriority::kDriver
@@ -224,6 +229,18 @@ def truncated_messages(topics: Mapping[str, type]) -> Iterator[None]:
             publisher.unregister()
 
 
+class Latest:
+    """The newest message of a topic."""
+
+    def __init__(self, topic: str, kind: type) -> None:
+        self.message: Any = None
+        self.count = 0
+        self._subscriber = rospy.Subscriber(topic, kind, self._receive)
+
+    def _receive(self, message: object) -> None:
+        self.message, self.count = message, self.count + 1
+
+
 class Report(NamedTuple):
     """A node's newest status on /diagnostics."""
 
@@ -244,8 +261,8 @@ class Robot:
         self.stall_witness = LOOP_WITNESS
         self.nodes: dict[str, Program] = {}
         self.odom: Odometry | None = None
-        self.joints: JointState | None = None
-        self.wheels: tuple[float, ...] = ()
+        self._joints: Latest | None = None
+        self._wheels: Latest | None = None
         self.status: SafetyStatus | None = None
         self.revoked: tuple[str, ...] = ()
         """Senders whose motion is refused until they send zero."""
@@ -254,11 +271,8 @@ class Robot:
         self.odom_count = 0
         self._moved_at = -math.inf  # s, monotonic
         self._stopped_at = -math.inf  # s, monotonic
-        self.joints_count = 0
         self._subscribers = [
             rospy.Subscriber(self.name("odom"), Odometry, self._receive_odom),
-            rospy.Subscriber(self.name("joint_states"), JointState, self._receive_joints),
-            rospy.Subscriber(self.name("joint_commands"), Float64MultiArray, self._receive_wheels),
             rospy.Subscriber(self.name("safety_status"), SafetyStatus, self._receive_status),
             rospy.Subscriber(self.name("drive_state"), DriveState, self._receive_drive_state),
             rospy.Subscriber("/diagnostics", DiagnosticArray, self._receive_diagnostics),
@@ -389,6 +403,19 @@ class Robot:
         return self.odom is not None and time.monotonic() - self._moved_at > SETTLING
 
     @property
+    def joints(self) -> JointState:
+        """The newest joint_states; few tests need the 100 messages of each second."""
+        latest = self._joints = self._joints or Latest(self.name("joint_states"), JointState)
+        wait_for("joint_states", lambda: latest.message is not None)
+        return latest.message
+
+    @property
+    def wheels(self) -> tuple[float, ...]:
+        """The newest targets on joint_commands, from the first question on."""
+        self._wheels = self._wheels or Latest(self.name("joint_commands"), Float64MultiArray)
+        return () if self._wheels.message is None else tuple(self._wheels.message.data)
+
+    @property
     def pose(self) -> Pose:
         """Estimated, in odom."""
         assert self.odom is not None
@@ -410,13 +437,6 @@ class Robot:
         self.odom_count += 1
         if not abs(self.speed) < STANDING:
             self._moved_at = time.monotonic()
-
-    def _receive_joints(self, message: JointState) -> None:
-        self.joints = message
-        self.joints_count += 1
-
-    def _receive_wheels(self, message: Float64MultiArray) -> None:
-        self.wheels = tuple(message.data)
 
     def _receive_drive_state(self, message: DriveState) -> None:
         self.revoked = tuple(message.revoked)
@@ -444,25 +464,38 @@ def running_robot(namespace: str = "") -> Iterator[Robot]:
 
 
 def init_test_node(name: str) -> None:
-    """Initialises the node; SIGINT stays with unittest."""
-    rospy.init_node(name, anonymous=True, disable_signals=True)
+    """Initialises the node, once in a process; SIGINT stays with unittest."""
+    if not rospy.core.is_initialized():
+        rospy.init_node(name, anonymous=True, disable_signals=True)
 
 
 class RobotTestCase(unittest.TestCase):
-    """Tests that share one robot in the root namespace."""
+    """Tests that share one robot in the root namespace, a `shared` one with the other classes of this process."""
 
     robot: Robot
     prefix: Sequence[str] = ()
+    parameters: Sequence[tuple[str, object]] = ()
+    """of the server, from the start of the robot on"""
+    shared: Robot | None = None
+    """set by shared_robot.py, which ends it"""
 
     @classmethod
     def setUpClass(cls) -> None:
         init_test_node(cls.__name__)
-        cls.robot = Robot(prefix=cls.prefix)
-        cls.robot.start()
+        for name, value in cls.parameters:
+            rospy.set_param(name, value)
+        cls.robot = cls.shared or Robot(prefix=cls.prefix)
+        if not cls.robot.nodes:
+            cls.robot.start()
 
     @classmethod
     def tearDownClass(cls) -> None:
-        cls.robot.end()
+        if cls.shared is None:
+            cls.robot.end()
+
+    def setUp(self) -> None:
+        self.robot.await_ready()
+        self.robot.await_rest()
 
 
 def repository() -> Path:

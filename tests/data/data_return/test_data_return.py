@@ -38,8 +38,8 @@ from support.data_return_system import (
     use_small_parts,
     write,
 )
+from support.virtual_disk import VirtualDisk
 
-from bench.data_return.virtual_disk import VirtualDisk
 from bench.data_return.virtual_remote import PowerLoss, VirtualRemote
 
 

@@ -59,6 +59,7 @@ HEALTHY = {
     "PREEMPT_RT": (preempt_rt, RT_ROBOT),
 }
 HARDWARE = {"driver": "can", "core": 3}
+LINK = "commands/ip_-details_-json_link_show_can0"
 USB = "sys/devices/pci0000:00/usb1/1-2"
 
 
@@ -70,6 +71,16 @@ class Planted(NamedTuple):
     changes: Mapping[str, str | None] = MappingProxyType({})  # files
     parameters: Mapping[str, object] = MappingProxyType({})  # that differ
     machine: Callable[[], dict[str, str]] = bare_debian
+
+
+def on_hardware(check: str, remedy: str, changes: Mapping[str, str | None] = {}, **parameters: object) -> Planted:
+    """A fault of a computer with PREEMPT_RT behind a CAN bus."""
+    return Planted(check, remedy, changes, HARDWARE | parameters, preempt_rt)
+
+
+def on_board(check: str, remedy: str, changes: Mapping[str, str | None]) -> Planted:
+    """A fault of a computer behind a motor board."""
+    return Planted(check, remedy, changes, {"driver": "board"})
 
 
 FAULTS = {
@@ -120,12 +131,8 @@ FAULTS = {
         "throttling", "cool the machine", {f"{CPU}/cpu0/thermal_throttle/core_throttle_total_time_ms": "900000"}
     ),
     "another core is isolated": Planted("isolated_cores", "robot.core: 2", {f"{CPU}/isolated": "2"}),
-    "half a core is isolated": Planted(
-        "smt_siblings",
-        "echo off",
-        {f"{CPU}/cpu3/topology/thread_siblings_list": "1,3"},
-        parameters=HARDWARE,
-        machine=preempt_rt,
+    "half a core is isolated": on_hardware(
+        "smt_siblings", "echo off", {f"{CPU}/cpu3/topology/thread_siblings_list": "1,3"}
     ),
     "a quota that stops the nodes": Planted(
         "cpu_quota",
@@ -140,15 +147,13 @@ FAULTS = {
     "time that the host takes": Planted(
         "steal_time", "reserve processors", {"proc/stat": times(steal=60_000)}, machine=virtual_machine
     ),
-    "an interrupt on the isolated core": Planted(
+    "an interrupt on the isolated core": on_hardware(
         "interrupts",
         "echo 0,1,2 | sudo tee /proc/irq/24/smp_affinity_list",
         {
             "proc/interrupts": "      CPU0 CPU1 CPU2 CPU3\n 24: 5 0 0 90000 PCI-MSI 1-edge eth0\n",
             "proc/irq/24/effective_affinity_list": "3",
         },
-        parameters=HARDWARE,
-        machine=preempt_rt,
     ),
     "a line that no driver handles": Planted(
         "unhandled_interrupts", "/proc/interrupts", {"proc/irq/24/spurious": "count 99\nunhandled 9000\n"}
@@ -161,63 +166,25 @@ FAULTS = {
         {"run/systemd/timesync/synchronized": None, **environment(ROS_MASTER_URI="http://192.0.2.1:1")},
     ),
     "no CAN interface": Planted("can", "connect the adapter", parameters={"driver": "can"}),
-    "a CAN interface that is down": Planted(
-        "can",
-        "ip link set can0 up",
-        {"commands/ip_-details_-json_link_show_can0": can_link(flags=())},
-        parameters=HARDWARE,
-        machine=preempt_rt,
+    "a CAN interface that is down": on_hardware("can", "ip link set can0 up", {LINK: can_link(flags=())}),
+    "another CAN interface": on_hardware("can", "connect the adapter", drive_bus={"address": "can1"}),
+    "another bit rate than that of the drives": on_hardware(
+        "can", "bitrate 500000", drive_bus={"address": "can0", "bit_rate": 500_000}
     ),
-    "another CAN interface": Planted(
-        "can", "connect the adapter", parameters=HARDWARE | {"drive_bus": {"address": "can1"}}, machine=preempt_rt
+    "a bus that is off": on_hardware("can", "terminators", {LINK: can_link(state="BUS-OFF")}),
+    "errors on the bus": on_hardware("can", "terminators", {LINK: can_link(state="ERROR-PASSIVE", tx=128)}),
+    "a bus that stays off": on_hardware("can", "restart-ms 100", {LINK: can_link(restart=0)}),
+    "a short queue": on_hardware("can", "txqueuelen", {"sys/class/net/can0/tx_queue_len": "10"}),
+    "a serial adapter that waits": on_board(
+        "serial_latency", "echo 1 | sudo tee", {"sys/bus/usb-serial/devices/ttyUSB0/latency_timer": "16"}
     ),
-    "another bit rate than that of the drives": Planted(
-        "can",
-        "bitrate 500000",
-        parameters=HARDWARE | {"drive_bus": {"address": "can0", "bit_rate": 500_000}},
-        machine=preempt_rt,
-    ),
-    "a bus that is off": Planted(
-        "can",
-        "terminators",
-        {"commands/ip_-details_-json_link_show_can0": can_link(state="BUS-OFF")},
-        parameters=HARDWARE,
-        machine=preempt_rt,
-    ),
-    "errors on the bus": Planted(
-        "can",
-        "terminators",
-        {"commands/ip_-details_-json_link_show_can0": can_link(state="ERROR-PASSIVE", tx=128)},
-        parameters=HARDWARE,
-        machine=preempt_rt,
-    ),
-    "a bus that stays off": Planted(
-        "can",
-        "restart-ms 100",
-        {"commands/ip_-details_-json_link_show_can0": can_link(restart=0)},
-        parameters=HARDWARE,
-        machine=preempt_rt,
-    ),
-    "a short queue": Planted(
-        "can", "txqueuelen", {"sys/class/net/can0/tx_queue_len": "10"}, parameters=HARDWARE, machine=preempt_rt
-    ),
-    "a serial adapter that waits": Planted(
-        "serial_latency",
-        "echo 1 | sudo tee",
-        {"sys/bus/usb-serial/devices/ttyUSB0/latency_timer": "16"},
-        parameters={"driver": "board"},
-    ),
-    "an adapter that may sleep": Planted(
+    "an adapter that may sleep": on_board(
         "usb_autosuspend",
         "echo on | sudo tee",
         {f"{USB}/power/control": "auto", f"{USB}/idVendor": "0403", f"{USB}/1-2:1.0/ttyUSB0/port": ""},
-        parameters={"driver": "board"},
     ),
-    "a port of another group": Planted(
-        "device_files",
-        "usermod -aG dialout",
-        {"dev/ttyUSB0": "", "proc/self/status": status(user=54321)},
-        parameters={"driver": "board"},
+    "a port of another group": on_board(
+        "device_files", "usermod -aG dialout", {"dev/ttyUSB0": "", "proc/self/status": status(user=54321)}
     ),
     "a terminal without the package": Planted("package", "install/setup.bash", environment(ROS_PACKAGE_PATH="")),
     "another python3": Planted("python", "call /usr/bin/python3", {"usr/local/bin/python3": ""}),

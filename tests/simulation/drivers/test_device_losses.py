@@ -33,7 +33,7 @@ def test_a_loss_stops_the_robot_until_the_reset(device, kind):
 @pytest.mark.parametrize("kind", KINDS)
 @pytest.mark.parametrize(("drive", "command"), STATED)
 def test_a_robot_whose_answers_fail_is_at_rest_in_its_stated_time(drive, command, kind):
-    assert time_to_rest(AnswerTrial(drive, command, kind, SEED)) <= STATED[drive, command]
+    assert time_to_rest(AnswerTrial(drive, command, kind, SEED, lasting=3.0)) <= STATED[drive, command]
 
 
 def test_the_stated_times_are_those_of_the_page():

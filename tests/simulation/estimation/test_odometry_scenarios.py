@@ -10,7 +10,7 @@ from bench.odometry.consistency import ROLLING, SLIPPING
 from bench.odometry.drives import FIRST_STAND, SIDE
 from bench.odometry.errors import draw_errors
 from bench.odometry.methods import calibrated_wheels, raw_wheels, standing
-from bench.odometry.recording import TRUTH_EVERY, load_recording, record
+from bench.odometry.recording import TRUTH_EVERY, record
 from bench.odometry.scenarios import SCENARIOS, draw_trial
 from bench.odometry.slip import KINDS
 from bench.odometry.truth import truth_of
@@ -51,14 +51,6 @@ def test_rows_without_a_number_send_nothing():
     assert log["linear"][-1, 0] == pytest.approx(0.0, abs=0.02), "it timed out, as cmd_vel does"
 
 
-def test_a_recording_survives_its_file(drive, tmp_path):
-    drive.save(tmp_path / "drive.npz")
-    again = load_recording(tmp_path / "drive.npz")
-    for field in dataclasses.fields(drive):
-        one, other = getattr(drive, field.name), getattr(again, field.name)
-        assert np.array_equal(one, other) if isinstance(one, np.ndarray) else one == other, field.name
-
-
 def test_a_seed_gives_the_same_bits_and_another_one_other_noise_and_another_robot(drive):
     assert (record(shortened("random", 1, 5000)).gyro == drive.gyro).all()
     other = record(shortened("random", 2, 5000))
@@ -67,6 +59,7 @@ def test_a_seed_gives_the_same_bits_and_another_one_other_noise_and_another_robo
     assert draw_errors(1) != draw_errors(2)
 
 
+@pytest.mark.nightly
 @pytest.mark.parametrize("scenario", SCENARIOS)
 def test_every_run_begins_at_rest_and_no_monitor_stops_it(scenario):
     recording = record(shortened(scenario, 0, 20_000))
@@ -77,6 +70,7 @@ def test_every_run_begins_at_rest_and_no_monitor_stops_it(scenario):
     assert not recording.stopped
 
 
+@pytest.mark.nightly
 def test_on_the_square_nominal_wheels_return_to_where_they_began():
     """The wheels return except for 12.5 mrad, on squares whose corners are at most 5.7 m away. That bound has
     several parts. Whole cycles make 0.5 ms of 1 rad/s in each of four turns, and the brakes take a share of each turn.
@@ -93,6 +87,7 @@ def test_on_the_square_nominal_wheels_return_to_where_they_began():
         assert np.ptp(line) == pytest.approx(SIDE, abs=0.0125 * 5.7)
 
 
+@pytest.mark.nightly
 def test_the_pitching_ground_pitches_by_a_degree_and_no_wheel_slips():
     truth = truth_of(record(shortened("waves", 1, 60_000)))
     moving = np.abs(truth.linear) > 0.05
@@ -101,6 +96,7 @@ def test_the_pitching_ground_pitches_by_a_degree_and_no_wheel_slips():
     assert (truth.slip > SLIPPING).any(axis=1).mean() < 0.005
 
 
+@pytest.mark.nightly
 def test_slip_runs_slip_between_stretches_of_grip():
     """One run of each kind is driven. Calibrated wheels are wrong by more than 0.2 m in most."""
     wrong = []
@@ -115,6 +111,7 @@ def test_slip_runs_slip_between_stretches_of_grip():
     assert np.mean(wrong) > 0.5
 
 
+@pytest.mark.nightly
 def test_within_default_limits_on_dry_ground_nothing_slips():
     truth = truth_of(record(shortened("random", 3, 60_000)))
     assert (truth.slip > SLIPPING).any(axis=1).mean() < 0.002

@@ -1,5 +1,7 @@
 """Identification finds the hidden properties of the MuJoCo plant, and its proposals drive better."""
 
+from functools import cache
+
 import numpy as np
 import pytest
 import yaml
@@ -45,13 +47,20 @@ def hidden_in(robot):
     }
 
 
-def excited(robot, hidden, controller=None, seed=1):
-    """The log of the excitation, and its settings."""
-    controller = controller or {}
+def excited(robot, hidden, controller=None):
+    """The log of the excitation, and its settings; several cases judge one excitation."""
+    return _excited(
+        robot, tuple((name, value) for name, value in hidden.items() if value), tuple((controller or {}).items())
+    )
+
+
+@cache
+def _excited(robot, hidden, controller):
+    hidden, controller = dict(hidden), dict(controller)
     settings = settings_of(robot, controller)
     excitation = plan(settings, OPTIONS)
     loop = ClosedLoop(
-        {"mujoco_plant": {**ERRORS, **hidden}, "diff_drive_controller": controller}, seed=seed, urdf=urdf_of(robot)
+        {"mujoco_plant": {**ERRORS, **hidden}, "diff_drive_controller": controller}, seed=1, urdf=urdf_of(robot)
     )
     loop.run(1.0, (0.0, 0.0))
     begin = loop.time

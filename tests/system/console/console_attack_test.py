@@ -7,6 +7,7 @@ import asyncio
 import contextlib
 import importlib.util
 import json
+import os
 import socket
 import time
 import urllib.error
@@ -38,6 +39,8 @@ SHOWN = {
 }
 """Topics of the page to which this test may publish beside the robot"""
 PASSWORD, SPEED = "long enough", 0.3
+HALVES, LOGINS = (6500, 200) if os.environ.get("ROBOT_CONTROL_NIGHTLY") else (1000, 25)
+"""of a watcher"""
 TAKE = {"type": "take", "force": False}
 
 
@@ -343,9 +346,9 @@ class ConsoleAttackTest(RobotTestCase):
         console, cookies = self.users(olga="operate", wanda="watch", max="maintain")
 
         async def attack(page: DrivingPage) -> None:
-            await asyncio.to_thread(asyncio.run, self.half_connections(console, cookies["wanda"], 6500))
-            logins = [{"name": "wanda", "password": PASSWORD}] * 200
-            for login in logins:
+            await asyncio.to_thread(asyncio.run, self.half_connections(console, cookies["wanda"], HALVES))
+            for _ in range(LOGINS):
+                login = {"name": "wanda", "password": PASSWORD}
                 code, _, cookie = await asyncio.to_thread(answer, console, "/api/login", login)
                 self.assertEqual(code, 200)
             async with contextlib.AsyncExitStack() as stack:

@@ -8,7 +8,7 @@ import rostest
 from system.console.console_support import SPEED, ConsoleTestCase
 from system.system_support import wait_for
 
-from bench.console.process import memory_of
+from bench.console.process import cost_of
 
 MINUTES = float(os.environ.get("CONSOLE_SOAK_MINUTES", "30"))
 SETTLED = 1.5
@@ -20,6 +20,10 @@ REDRAW = 10.0
 
 
 class ConsoleSoakTest(ConsoleTestCase):
+    def memory(self) -> float:
+        """MiB of the server."""
+        return cost_of(self.console.process.pid)[1] / 2**20
+
     def test_browser_and_server_do_not_grow(self) -> None:
         browser = self.browser()
         browser.open(self.address)
@@ -32,8 +36,8 @@ class ConsoleSoakTest(ConsoleTestCase):
             wait_for("a free stick", lambda: browser.text("dead-man") == "")
             time.sleep(0.5)
             if not first and time.monotonic() - began > 60 * SETTLED:
-                first, server = browser.heap(), memory_of(self.console.process.pid)
-        grown, server_now = browser.heap() - first, memory_of(self.console.process.pid)
+                first, server = browser.heap(), self.memory()
+        grown, server_now = browser.heap() - first, self.memory()
         redraw = float(browser.data("redraw"))
         print(
             f"after {MINUTES:g} min: heap {first:.2f} MiB, grown by {grown:.2f}; server {server_now:.1f} MiB,", end=" "

@@ -23,8 +23,12 @@ class ClearanceTest(RobotTestCase):
         super().setUpClass()
         cls.clearance = rospy.Publisher("clearance", Float64, queue_size=1, latch=True)
 
+    @classmethod
+    def tearDownClass(cls) -> None:
+        cls.clearance.publish(math.inf)
+        super().tearDownClass()
+
     def test_it_caps_the_speed_and_gives_it_free_again(self) -> None:
-        self.robot.await_ready()
         self.robot.drive_until("0.5 m/s", self.robot.driving, angular=0.0)
         self.clearance.publish(0.05)
         limit = allowed_speed(0.05)
@@ -37,7 +41,6 @@ class ClearanceTest(RobotTestCase):
         self.assertEqual(self.robot.causes, set())
 
     def test_a_sender_that_falls_silent_leaves_no_free_way(self) -> None:
-        self.robot.await_ready()
         for _ in range(5):
             self.clearance.publish(100.0)
             rospy.sleep(0.1)

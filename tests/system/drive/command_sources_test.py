@@ -2,14 +2,10 @@
 """A list of command sources, on a running robot: priority, timeout, lock; teleop.py and drive_path.py find theirs."""
 
 import itertools
-import json
 import math
-import os
 import signal
-import tempfile
 import time
 from dataclasses import astuple
-from pathlib import Path
 
 import roslib.packages
 import rospy
@@ -20,27 +16,35 @@ from robot_control.msg import DriveState, SafetyStatus
 from sensor_msgs.msg import Joy
 from std_msgs.msg import Bool
 from std_srvs.srv import Trigger
+from system.fake_pad import FakePad
 from system.pseudo_terminal import PseudoTerminal
-from system.system_support import NoBool, Program, RobotTestCase, again_after_a_stall, repository, wait_for
+from system.system_support import (
+    LISTED_SOURCES,
+    Latest,
+    NoBool,
+    Program,
+    RobotTestCase,
+    again_after_a_stall,
+    wait_for,
+)
 
 
 class CommandSourcesTest(RobotTestCase):
+    parameters = (LISTED_SOURCES,)
+
     @classmethod
     def setUpClass(cls) -> None:
-        rospy.set_param("/diff_drive_controller/command_sources", str(repository() / "config" / "command_sources.yaml"))
-        cls.state = DriveState()
         super().setUpClass()
-        cls.subscriber = rospy.Subscriber("drive_state", DriveState, cls.receive)
+        cls.latest = Latest("drive_state", DriveState)
         cls.key = rospy.Publisher("key_vel", TwistStamped, queue_size=1, tcp_nodelay=True)
         cls.pause = rospy.Publisher("pause", Bool, queue_size=1, tcp_nodelay=True)
 
-    @classmethod
-    def receive(cls, message: DriveState) -> None:
-        cls.state = message
+    @property
+    def state(self) -> DriveState:
+        return self.latest.message or DriveState()
 
     def setUp(self) -> None:
-        self.robot.await_ready()
-        self.robot.await_rest()
+        super().setUp()
         self.sent = 0.0
 
     def send_key(self, linear: float) -> None:
@@ -184,8 +188,9 @@ class CommandSourcesTest(RobotTestCase):
     def test_two_publishers_of_joy_move_nothing(self) -> None:
         pad = Program("pad.py", "--joy", "_scale_linear:=0.3")
         self.addCleanup(pad.end)
-        idle = Program("pad.py", "__name:=idle", environment=self.fake_pad())
-        self.addCleanup(idle.end)
+        idle = FakePad(self)
+        idle.plug()
+        idle.program("__name:=idle")
         joy = rospy.Publisher("joy", Joy, queue_size=1)
         held = Joy(axes=[0, 1], buttons=[0, 0, 0, 0, 1, 0])
         words = "publish joy: zero until one is left"
@@ -195,15 +200,6 @@ class CommandSourcesTest(RobotTestCase):
             joy.publish(held)
             time.sleep(0.02)
         self.assertTrue(self.robot.rests())
-
-    def fake_pad(self) -> dict[str, str]:
-        """Environment of a pad with no button held (tests/support/fake_evdev)."""
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        device = Path(folder.name, "event5")
-        device.write_text(json.dumps({"axes": {"1": 128}, "held": []}))
-        fake = repository() / "tests" / "support" / "fake_evdev"
-        return {"FAKE_PAD": str(device), "PYTHONPATH": f"{fake}:{os.environ.get('PYTHONPATH', '')}"}
 
     def test_ctrl_c_ends_a_path_with_zero(self) -> None:
         path = Program("drive_path.py", "square")

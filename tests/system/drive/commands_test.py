@@ -34,8 +34,7 @@ class CommandsTest(RobotTestCase):
         cls.sender = StampedSender(cls.robot)
 
     def setUp(self) -> None:
-        self.robot.await_ready()
-        self.robot.await_rest()
+        super().setUp()
         wait_for("a subscriber", self.sender.connected)
 
     def tearDown(self) -> None:

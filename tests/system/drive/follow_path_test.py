@@ -20,7 +20,7 @@ from robot_control.msg import (
     FollowPathResult,
 )
 from std_srvs.srv import Trigger, TriggerResponse
-from system.system_support import Program, RobotTestCase, again_after_a_stall, repository, wait_for
+from system.system_support import LISTED_SOURCES, Program, RobotTestCase, again_after_a_stall, wait_for
 from tf2_msgs.msg import TFMessage
 
 SUCCEEDED, ABORTED, PREEMPTED = GoalStatus.SUCCEEDED, GoalStatus.ABORTED, GoalStatus.PREEMPTED
@@ -52,9 +52,10 @@ class Client:
 
 
 class FollowPathTest(RobotTestCase):
+    parameters = (LISTED_SOURCES,)
+
     @classmethod
     def setUpClass(cls) -> None:
-        rospy.set_param("/diff_drive_controller/command_sources", str(repository() / "config" / "command_sources.yaml"))
         super().setUpClass()
         cls.server = Program("follow_path.py")
         cls.cancel = rospy.Publisher("follow_path/cancel", GoalID, queue_size=1, tcp_nodelay=True)

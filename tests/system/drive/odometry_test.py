@@ -10,33 +10,20 @@ from nav_msgs.msg import Odometry
 from robot_control.robot.pose import rotation, yaw_of
 from robot_control.srv import InjectFault, SetOdometry, SetOdometryResponse
 from sensor_msgs.msg import BatteryState, Imu
-from system.system_support import DRIVER, ESTIMATOR, LIMIT, RobotTestCase, wait_for
+from system.system_support import DRIVER, ESTIMATOR, LIMIT, Latest, RobotTestCase, wait_for
 
 
 class OdometryTest(RobotTestCase):
+    parameters = ((f"/{DRIVER}/battery_voltage", 24.0),)
+
     @classmethod
     def setUpClass(cls) -> None:
-        rospy.set_param(f"/{DRIVER}/battery_voltage", 24.0)
         super().setUpClass()
-        cls.wheels: Odometry | None = None
-        cls.imu: Imu | None = None
-        cls.imu_count = 0
-        rospy.Subscriber("wheel_odom", Odometry, cls.receive_wheels)
-        rospy.Subscriber("imu/data", Imu, cls.receive_imu)
+        cls.wheels, cls.imu = Latest("wheel_odom", Odometry), Latest("imu/data", Imu)
         rospy.wait_for_service("set_odometry", LIMIT)
 
-    @classmethod
-    def receive_wheels(cls, message: Odometry) -> None:
-        cls.wheels = message
-
-    @classmethod
-    def receive_imu(cls, message: Imu) -> None:
-        cls.imu = message
-        cls.imu_count += 1
-
     def setUp(self) -> None:
-        self.robot.await_ready()
-        self.robot.await_rest()
+        super().setUp()
         self.robot.reports.clear()
         wait_for("a standing robot", lambda: "standstill" in self.robot.reports[ESTIMATOR].values.get("flags", ""))
 
@@ -74,39 +61,40 @@ class OdometryTest(RobotTestCase):
 
     def test_the_wheels_alone_say_nearly_the_same(self) -> None:
         self.robot.drive_until("0.5 m/s", self.robot.driving)
-        wait_for("the wheels' speed", lambda: self.wheels is not None and self.wheels.twist.twist.linear.x > 0.3)
-        self.assertEqual(self.wheels.header.frame_id, "odom")
-        self.assertEqual(self.wheels.child_frame_id, "base_link")
-        self.assertEqual(set(self.wheels.pose.covariance), {0.0}, "unknown")
+        wait_for("the wheels' speed", lambda: self.wheels.count and self.wheels.message.twist.twist.linear.x > 0.3)
+        wheels = self.wheels.message
+        self.assertEqual((wheels.header.frame_id, wheels.child_frame_id), ("odom", "base_link"))
+        self.assertEqual(set(wheels.pose.covariance), {0.0}, "unknown")
 
     def test_the_imu_knows_up_and_north_is_that_of_the_odometry(self) -> None:
         self.assertTrue(self.set_odometry(0, 0, 1.0).success)
         wait_for("that heading", lambda: self.at(0, 0, 1.0))
-        wait_for("the IMU's", lambda: self.imu is not None and abs(yaw_of(self.imu.orientation) - 1.0) < 0.02)
-        self.assertEqual(self.imu.header.frame_id, "imu_link")
-        acceleration = self.imu.linear_acceleration
-        q = self.imu.orientation
+        wait_for("the IMU's", lambda: self.imu.count and abs(yaw_of(self.imu.message.orientation) - 1.0) < 0.02)
+        imu = self.imu.message
+        self.assertEqual(imu.header.frame_id, "imu_link")
+        acceleration = imu.linear_acceleration
+        q = imu.orientation
         felt = rotation((q.x, q.y, q.z, q.w)) @ [acceleration.x, acceleration.y, acceleration.z]
         # The plant's bias of 0.2 m/s² and a sample's noise of 0.05 m/s².
         np.testing.assert_allclose(felt, [0, 0, 9.81], atol=0.8)
-        orientation = np.diag(np.reshape(self.imu.orientation_covariance, (3, 3)))
+        orientation = np.diag(np.reshape(imu.orientation_covariance, (3, 3)))
         self.assertTrue((orientation[:2] > 0).all(), orientation)
         self.assertLess(orientation[2], 1e-6, "the heading was set")
-        for covariance in (self.imu.angular_velocity_covariance, self.imu.linear_acceleration_covariance):
+        for covariance in (imu.angular_velocity_covariance, imu.linear_acceleration_covariance):
             self.assertTrue((np.diag(np.reshape(covariance, (3, 3))) > 0).all(), covariance)
 
     def test_without_a_gyro_no_orientation_is_made_up_and_diagnostics_says_so(self) -> None:
-        wait_for("imu/data", lambda: self.imu_count > 0)
+        wait_for("imu/data", lambda: self.imu.count > 0)
         self.inject("gyro", "off")
         try:
             wait_for("the warning", lambda: "yaw comes from the wheels alone" in self.robot.reports[ESTIMATOR].message)
-            count = self.imu_count
+            count = self.imu.count
             odom = self.robot.odom_count
             wait_for("odometry all the same", lambda: self.robot.odom_count > odom + 20)
-            self.assertEqual(self.imu_count, count)
+            self.assertEqual(self.imu.count, count)
         finally:
             self.inject("gyro", "ok")
-        wait_for("imu/data again", lambda: self.imu_count > count)
+        wait_for("imu/data again", lambda: self.imu.count > count)
         wait_for("no warning", lambda: "wheels alone" not in self.robot.reports[ESTIMATOR].message)
 
 

@@ -8,15 +8,12 @@ from system.system_support import CONTROLLER, LIMIT, Program, RobotTestCase, wai
 
 
 class OneSenderTest(RobotTestCase):
+    parameters = (("/diff_drive_controller/one_sender", True),)
+
     @classmethod
     def setUpClass(cls) -> None:
-        rospy.set_param("/diff_drive_controller/one_sender", True)
         super().setUpClass()
         cls.sender = StampedSender(cls.robot)
-
-    def setUp(self) -> None:
-        self.robot.await_ready()
-        self.robot.await_rest()
 
     def test_two_stop_it_and_one_drives_on_without_a_reset(self) -> None:
         self.robot.drive_until("0.5 m/s", self.robot.driving)

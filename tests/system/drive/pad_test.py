@@ -5,44 +5,27 @@ The kernel of a test machine has no uinput, so the library is a fake one (tests/
 device in test_pad.py compares its interface with the real one's.
 """
 
-import json
-import os
-import tempfile
 import time
-from pathlib import Path
 
 import rospy
 import rostest
 from geometry_msgs.msg import TwistStamped
-from system.system_support import Program, RobotTestCase, again_after_a_stall, repository, wait_for
+from system.fake_pad import ENABLE, FakePad
+from system.system_support import RobotTestCase, again_after_a_stall, wait_for
 
-ENABLE = 0x134
-"""The fifth of the codes from 0x130: button 4"""
 FORWARD = 0
 """value of 0 to 255: the kernel counts down"""
 
 
 class PadTest(RobotTestCase):
     def setUp(self) -> None:
-        self.robot.await_ready()
-        self.robot.await_rest()
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.device = Path(folder.name, "event5")
+        super().setUp()
+        self.device = FakePad(self)
+        self.plug = self.device.plug
         self.sent: list[float] = []
         subscriber = rospy.Subscriber("cmd_vel_stamped", TwistStamped, lambda m: self.sent.append(m.twist.linear.x))
         self.addCleanup(subscriber.unregister)
-        fake = repository() / "tests" / "support" / "fake_evdev"
-        path = f"{fake}:{os.environ.get('PYTHONPATH', '')}"
-        environment = {"FAKE_PAD": str(self.device), "PYTHONPATH": path}
-        self.pad = Program("pad.py", "_scale_linear:=0.3", environment=environment)
-        self.addCleanup(self.pad.end)
-
-    def plug(self, *held: int, forward: int = 128) -> None:
-        """Sets the state of the pad at once as a whole."""
-        new = self.device.with_suffix(".new")
-        new.write_text(json.dumps({"axes": {"1": forward}, "held": held}))
-        new.replace(self.device)
+        self.pad = self.device.program("_scale_linear:=0.3")
 
     def await_words(self, words: str) -> None:
         wait_for(f"{words}: {self.pad.output}", lambda: words in self.pad.output)
@@ -65,7 +48,7 @@ class PadTest(RobotTestCase):
     def test_an_unplugged_pad_stops_the_robot_and_has_to_be_released_when_it_comes_back(self) -> None:
         self.drive()
         began = time.monotonic()
-        self.device.unlink()
+        self.device.device.unlink()
         wait_for("standstill", lambda: abs(self.robot.speed) < 0.01)
         print(f"at rest {time.monotonic() - began:.2f} s after the pad was unplugged")
         self.assertEqual(self.sent[-1], 0.0)

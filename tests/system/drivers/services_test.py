@@ -10,21 +10,16 @@ from nav_msgs.msg import Odometry
 from robot_control.msg import SafetyStatus
 from robot_control.srv import InjectFault, Step
 from std_srvs.srv import SetBool, Trigger
-from system.system_support import DRIVER, LIMIT, SEND_PERIOD, Report, RobotTestCase, wait_for
+from system.system_support import DRIVER, LIMIT, SEND_PERIOD, Latest, Report, RobotTestCase, wait_for
 
 
 class ServicesTest(RobotTestCase):
     @classmethod
     def setUpClass(cls) -> None:
         super().setUpClass()
-        cls.truth: Odometry | None = None
-        rospy.Subscriber("ground_truth/odom", Odometry, cls.receive_truth)
+        cls.truth = Latest("ground_truth/odom", Odometry)
         for name in ("set_pause", "step", "reset", "inject_fault"):
             rospy.wait_for_service(f"{DRIVER}/{name}", LIMIT)
-
-    @classmethod
-    def receive_truth(cls, message: Odometry) -> None:
-        cls.truth = message
 
     @property
     def plant(self) -> Report:
@@ -63,9 +58,9 @@ class ServicesTest(RobotTestCase):
     def test_paused_the_robot_stands_and_so_does_its_time(self) -> None:
         self.set_pause(True)
         time.sleep(0.3)  # earlier messages arrive
-        truth, odom = self.truth, self.robot.odom
+        truth, odom = self.truth.message, self.robot.odom
         time.sleep(1.5)  # far longer than the 20 periods after which a silent driver is lost
-        self.assertIs(self.truth, truth)
+        self.assertIs(self.truth.message, truth)
         self.assertIs(self.robot.odom, odom)
         wait_for("word of it", lambda: self.plant.message == "paused")
         self.assertEqual(self.plant.values["driver_state"], "paused")
@@ -108,7 +103,10 @@ class ServicesTest(RobotTestCase):
         self.reset()
         wait_for("a new run", lambda: self.robot.status.run not in (0, run))
         wait_for("odometry of it", lambda: self.robot.odom.header.stamp > before and self.robot.distance < 0.01)
-        wait_for("truth of it", lambda: math.hypot(*self.position(self.truth)) < 0.01)
+        wait_for(
+            "truth of it",
+            lambda: math.hypot(self.truth.message.pose.pose.position.x, self.truth.message.pose.pose.position.y) < 0.01,
+        )
         self.assertLess(abs(self.robot.speed), 0.05)
         self.robot.await_ready()
         self.robot.drive_until("0.5 m/s in it", self.robot.driving)
@@ -120,10 +118,6 @@ class ServicesTest(RobotTestCase):
         self.assertTrue(self.inject("e_stop_button", "ok")[0])
         wait_for("nothing injected", lambda: self.plant.values["injected"] == "none")
         self.robot.release()
-
-    @staticmethod
-    def position(message: Odometry) -> tuple[float, float]:
-        return message.pose.pose.position.x, message.pose.pose.position.y
 
 
 if __name__ == "__main__":

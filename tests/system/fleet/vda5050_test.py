@@ -57,8 +57,7 @@ class Vda5050Test(RobotTestCase):
         cls.folder.cleanup()
 
     def setUp(self) -> None:
-        self.robot.await_ready()
-        self.robot.await_rest()
+        super().setUp()
         self.listen("ONLINE", lambda: self.master.last.get("connection", {}).get("connectionState") == "ONLINE")
         self.master.act("cancelOrder")
         self.master.act("stopPause")

@@ -36,7 +36,6 @@ class DescriptionTest(unittest.TestCase):
 
     def await_other_robot(self) -> None:
         self.robot.await_ready()
-        wait_for("joint_states", lambda: self.robot.joints is not None)
         self.assertEqual(self.robot.joints.name[:2], [PORT, STARBOARD])
         self.assertEqual(self.robot.odom.child_frame_id, "base_footprint", "the root link: one parent for every frame")
         self.robot.drive_until("0.5 m/s", self.robot.driving)

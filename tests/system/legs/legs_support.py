@@ -12,29 +12,36 @@ from std_srvs.srv import Trigger
 from system.launch_support import Launch
 from system.system_support import LIMIT, LOOP_WITNESS, STALL_CAUSES, init_test_node, wait_for
 
+BUS = f"legs{os.getpid()}.{time.monotonic_ns()}"
+
 
 class LegsTestCase(unittest.TestCase):
-    """The robot is launched once for all cases."""
+    """The robot is launched once for all cases; where it is `shared`, once for all classes of this process."""
+
+    launch: Launch | None = None
+    shared = False
+    legs: LegState | None = None
+    safety: SafetyStatus | None = None
+    truth: Odometry | None = None
+    stopped_at = 0.0
 
     @classmethod
     def launch_quadbot(cls, name: str) -> None:
         init_test_node(f"{name}_test")
-        cls.bus = f"{name}{os.getpid()}.{time.monotonic_ns()}"
-        cls.launch = Launch("robot:=quadbot", "black_box:=false", f"bus:={cls.bus}")
-        cls.addClassCleanup(cls.remove_what_stays)
-        cls.addClassCleanup(cls.launch.end)
-        cls.legs: LegState | None = None
-        cls.safety: SafetyStatus | None = None
-        cls.truth: Odometry | None = None
-        cls.stopped_at = 0.0
         rospy.Subscriber("leg_state", LegState, lambda message: setattr(cls, "legs", message))
         rospy.Subscriber("safety_status", SafetyStatus, cls.receive_safety)
         rospy.Subscriber("ground_truth/odom", Odometry, cls.receive_truth)
+        if LegsTestCase.launch is None:
+            LegsTestCase.launch = Launch("robot:=quadbot", "black_box:=false", f"bus:={BUS}")
+        if not cls.shared:
+            cls.addClassCleanup(cls.end_launch)
 
-    @classmethod
-    def remove_what_stays(cls) -> None:
-        for path in Path("/dev/shm").glob(f"robot_control.*.{cls.bus}.*"):
-            path.unlink(missing_ok=True)
+    @staticmethod
+    def end_launch() -> None:
+        if LegsTestCase.launch is not None:
+            LegsTestCase.launch.end()
+            for path in Path("/dev/shm").glob(f"robot_control.*.{BUS}.*"):
+                path.unlink(missing_ok=True)
 
     @classmethod
     def receive_safety(cls, message: SafetyStatus) -> None:

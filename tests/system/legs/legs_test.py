@@ -159,14 +159,15 @@ class LegsTest(LegsTestCase):
         roll, postures = self.walk_for(2.0)
         self.assertEqual(postures, {"walking"}, "the pose of another node ends no walk")
         self.assertLess(roll, 0.01, "nor leans it")
-        self.assertIn("is refused: the robot walks for /legs_test", self.launch.output)
+        self.assertIn(f"is refused: the robot walks for {rospy.get_name()}", self.launch.output)
         posing.kill()
         posing.wait()
         self.assertLess(self.walk_for(2.0)[0], 0.01, "nor does what it has left")
         self.assertGreater(self.walk_for(1.5, BodyPose(roll=0.05))[0], 0.045, "its own pose does")
         roll, postures = self.walk_for(2.0, BodyPose(roll=math.nan))
         self.assertEqual(postures, {"walking"})
-        self.assertIn("body_pose holds NaN or infinity: refused; repair its sender /legs_test", self.launch.output)
+        repair = f"body_pose holds NaN or infinity: refused; repair its sender {rospy.get_name()}"
+        self.assertIn(repair, self.launch.output)
         self.body_pose.publish(BodyPose())
         self.assertEqual(self.walk_for(1.0)[1], {"walking"})
         wait_for("standing", lambda: self.legs.posture == "standing", every=lambda: self.cmd_vel.publish(Twist()))
@@ -191,7 +192,7 @@ class LegsTest(LegsTestCase):
         self.move("front_left_hip_joint", (1.0, lying + 0.15))  # outwards, away from the ground
         wait_for("moving joints", lambda: self.legs.posture == "joints")
         wait_for("the end of the path", lambda: abs(self.legs.actual[hip] - lying - 0.15) < 0.03)
-        wait_for("the report", lambda: "joint_trajectory of /legs_test" in self.launch.output)
+        wait_for("the report", lambda: f"joint_trajectory of {rospy.get_name()}" in self.launch.output)
         wait_for("its end", lambda: ": done" in self.launch.output)
 
         for send, sentence in (

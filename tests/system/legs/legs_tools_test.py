@@ -1,7 +1,6 @@
 #!/usr/bin/python3
 """The programs that drive a robot on wheels drive the quadbot: by a path, a goal, keys, a pad and a page."""
 
-import json
 import math
 import os
 import tempfile
@@ -21,9 +20,10 @@ from robot_control.fleet.master import Master
 from robot_control.msg import FollowPathAction, FollowPathGoal
 from robot_control.robot.pose import Pose, pose_of
 from system import rosunit_skips
+from system.fake_pad import ENABLE, FakePad
 from system.legs.legs_support import LegsTestCase
 from system.pseudo_terminal import PseudoTerminal
-from system.system_support import LIMIT, Program, again_after_a_stall, repository, wait_for
+from system.system_support import LIMIT, Program, again_after_a_stall, wait_for
 
 from bench.console.browser import Browser, missing
 from bench.console.process import Console
@@ -32,8 +32,6 @@ from bench.fleet.messages import order
 
 rosunit_skips.record()
 
-ENABLE = 0x134
-"""the fifth of the codes of a pad from 0x130: button 4"""
 CROSS_TRACK = 0.1
 """m, admitted on legs"""
 SIDE = 0.5
@@ -141,18 +139,8 @@ class LegsToolsTest(LegsTestCase):
         self.assertGreater(math.dist(begin, self.places[-1]), 0.2)
         wait_for("standing", lambda: self.legs.posture == "standing")
 
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        device, fake = Path(folder.name, "event5"), repository() / "tests" / "support" / "fake_evdev"
-        path = f"{fake}:{os.environ.get('PYTHONPATH', '')}"
-        pad = Program("pad.py", environment={"FAKE_PAD": str(device), "PYTHONPATH": path})
-        self.addCleanup(pad.end)
-
-        def plug(*held: int, sideways: int = 128) -> None:
-            new = device.with_suffix(".new")
-            new.write_text(json.dumps({"axes": {"0": 128, "1": 128, "2": 128, "3": sideways}, "held": held}))
-            new.replace(device)
-
+        device = FakePad(self)
+        pad, plug = device.program(), device.plug
         plug()
         wait_for(f"a pad with nothing held: {pad.output}", lambda: "hold button 4" in pad.output)
         plug(ENABLE, sideways=0)

@@ -14,8 +14,8 @@ from robot_control.msg import LocalizationState
 from robot_control.srv import MapFile
 from sensor_msgs.msg import LaserScan
 from std_srvs.srv import Empty
-from system.navigation.navigation_support import Latest, missing_mrpt, share
-from system.system_support import Program, RobotTestCase, again_after_a_stall, wait_for
+from system.navigation.navigation_support import missing_mrpt, share
+from system.system_support import Latest, Program, RobotTestCase, again_after_a_stall, wait_for
 from tf2_msgs.msg import TFMessage
 
 
@@ -56,7 +56,6 @@ class MappingTest(RobotTestCase):
 
     @again_after_a_stall
     def test_a_map_is_saved_and_the_robot_is_found_in_it(self) -> None:
-        self.robot.await_ready()
         self.corrections.clear()
         start = self.robot.pose
         path = Path(tempfile.mkdtemp()) / "room"

@@ -30,18 +30,6 @@ def missing_mrpt() -> str:
     return "" if found else "slam was built without MRPT: scripts/setup --navigation"
 
 
-class Latest:
-    """The newest message of a topic."""
-
-    def __init__(self, topic: str, kind: type) -> None:
-        self.message = None
-        self.count = 0
-        self._subscriber = rospy.Subscriber(topic, kind, self._receive)
-
-    def _receive(self, message: object) -> None:
-        self.message, self.count = message, self.count + 1
-
-
 def message_of(map_: tuple[float, float, float, np.ndarray], frame: str = "map") -> OccupancyGrid:
     """The message of origin x, y [m], resolution [m] and cells."""
     message = OccupancyGrid()

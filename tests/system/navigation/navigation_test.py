@@ -48,10 +48,6 @@ class NavigationTest(RobotTestCase):
             program.end()
         super().tearDownClass()
 
-    def setUp(self) -> None:
-        self.robot.await_ready()
-        self.robot.await_rest()
-
     @staticmethod
     def pose(x: float, y: float, yaw: float = 0.0, frame: str = "map") -> PoseStamped:
         target = PoseStamped()

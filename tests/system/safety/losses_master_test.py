@@ -27,7 +27,6 @@ class LossesMasterTest(RobotTestCase):
 
     def test_a_killed_master_changes_no_motion_and_every_stop_still_works(self) -> None:
         robot = self.robot
-        robot.await_ready()
         rospy.wait_for_service("e_stop_reset")
         reset = rospy.ServiceProxy("e_stop_reset", Trigger, persistent=True)
         reset()  # connects

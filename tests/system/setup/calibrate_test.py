@@ -41,8 +41,7 @@ class CalibrateTest(RobotTestCase):
             rospy.delete_param(f"{DRIVER}/{name}")
 
     def setUp(self) -> None:
-        self.robot.await_ready()
-        self.robot.await_rest()
+        super().setUp()
         folder = tempfile.TemporaryDirectory(prefix="calibrate-test-")
         self.addCleanup(folder.cleanup)
         self.out = Path(folder.name) / "calibrated.yaml"

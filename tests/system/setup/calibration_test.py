@@ -65,7 +65,6 @@ class CalibrationTest(RobotTestCase):
         wait_for("its diagnostics", lambda: "radius_ratio" in self.robot.reports[ESTIMATOR].values)
 
     def test_what_was_learned_goes_on_after_a_restart_and_a_broken_file_refuses_it(self) -> None:
-        self.robot.await_ready()
         self.assertFalse(self.file.exists())
         self.await_known_gyro()
         self.wander(lambda: self.reported("radius_ratio_deviation") < 0.002)

@@ -36,8 +36,7 @@ class IdentifyTest(RobotTestCase):
         super().setUpClass()
 
     def setUp(self) -> None:
-        self.robot.await_ready()
-        self.robot.await_rest()
+        super().setUp()
         folder = tempfile.TemporaryDirectory(prefix="identify-test-")
         self.addCleanup(folder.cleanup)
         self.output = Path(folder.name) / "identified.yaml"

@@ -30,6 +30,7 @@ class SetParametersTest(RobotTestCase):
     @classmethod
     def tearDownClass(cls) -> None:
         cls.telemetry.end()
+        rospy.delete_param(CONTROLLER)
         super().tearDownClass()
         cls.folder.cleanup()
 

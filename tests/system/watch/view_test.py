@@ -50,7 +50,6 @@ class ViewTest(RobotTestCase):
         absent = missing()
         if absent and not MUST_RUN:
             self.skipTest(f"{absent} is not installed: scripts/setup --view")
-        self.robot.await_ready()
         folder = Path(tempfile.mkdtemp(prefix="view-"))
         self.addCleanup(shutil.rmtree, folder)
         reading, writing = os.pipe()

@@ -26,6 +26,12 @@ FAST = Cause(
     "17.3 rad/s, limit 15 rad/s, left_wheel_joint",
 )
 PAUSED = {"driver_state": "paused"}
+ZERO = {"requested_m_s": "0", "requested_rad_s": "0"}
+NO_COMMAND = ("nothing was received on cmd_vel in this run", "publish on cmd_vel")
+TIMED_OUT = ("the last cmd_vel is older than cmd_vel_timeout", "publish more often")
+STALE = ("the last cmd_vel_stamped was older than cmd_vel_timeout", "synchronise the sender's clock")
+MANY = ("more than one node sends commands, which one_sender forbids", "stop all but one")
+REVOKED = ("a sender goes on requesting motion that was requested before a stop", "let it send a zero")
 
 
 @pytest.fixture
@@ -168,13 +174,9 @@ def test_before_every_node_was_seen_it_names_the_missing_ones(driving):
 
 
 def test_a_stop_is_reported_by_its_first_cause_with_value_and_limit(driving):
-    facts = stopped(driving, E_STOP, replace(FAST, first=True), state="STOPPED")
-    facts = replace(
-        facts, safety=replace(facts.safety, causes=(replace(E_STOP, first=False), replace(FAST, first=True)))
-    )
-    assert judge(facts).headline == (
-        "Stopped: a wheel is faster than allowed (17.3 rad/s, limit 15 rad/s, left_wheel_joint)."
-    )
+    facts = stopped(driving, replace(E_STOP, first=False), replace(FAST, first=True))
+    said = "Stopped: a wheel is faster than allowed (17.3 rad/s, limit 15 rad/s, left_wheel_joint)."
+    assert judge(facts).headline == said
     lines = text(facts)
     assert lines.index("wheel_speed:") < lines.index("e_stop_topic:")
     assert "[first]" in lines
@@ -182,7 +184,7 @@ def test_a_stop_is_reported_by_its_first_cause_with_value_and_limit(driving):
 
 
 def test_the_actor_stands_before_the_action(driving):
-    answer = judge(stopped(saying(driving, CONTROLLER, requested_m_s="0", requested_rad_s="0"), E_STOP, FAST))
+    answer = judge(stopped(saying(driving, CONTROLLER, **ZERO), E_STOP, FAST))
     assert answer.actions == (
         ("operator", "publish false on e_stop"),
         ("technician", "look at load, slope, encoder and motor of that wheel"),
@@ -222,7 +224,7 @@ def test_the_lost_controller_of_another_kind_is_named_and_started(driving):
 @pytest.fixture
 def legged(driving) -> Facts:
     """It stands, and a node requests poses; an estimate at rest is not exactly zero."""
-    own = Report("running", {"posture": "standing", "senders": "/poser", "requested_m_s": "0", "requested_rad_s": "0"})
+    own = Report("running", {"posture": "standing", "senders": "/poser", **ZERO})
     return replace(
         driving,
         kind=Kind(LEGGED, controller="leg_controller"),
@@ -315,68 +317,39 @@ def test_a_paused_simulation_is_reported_before_a_stop(driving):
 
 
 def test_no_sender_is_no_fault(driving):
-    facts = saying(
-        driving, CONTROLLER, command__no_command=("nothing was received on cmd_vel in this run", "publish on cmd_vel")
-    )
+    facts = saying(driving, CONTROLLER, command__no_command=NO_COMMAND)
     answer = judge(replace(facts, senders=(), limited=(0.0, 0.0), measured=(0.0, 0.0)))
     assert answer.verdict is Verdict.IDLE
-    assert (
-        answer.headline
-        == "It may move, but no velocity command is being received: nothing was received on cmd_vel in this run."
-    )
+    assert answer.headline == f"It may move, but no velocity command is being received: {NO_COMMAND[0]}."
     assert answer.commands == ("rosrun robot_control send_cmd.py",)
 
 
 def test_a_silent_sender_is_named(driving):
-    facts = saying(
-        driving, CONTROLLER, command__timed_out=("the last cmd_vel is older than cmd_vel_timeout", "publish more often")
-    )
+    facts = saying(driving, CONTROLLER, command__timed_out=TIMED_OUT)
     answer = judge(replace(facts, measured=(0.0, 0.0)))
     assert "older than cmd_vel_timeout" in answer.headline
     assert answer.actions == (("operator", "look at /send_cmd: publish more often"),)
 
 
 def test_many_senders_are_named_where_one_sender_forbids_them(driving):
-    facts = saying(
-        driving,
-        CONTROLLER,
-        senders="/teleop, /navigation",
-        requested_m_s="0",
-        requested_rad_s="0",
-        command__many_senders=("more than one node sends commands, which one_sender forbids", "stop all but one"),
-    )
+    facts = saying(driving, CONTROLLER, senders="/teleop, /navigation", **ZERO, command__many_senders=MANY)
     answer = judge(replace(facts, measured=(0.0, 0.0)))
     assert answer.verdict is Verdict.STOPPED
-    assert answer.headline == "Commands are refused: more than one node sends commands, which one_sender forbids."
+    assert answer.headline == f"Commands are refused: {MANY[0]}."
     assert answer.actions == (("operator", "stop all but one of /teleop, /navigation"),)
     assert "(2 senders: all are refused)" in text(facts)
 
 
 def test_a_revoked_sender_is_named(driving):
-    facts = saying(
-        driving,
-        CONTROLLER,
-        revoked_senders="/planner",
-        requested_m_s="0",
-        requested_rad_s="0",
-        command__revoked=("a sender goes on requesting motion that was requested before a stop", "let it send a zero"),
-    )
+    facts = saying(driving, CONTROLLER, revoked_senders="/planner", **ZERO, command__revoked=REVOKED)
     answer = judge(replace(facts, measured=(0.0, 0.0)))
     assert answer.verdict is Verdict.STOPPED
-    assert answer.headline == (
-        "Commands are refused: a sender goes on requesting motion that was requested before a stop."
-    )
+    assert answer.headline == f"Commands are refused: {REVOKED[0]}."
     assert answer.actions == (("operator", "/planner: let it send a zero"),)
 
 
 def test_where_the_revoked_sender_is_gone_the_silence_is_the_answer(driving):
-    facts = saying(
-        driving,
-        CONTROLLER,
-        revoked_senders="",
-        command__revoked=("a sender goes on requesting motion", "let it send a zero"),
-        command__timed_out=("the last cmd_vel is older than cmd_vel_timeout", "publish more often"),
-    )
+    facts = saying(driving, CONTROLLER, revoked_senders="", command__revoked=REVOKED, command__timed_out=TIMED_OUT)
     assert "older than cmd_vel_timeout" in judge(replace(facts, measured=(0.0, 0.0))).headline
 
 
@@ -386,20 +359,15 @@ def test_received_senders_count_and_registered_ones_do_not(driving):
 
 
 def test_a_sender_with_a_wrong_clock_is_reported(driving):
-    facts = saying(
-        driving,
-        CONTROLLER,
-        command__no_command=("nothing was received on cmd_vel in this run", "publish on cmd_vel"),
-        command__stale=("the last cmd_vel_stamped was older than cmd_vel_timeout", "synchronise the sender's clock"),
-    )
+    facts = saying(driving, CONTROLLER, command__no_command=NO_COMMAND, command__stale=STALE)
     answer = judge(replace(facts, measured=(0.0, 0.0)))
     assert answer.verdict is Verdict.IDLE
     assert "the last cmd_vel_stamped was older" in answer.headline
-    assert answer.actions == (("operator", "look at /send_cmd: synchronise the sender's clock"),)
+    assert answer.actions == (("operator", f"look at /send_cmd: {STALE[1]}"),)
 
 
 def test_one_stale_message_does_not_hide_that_it_moves(driving):
-    facts = saying(driving, CONTROLLER, command__stale="the last cmd_vel_stamped was older than cmd_vel_timeout")
+    facts = saying(driving, CONTROLLER, command__stale=STALE[0])
     assert judge(facts).verdict is Verdict.MOVING
     assert "the last cmd_vel_stamped was older" in text(facts)
 
@@ -545,26 +513,23 @@ def test_without_times_the_same_answer_looks_the_same(driving):
     assert text(driving) != text(later)
 
 
-def with_sources(facts, text, **values):
-    controller = Report("running", {**facts.reports[CONTROLLER].values, "sources": text, **values})
-    return replace(facts, reports={**facts.reports, CONTROLLER: controller})
-
-
 def test_the_command_sources_and_who_commands_are_shown(driving):
-    facts = with_sources(driving, "joy_vel: silent, key_vel: commands, path_vel: masked by key_vel", senders="/a, /b")
+    sources = "joy_vel: silent, key_vel: commands, path_vel: masked by key_vel"
+    facts = saying(driving, CONTROLLER, sources=sources, senders="/a, /b")
     lines = "\n".join(render(facts))
-    assert "sources    joy_vel: silent, key_vel: commands, path_vel: masked by key_vel" in lines
+    assert f"sources    {sources}" in lines
     assert "published by /a, /b\n" in lines
 
 
 def test_a_lock_is_what_stands_against_motion(driving):
-    answer = judge(with_sources(driving, "key_vel: locked by pause, cmd_vel: silent"))
+    answer = judge(saying(driving, CONTROLLER, sources="key_vel: locked by pause, cmd_vel: silent"))
     assert answer.verdict is Verdict.STOPPED
     assert answer.headline == "The commands are locked by pause: the result is zero."
 
 
 def test_a_lock_that_lets_the_commander_pass_stands_against_nothing(driving):
-    assert judge(with_sources(driving, "key_vel: commands, cmd_vel: locked by no_programs")).verdict is Verdict.MOVING
+    facts = saying(driving, CONTROLLER, sources="key_vel: commands, cmd_vel: locked by no_programs")
+    assert judge(facts).verdict is Verdict.MOVING
 
 
 def test_a_machine_that_is_starting_is_named_with_what_it_waits_for():

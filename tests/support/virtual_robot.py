@@ -148,3 +148,11 @@ class Run:
             assert self.now < end, f"not completed: {self.state}"
             self.step(PERIOD)
         self.step(PERIOD)
+
+
+def ordered(message: dict[str, Any], seconds: float = 0.0) -> Run:
+    """A run that has this order since so many seconds."""
+    run = Run()
+    run.send(message)
+    run.step(seconds)
+    return run
