@@ -4,11 +4,11 @@
 #include <cmath>
 #include <optional>
 
-#include "control/legged/body_bounds.h"
-#include "control/legged/gait.h"
 #include "control/legged/leg_controller.h"
 #include "control/legged/leg_tuning.h"
-#include "control/legged/walking/walking_speed.h"
+#include "control/legged/stand/body_bounds.h"
+#include "control/legged/walk/gait.h"
+#include "control/legged/walk/walking_speed.h"
 #include "estimation/legged/legged_estimator.h"
 #include "parameters/problem_list.h"
 #include "safety/conditions/legged/legged_conditions.h"

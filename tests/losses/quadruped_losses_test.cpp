@@ -4,8 +4,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "control/legged/gait.h"
 #include "control/legged/leg_controller.h"
+#include "control/legged/walk/gait.h"
 #include "hog.h"
 #include "losses_fixture.h"
 #include "machine/legs/leg_model.h"

@@ -3,7 +3,7 @@
 #include <random>
 #include <vector>
 
-#include "control/legged/body_bounds.h"
+#include "control/legged/stand/body_bounds.h"
 #include "robots/quadruped_fixture.h"
 #include "support/temporary_folder.h"
 

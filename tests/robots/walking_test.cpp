@@ -1,6 +1,6 @@
 /// Robots on legs that walk, in the closed loop.
 
-#include "control/legged/gait.h"
+#include "control/legged/walk/gait.h"
 #include "robots/quadruped_fixture.h"
 
 namespace robot_control {

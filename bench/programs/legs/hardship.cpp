@@ -1,7 +1,7 @@
 #include <random>
 
 #include "bench/programs/legs/loop_rows.h"
-#include "control/legged/gait.h"
+#include "control/legged/walk/gait.h"
 #include "machine/bodies/rigid_bodies.h"
 
 namespace robot_control::bench {

@@ -2,7 +2,7 @@
 #include <random>
 
 #include "bench/programs/legs/loop_rows.h"
-#include "control/legged/gait.h"
+#include "control/legged/walk/gait.h"
 
 namespace robot_control::bench {
 namespace {

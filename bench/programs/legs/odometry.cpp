@@ -3,7 +3,7 @@
 #include <functional>
 
 #include "bench/programs/legs/loop_rows.h"
-#include "control/legged/gait.h"
+#include "control/legged/walk/gait.h"
 #include "estimation/legged/legged_estimator.h"
 
 namespace robot_control::bench {

@@ -1,6 +1,6 @@
 #include "bench/programs/legs/loop_rows.h"
-#include "control/legged/gait.h"
-#include "control/legged/walking/twist_limiter.h"
+#include "control/legged/walk/gait.h"
+#include "control/legged/walk/twist_limiter.h"
 
 namespace robot_control::bench {
 namespace {

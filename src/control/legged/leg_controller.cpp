@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "control/legged/body_bounds.h"
-#include "control/legged/ground_slope.h"
-#include "control/legged/own_gaits.h"
-#include "control/legged/walking/walking_speed.h"
+#include "control/legged/posture/ground_slope.h"
+#include "control/legged/stand/body_bounds.h"
+#include "control/legged/walk/own_gaits.h"
+#include "control/legged/walk/walking_speed.h"
 
 namespace robot_control {
 namespace {

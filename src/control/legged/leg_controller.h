@@ -26,10 +26,10 @@
 ///   while a foot is lifted    the place of this foot from where it stood: x, y, and height above the ground. The body
 ///                             has its nominal attitude. Without a request the foot is set down again
 ///
-/// A twist lets the robot stand up and walk (walking/walker.h). It ends the walk with a zero. Another gait begins when
+/// A twist lets the robot stand up and walk (walk/walker.h). It ends the walk with a zero. Another gait begins when
 /// its legs carry the body at the twist of then. Until then the twist is limited by both gaits (walking_speed.h).
 /// While it walks, the body takes height, roll and pitch of the request within half of their ranges. It takes no more
-/// than the legs carry on the spot (walking/leg_use.h). The twist is limited to what they carry in the pose in force
+/// than the legs carry on the spot (walk/leg_use.h). The twist is limited to what they carry in the pose in force
 /// and in the requested one. The body waits before a pose in which they do not carry the twist of now.
 ///
 /// The stance frame has its origin where that of the base was when it began to rise. Its x axis shows ahead, its z axis
@@ -61,14 +61,14 @@
 
 #include "control/common/command_watch.h"
 #include "control/common/control_input.h"
-#include "control/legged/joint_motion.h"
+#include "control/legged/joints/joint_motion.h"
 #include "control/legged/leg_controller_parameters.h"
 #include "control/legged/leg_tuning.h"
 #include "control/legged/tracked_axis.h"
-#include "control/legged/walking/leg_use.h"
-#include "control/legged/walking/twist_limiter.h"
-#include "control/legged/walking/walker.h"
-#include "control/legged/walking/walking_speed.h"
+#include "control/legged/walk/leg_use.h"
+#include "control/legged/walk/twist_limiter.h"
+#include "control/legged/walk/walker.h"
+#include "control/legged/walk/walking_speed.h"
 #include "machine/legs/leg_dynamics.h"
 #include "machine/legs/leg_model.h"
 #include "signals/command_frame.h"

@@ -1,8 +1,8 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 
-#include "control/legged/foot_forces.h"
 #include "control/legged/leg_controller.h"
+#include "control/legged/stand/foot_forces.h"
 #include "machine/gravity.h"
 
 namespace robot_control {

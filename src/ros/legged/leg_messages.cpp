@@ -5,8 +5,8 @@
 #include <limits>
 #include <numbers>
 
-#include "control/legged/ground_slope.h"
-#include "control/legged/own_gaits.h"
+#include "control/legged/posture/ground_slope.h"
+#include "control/legged/walk/own_gaits.h"
 #include "parameters/block.h"
 #include "ros/messages/status_messages.h"
 #include "ros/reports/name_list.h"

@@ -13,7 +13,7 @@
 #include <optional>
 #include <string>
 
-#include "control/legged/gait.h"
+#include "control/legged/walk/gait.h"
 #include "machine/legs/leg_model.h"
 #include "ros/messages/bounded_message.h"
 #include "ros/messages/messages.h"

@@ -44,7 +44,7 @@ struct LeggedCommand {
   LegPhase phase = LegPhase::kLying;
   std::uint64_t lifted = 0;      ///< 1 + i: the foot of LegPlace i is in the air, or on its way; 0: none
   std::array<double, 6> body{};  ///< m and rad: x y height roll pitch yaw from the nominal pose, after limits
-  std::uint64_t gait = 0;        ///< GaitName (control/legged/gait.h)
+  std::uint64_t gait = 0;        ///< GaitName (control/legged/walk/gait.h)
   double gait_phase = 0;         ///< 0 … 1
   FootStances stance{};
 };

@@ -7,8 +7,8 @@
 #include <cmath>
 #include <cstdint>
 
-#include "control/legged/body_bounds.h"
 #include "control/legged/leg_controller.h"
+#include "control/legged/stand/body_bounds.h"
 #include "machine/gravity.h"
 #include "machine/legs/legs_corpus.h"
 
