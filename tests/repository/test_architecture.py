@@ -245,7 +245,7 @@ OF_KIND = re.compile(r"^(?:struct|class|enum(?: class)?|inline constexpr [\w:]+)
 
 
 def kinds_in(name):
-    return [kind for kind in KINDS if kind & set(str(name).split("/"))]
+    return [kind for kind in KINDS if kind & set(str(name).removeprefix(f"{ROOT}/").split("/"))]
 
 
 def test_the_common_interfaces_know_no_kind():
