@@ -299,7 +299,7 @@ class RigidWalker {
 };
 
 struct Walk {
-  GaitName gait;
+  std::uint64_t gait;
   Eigen::Vector3d request;  ///< m/s, m/s, rad/s
 };
 
@@ -321,11 +321,11 @@ TEST_P(RigidWalk, FollowsTheRequestUpright) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Walks, RigidWalk,
-                         testing::Values(Walk{GaitName::kTrot, {0.5, 0, 0}}, Walk{GaitName::kTrot, {1.5, 0, 0}},
-                                         Walk{GaitName::kTrot, {0, 0.3, 0}}, Walk{GaitName::kTrot, {0, 0, 1.5}},
-                                         Walk{GaitName::kTrot, {0.5, 0.2, 0.5}},
-                                         Walk{GaitName::kWalkingTrot, {0.5, 0, 0}},
-                                         Walk{GaitName::kCrawl, {0.2, 0, 0}}));
+                         testing::Values(Walk{gait_named("trot"), {0.5, 0, 0}}, Walk{gait_named("trot"), {1.5, 0, 0}},
+                                         Walk{gait_named("trot"), {0, 0.3, 0}}, Walk{gait_named("trot"), {0, 0, 1.5}},
+                                         Walk{gait_named("trot"), {0.5, 0.2, 0.5}},
+                                         Walk{gait_named("walking_trot"), {0.5, 0, 0}},
+                                         Walk{gait_named("crawl"), {0.2, 0, 0}}));
 
 }  // namespace
 }  // namespace robot_control
