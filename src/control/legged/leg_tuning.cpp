@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "machine/gravity.h"
+#include "signals/legged/legged_command.h"
 
 namespace robot_control {
 namespace {
@@ -87,6 +88,11 @@ LegTuning leg_tuning(const LegModel& robot) noexcept {
   tuning.foot = {.speed = 0.5 * time, .acceleration = 15};
   tuning.joint = {.speed = 3 / time, .acceleration = 15 / length};
   return tuning;
+}
+
+double within(double value, double range, std::uint64_t& reasons) noexcept {
+  if (std::abs(value) > range) reasons |= kReasonOutOfReach;
+  return std::clamp(value, -range, range);
 }
 
 std::array<JointBounds, kLegsJoints> joint_bounds(const LegModel& robot) noexcept {

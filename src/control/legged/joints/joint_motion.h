@@ -1,5 +1,6 @@
 #pragma once
-/// Moves the joints of a robot that lies to requested positions. With h = kHorizon and Δt the period,
+/// Moves the joints of a robot that lies to Request::joints, within their ranges and nine tenths of their speed limits.
+/// The legs carry their own weight alone. With h = kHorizon and Δt the period,
 ///
 ///   reference   goes straight from where it is to a new target, and is there after h
 ///   joint       follows the reference within speed and acceleration (tracked_axis.h)
@@ -11,8 +12,11 @@
 #include <array>
 #include <cstdint>
 
+#include "control/legged/leg_tuning.h"
 #include "control/legged/tracked_axis.h"
 #include "machine/legs/leg_model.h"
+#include "signals/legged/legged_command.h"
+#include "signals/velocity_command.h"
 
 namespace robot_control {
 
@@ -33,7 +37,7 @@ struct JointMotion {
 
   /// Advances by `dt` s towards `target` in rad; `fresh`: it was requested now.
   void follow(const std::array<double, kLegsJoints>& target, bool fresh,
-              const std::array<AxisBounds, kLegsJoints>& bounds, double dt) noexcept {
+              const std::array<JointBounds, kLegsJoints>& bounds, double dt) noexcept {
     follows = 1;
     if (fresh) left = kHorizon;
     const double part = left > dt ? dt / left : 1;
@@ -43,21 +47,52 @@ struct JointMotion {
   }
 
   /// Advances by `dt` s without a request.
-  void stop(const std::array<AxisBounds, kLegsJoints>& bounds, double dt) noexcept {
+  void stop(const std::array<JointBounds, kLegsJoints>& bounds, double dt) noexcept {
     for (std::size_t i = 0; i < kLegsJoints && follows != 0; ++i)
-      reference[i] = stopping_place(std::array{axes[i]}, std::array{bounds[i]})[0];
+      reference[i] = stopping_place(std::array{axes[i]}, std::array{bounds[i].motion})[0];
     follows = 0;
     step(bounds, dt);
   }
 
  private:
-  void step(const std::array<AxisBounds, kLegsJoints>& bounds, double dt) noexcept {
+  void step(const std::array<JointBounds, kLegsJoints>& bounds, double dt) noexcept {
     for (std::size_t i = 0; i < kLegsJoints; ++i) {
       std::array axis{axes[i]};
-      track(axis, std::array{reference[i]}, std::array{bounds[i]}, dt);
+      track(axis, std::array{reference[i]}, std::array{bounds[i].motion}, dt);
       axes[i] = axis[0];
     }
   }
+};
+
+class Joints {
+ public:
+  struct State {
+    JointMotion motion;
+    std::uint64_t requested = 0;  ///< cycle of the request that they follow
+  };
+
+  /// `period` s.
+  Joints(const LegModel& robot, double period) : period_(period), bounds_(joint_bounds(robot)) {}
+
+  /// Sets the joint angles of the next cycle. The request in force was received in `request_cycle`.
+  void step(State& state, const Request& request, std::uint64_t request_cycle, std::array<double, kLegsJoints>& angles,
+            std::uint64_t& reasons) const noexcept {
+    if (request.mode.kind == ModeKind::kJoints) {
+      std::array<double, kLegsJoints> target = request.joints;
+      for (std::size_t i = 0; i < kLegsJoints; ++i)
+        target[i] = std::clamp(target[i], bounds_[i].range.lower, bounds_[i].range.upper);
+      if (target != request.joints) reasons |= kReasonOutOfReach;
+      state.motion.follow(target, state.requested != request_cycle, bounds_, period_);
+      state.requested = request_cycle;
+    } else {
+      state.motion.stop(bounds_, period_);
+    }
+    for (std::size_t i = 0; i < kLegsJoints; ++i) angles[i] = state.motion.axes[i].value;
+  }
+
+ private:
+  double period_;
+  std::array<JointBounds, kLegsJoints> bounds_;
 };
 
 }  // namespace robot_control

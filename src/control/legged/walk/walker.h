@@ -36,6 +36,7 @@
 #include "control/legged/tracked_axis.h"
 #include "control/legged/walk/force_plan.h"
 #include "control/legged/walk/gait_table.h"
+#include "control/legged/walk/leg_use.h"
 #include "control/legged/walk/twist_limiter.h"
 #include "machine/legs/leg_dynamics.h"
 #include "machine/legs/leg_model.h"
@@ -49,10 +50,9 @@ struct WalkInput {
   const SensorFrame* sensors = nullptr;  ///< all joints are measured
   const StateFrame* state = nullptr;     ///< valid
   WalkingTwist twist{};                  ///< limited
-  double height = 0;                     ///< m, of the body from the nominal one
-  double roll = 0, pitch = 0;            ///< rad
-  std::array<double, 3> rates{};         ///< m/s, rad/s, of height, roll and pitch
-  std::uint64_t gait = kStandGait;       ///< wanted; kStandGait ends the walk
+  CarriedBody body{};
+  CarriedBody rates{};              ///< m/s, rad/s
+  std::uint64_t gait = kStandGait;  ///< wanted; kStandGait ends the walk
 };
 
 /// The body as it is.

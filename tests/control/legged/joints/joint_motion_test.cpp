@@ -155,7 +155,7 @@ TEST_F(LyingJoints, StayWhereTheyAreAfterTheRequestHasTimedOut) {
   ASSERT_GT(distance, 0.001);
   legs_.run(0.3, {});
   EXPECT_EQ(legs_.out.legged.phase, LegPhase::kJoints);
-  const Positions rest = legs_.state().angles;
+  const Positions rest = legs_.state().stand.angles;
   EXPECT_LT(std::abs(rest[2] - start_[2]), 0.3);
   legs_.run(0.5, {});
   for (std::size_t i = 0; i < kLegsJoints; ++i) EXPECT_NEAR(legs_.out.joints[i].position, rest[i], 1e-6);

@@ -1,0 +1,55 @@
+#pragma once
+/// Moves the joints of a robot that lies from where they are to the lying posture, and measures the ground's slope
+/// there. On a slope that is too steep the robot does not stand up (ground_slope.h).
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "control/legged/leg_tuning.h"
+#include "control/legged/posture/ground_slope.h"
+#include "machine/legs/leg_model.h"
+#include "signals/state_frame.h"
+
+namespace robot_control {
+
+class Gathering {
+ public:
+  static constexpr double kMinTime = 0.1;  ///< s
+
+  struct State {
+    std::array<double, kLegsJoints> from{};  ///< rad, joint angles at the beginning
+  };
+
+  explicit Gathering(const LegModel& robot) : bounds_(joint_bounds(robot)), lying_pitch_(robot.lying_pitch) {
+    for (std::size_t leg = 0; leg < kLegs; ++leg) LegAngles::Map(&lying_[kLegJoints * leg]) = robot.legs[leg].lying;
+  }
+
+  /// Sets the joint angles of `elapsed` s after the beginning. Returns true at the end.
+  bool step(const State& state, double elapsed, std::array<double, kLegsJoints>& angles) const noexcept {
+    double time = kMinTime;
+    for (std::size_t i = 0; i < kLegsJoints; ++i)  // the smooth way is 1.5 times as fast in its middle
+      time = std::max(time, 1.5 * std::abs(lying_[i] - state.from[i]) / bounds_[i].motion.speed);
+    const double part = smooth_step(elapsed / time);
+    for (std::size_t i = 0; i < kLegsJoints; ++i) angles[i] = state.from[i] + part * (lying_[i] - state.from[i]);
+    return elapsed >= time;
+  }
+
+  /// Sets the vertical in the axes of the ground, which counts as level without a valid estimate. Returns false where
+  /// the ground is too steep.
+  bool measure_slope(const StateFrame* estimate, Vector3& up) const noexcept {
+    up = {0, 0, 1};
+    if (estimate == nullptr || (estimate->base.flags & kStateValid) == 0) return true;
+    const Eigen::Vector3d measured = vertical_over_ground(estimate->base.attitude, lying_pitch_);
+    if (measured.z() < std::cos(kLevelSlope)) up = {measured.x(), measured.y(), measured.z()};
+    const bool steep = measured.z() < std::cos(kMaxSlope);
+    return !steep;
+  }
+
+ private:
+  std::array<JointBounds, kLegsJoints> bounds_;
+  std::array<double, kLegsJoints> lying_{};  ///< rad
+  double lying_pitch_;                       ///< rad
+};
+
+}  // namespace robot_control
