@@ -54,7 +54,7 @@ void LegController::step(const ControlInput& input, CommandFrame& out) noexcept 
   }
   if (state_.phase != LegPhase::kWalking) state_.gap = 0;
   note_ignored(request, out.reasons);
-  const std::array<double, kLegsJoints> before = state_.stand.angles;
+  const JointValues before = state_.stand.angles;
   const bool began = advance(request, input, out.reasons);
   if (state_.phase == LegPhase::kWalking) return walk(input, request, out);
   report(out);
@@ -62,25 +62,21 @@ void LegController::step(const ControlInput& input, CommandFrame& out) noexcept 
     out.reasons |= kReasonHolding;
     return;
   }
-  std::array<double, kLegsJoints> rates{};
+  JointValues rates{};
   for (std::size_t i = 0; i < kLegsJoints && !began; ++i) rates[i] = (state_.stand.angles[i] - before[i]) / period_;
   stand_.command(state_.stand, rates, out);
 }
 
-/// Returns true if the robot has the foot or the gait that the mode names.
-bool LegController::known(const Mode& mode) const noexcept {
-  if (mode.kind == ModeKind::kGait) return walk_.has_gait(mode.index);
-  return mode.kind < ModeKind::kGait && (mode.kind != ModeKind::kLift || mode.index < kLegs);
-}
-
 /// Names what the present posture does not allow.
 void LegController::note_ignored(const Request& request, std::uint64_t& reasons) const noexcept {
-  const bool of_joints = request.mode.kind == ModeKind::kJoints;
+  const ModeKind kind = request.mode.kind;
+  const bool of_joints = kind == ModeKind::kJoints;
   const bool lifts = lifted_by(request.mode) != kLegs;
   const bool of_standing = !of_joints && ((parts_of(request) & kPose) != 0 || lifts);
   const bool stands = state_.phase == LegPhase::kStanding || (state_.phase == LegPhase::kWalking && !lifts);
   if (of_standing && !stands && !walk_.requested(request)) reasons |= kReasonNotStanding;
-  if (!known(request.mode)) reasons |= kReasonPartIgnored;
+  const bool known = kind == ModeKind::kGait ? walk_.has_gait(request.mode.index) : kind < ModeKind::kGait;
+  if (!known || (kind == ModeKind::kLift && !lifts)) reasons |= kReasonPartIgnored;
   const bool lies = state_.phase == LegPhase::kLying || state_.phase == LegPhase::kJoints;
   if (of_joints && !lies) reasons |= kReasonNotLying;
 }
@@ -99,7 +95,8 @@ bool LegController::advance(const Request& request, const ControlInput& input, s
   const bool up = wanted == ModeKind::kStand || walks;
   switch (state_.phase) {
     case LegPhase::kLying:
-      if (up ? state_.steep != 0 && !stands_up_here(input, reasons) : wanted != ModeKind::kJoints) return false;
+      if (!up && wanted != ModeKind::kJoints) return false;
+      if (up && state_.steep != 0 && !gathering_.stands_up_here(input.state, stand.up, reasons)) return false;
       for (std::size_t i = 0; i < kLegsJoints; ++i) stand.angles[i] = input.sensors->joints[i].position;
       state_.joints.motion.begin(stand.angles);
       enter(up ? LegPhase::kGathering : LegPhase::kJoints);
@@ -114,7 +111,6 @@ bool LegController::advance(const Request& request, const ControlInput& input, s
       if (down) state_.phase = LegPhase::kLying;
       return false;
     case LegPhase::kRising:
-      stand_.find_home(stand);
       stand_.rise(stand, state_.elapsed, reasons);
       if (down) {
         enter(LegPhase::kLowering, stand_.rise_time() - state_.elapsed);
@@ -136,7 +132,7 @@ bool LegController::advance(const Request& request, const ControlInput& input, s
       return false;
     case LegPhase::kLowering:
       if (state_.sinks != 0) {
-        stand_.rise(stand, stand_.rise_time() - state_.elapsed, reasons);
+        stand_.sink(stand, stand_.rise_time() - state_.elapsed, reasons);
         if (state_.elapsed >= stand_.rise_time()) enter(LegPhase::kLying);
       } else {
         state_.elapsed = 0;
@@ -151,7 +147,7 @@ bool LegController::advance(const Request& request, const ControlInput& input, s
 
 void LegController::gather(const ControlInput& input, std::uint64_t& reasons) noexcept {
   if (!gathering_.step(state_.gathering, state_.elapsed, state_.stand.angles)) return;
-  const bool stands_up = stands_up_here(input, reasons);
+  const bool stands_up = gathering_.stands_up_here(input.state, state_.stand.up, reasons);
   enter(stands_up ? LegPhase::kRising : LegPhase::kLying);
   state_.steep = stands_up ? 0 : 1;
   stand_.begin(state_.stand);
@@ -172,13 +168,6 @@ void LegController::walk(const ControlInput& input, const Request& request, Comm
   enter(LegPhase::kStanding);
   state_.lies_next = lies_next;
   stand_.begin(state_.stand, walk_.walker().measure(*input.sensors, *input.state), state_.walk.walker.ground[0]);
-}
-
-/// Measures the slope of the ground below the lying posture. Returns false where it is too steep to stand up.
-bool LegController::stands_up_here(const ControlInput& input, std::uint64_t& reasons) noexcept {
-  const bool stands_up = gathering_.measure_slope(input.state, state_.stand.up);
-  if (!stands_up) reasons |= kReasonTooSteep;
-  return stands_up;
 }
 
 void LegController::enter(LegPhase phase, double elapsed) noexcept {

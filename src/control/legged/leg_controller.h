@@ -71,12 +71,10 @@ class LegController {
   void set_state(const State& state) noexcept { state_ = state; }
 
  private:
-  bool known(const Mode& mode) const noexcept;
   void note_ignored(const Request& request, std::uint64_t& reasons) const noexcept;
   bool advance(const Request& request, const ControlInput& input, std::uint64_t& reasons) noexcept;
   void gather(const ControlInput& input, std::uint64_t& reasons) noexcept;
   void walk(const ControlInput& input, const Request& request, CommandFrame& out) noexcept;
-  bool stands_up_here(const ControlInput& input, std::uint64_t& reasons) noexcept;
   void pause() noexcept;
   void enter(LegPhase phase, double elapsed = 0) noexcept;
   void report(CommandFrame& out) const noexcept;

@@ -42,8 +42,7 @@ double needed_speed(const LegModel& robot, std::size_t leg, const Eigen::Vector3
   const Eigen::Vector3d rates = kinematics.jacobian(*angles, foot).inverse().col(2) * upward;
   double part = 0;
   for (std::size_t i = 0; i < kLegJoints; ++i)
-    part = std::max(part,
-                    std::abs(rates[static_cast<Eigen::Index>(i)]) / robot.joints[kLegJoints * leg + i].velocity_limit);
+    part = std::max(part, std::abs(rates[i]) / robot.joints[kLegJoints * leg + i].velocity_limit);
   return part;
 }
 

@@ -17,6 +17,7 @@
 #include "ros/messages/motion_messages.h"
 #include "ros/nodes/commanded_node.h"
 #include "ros/reports/diagnostics.h"
+#include "ros/reports/name_list.h"
 #include "ros/reports/pacer.h"
 #include "rt/futex.h"
 #include "signals/names.h"
@@ -245,7 +246,7 @@ class LegControllerNode final : public CommandedNode {
     const LegPhase phase = command_.legged.phase;
     std::string problem = refusal_of_permission();
     if (!mode) {
-      problem = "there is no gait '" + request.gait + "'; name one of " + gait_names(gaits_);
+      problem = "there is no gait '" + request.gait + "'; name one of " + joined(gait_words(gaits_));
     } else if (problem.empty() && phase != LegPhase::kStanding && phase != LegPhase::kWalking) {
       problem = "the robot does not stand or walk, it is " + std::string(name_of(phase)) +
                 ": call set_posture with 'standing'";

@@ -24,20 +24,20 @@ struct JointMotion {
   static constexpr double kHorizon = 0.1;  ///< s
 
   std::array<TrackedAxis, kLegsJoints> axes{};  ///< rad
-  std::array<double, kLegsJoints> reference{};  ///< rad
+  JointValues reference{};                      ///< rad
   double left = 0;                              ///< s, until the reference reaches the target
   std::uint64_t follows = 0;                    ///< 1: a request was in force in the last step
 
   /// Begins at rest at these positions in rad.
-  void begin(const std::array<double, kLegsJoints>& positions) noexcept {
+  void begin(const JointValues& positions) noexcept {
     *this = {};
     reference = positions;
     for (std::size_t i = 0; i < kLegsJoints; ++i) axes[i].value = positions[i];
   }
 
   /// Advances by `dt` s towards `target` in rad; `fresh`: it was requested now.
-  void follow(const std::array<double, kLegsJoints>& target, bool fresh,
-              const std::array<JointBounds, kLegsJoints>& bounds, double dt) noexcept {
+  void follow(const JointValues& target, bool fresh, const std::array<JointBounds, kLegsJoints>& bounds,
+              double dt) noexcept {
     follows = 1;
     if (fresh) left = kHorizon;
     const double part = left > dt ? dt / left : 1;
@@ -75,10 +75,10 @@ class Joints {
   Joints(const LegModel& robot, double period) : period_(period), bounds_(joint_bounds(robot)) {}
 
   /// Sets the joint angles of the next cycle. The request in force was received in `request_cycle`.
-  void step(State& state, const Request& request, std::uint64_t request_cycle, std::array<double, kLegsJoints>& angles,
+  void step(State& state, const Request& request, std::uint64_t request_cycle, JointValues& angles,
             std::uint64_t& reasons) const noexcept {
     if (request.mode.kind == ModeKind::kJoints) {
-      std::array<double, kLegsJoints> target = request.joints;
+      JointValues target = request.joints;
       for (std::size_t i = 0; i < kLegsJoints; ++i)
         target[i] = std::clamp(target[i], bounds_[i].range.lower, bounds_[i].range.upper);
       if (target != request.joints) reasons |= kReasonOutOfReach;

@@ -9,6 +9,7 @@
 #include "control/legged/leg_tuning.h"
 #include "control/legged/posture/ground_slope.h"
 #include "machine/legs/leg_model.h"
+#include "signals/legged/legged_command.h"
 #include "signals/state_frame.h"
 
 namespace robot_control {
@@ -18,7 +19,7 @@ class Gathering {
   static constexpr double kMinTime = 0.1;  ///< s
 
   struct State {
-    std::array<double, kLegsJoints> from{};  ///< rad, joint angles at the beginning
+    JointValues from{};  ///< rad, joint angles at the beginning
   };
 
   explicit Gathering(const LegModel& robot) : bounds_(joint_bounds(robot)), lying_pitch_(robot.lying_pitch) {
@@ -26,7 +27,7 @@ class Gathering {
   }
 
   /// Sets the joint angles of `elapsed` s after the beginning. Returns true at the end.
-  bool step(const State& state, double elapsed, std::array<double, kLegsJoints>& angles) const noexcept {
+  bool step(const State& state, double elapsed, JointValues& angles) const noexcept {
     double time = kMinTime;
     for (std::size_t i = 0; i < kLegsJoints; ++i)  // the smooth way is 1.5 times as fast in its middle
       time = std::max(time, 1.5 * std::abs(lying_[i] - state.from[i]) / bounds_[i].motion.speed);
@@ -35,21 +36,22 @@ class Gathering {
     return elapsed >= time;
   }
 
-  /// Sets the vertical in the axes of the ground, which counts as level without a valid estimate. Returns false where
-  /// the ground is too steep.
-  bool measure_slope(const StateFrame* estimate, Vector3& up) const noexcept {
+  /// Sets the vertical in the axes of the ground, which counts as level without a valid estimate. Returns false, and
+  /// notes it, where the ground is too steep.
+  bool stands_up_here(const StateFrame* estimate, Vector3& up, std::uint64_t& reasons) const noexcept {
     up = {0, 0, 1};
     if (estimate == nullptr || (estimate->base.flags & kStateValid) == 0) return true;
     const Eigen::Vector3d measured = vertical_over_ground(estimate->base.attitude, lying_pitch_);
     if (measured.z() < std::cos(kLevelSlope)) up = {measured.x(), measured.y(), measured.z()};
     const bool steep = measured.z() < std::cos(kMaxSlope);
+    if (steep) reasons |= kReasonTooSteep;
     return !steep;
   }
 
  private:
   std::array<JointBounds, kLegsJoints> bounds_;
-  std::array<double, kLegsJoints> lying_{};  ///< rad
-  double lying_pitch_;                       ///< rad
+  JointValues lying_{};  ///< rad
+  double lying_pitch_;   ///< rad
 };
 
 }  // namespace robot_control

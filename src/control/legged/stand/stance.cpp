@@ -7,7 +7,6 @@
 
 #include "control/legged/stand/foot_forces.h"
 #include "control/legged/stand/nominal_stance.h"
-#include "control/legged/walk/walker.h"
 #include "machine/gravity.h"
 
 namespace robot_control {
@@ -29,7 +28,7 @@ Eigen::Matrix3d rotation(const Stance::Pose& pose) noexcept {
 
 /// Returns the rate of the reference in the base's axes.
 LeggedMotion reference_motion(const Stance::State& state, const Eigen::Matrix3d& turned,
-                              const std::array<double, kLegsJoints>& rates) noexcept {
+                              const JointValues& rates) noexcept {
   const std::array<TrackedAxis, 6>& body = state.body;
   LeggedMotion motion{.angles = state.angles, .rates = rates};
   const Eigen::Matrix3d yawed =
@@ -54,29 +53,6 @@ Stance::Stance(const LegModel& robot, double period)
   for (std::size_t i = 0; i < kLegsJoints; ++i) joint_steps_[i] = robot.joints[i].velocity_limit * period;
 }
 
-void Stance::put_feet_where_they_lie(State& state) const noexcept {
-  state.body = {};
-  state.share = {};
-  state.lifted = kLegs;
-  for (std::size_t leg = 0; leg < kLegs; ++leg)
-    Eigen::Map<Eigen::Vector3d>(state.places[leg].data()) = legs_[leg].kinematics.position(legs_[leg].lying);
-}
-
-void Stance::put_feet_where_they_are(State& state, const WalkingBody& body, double ground) const noexcept {
-  state = {.angles = body.angles};
-  Eigen::Vector2d lies = Eigen::Vector2d::Zero();  // m, where the body lies
-  for (std::size_t leg = 0; leg < kLegs; ++leg)
-    lies += (body.feet[leg] - legs_[leg].kinematics.position(legs_[leg].lying)).head<2>() / kLegs;
-  const Pose pose{-lies.x(), -lies.y(), ground_ - ground, body.roll, body.pitch, 0};
-  for (std::size_t i = 0; i < pose.size(); ++i) state.body[i].value = pose[i];
-  for (std::size_t leg = 0; leg < kLegs; ++leg) {
-    const Eigen::Vector3d& foot = body.feet[leg];
-    state.places[leg] = {foot.x() - lies.x(), foot.y() - lies.y(), foot.z() + pose[kZ]};
-  }
-  state.share.fill(1);
-  Eigen::Map<Eigen::Vector3d>(state.centre.data()) = body.equations.centre_of_gravity;
-}
-
 Stance::Pose Stance::pose(const State& state) noexcept {
   Pose result;
   for (std::size_t i = 0; i < result.size(); ++i) result[i] = state.body[i].value;
@@ -87,9 +63,8 @@ Eigen::Vector3d Stance::foot_in_base(const State& state, std::size_t leg, const 
                                      const Eigen::Matrix3d& turned) const noexcept {
   Eigen::Vector3d place = Map(state.places[leg].data());
   for (std::size_t i = 0; i < 3; ++i) {
-    const auto axis = static_cast<Eigen::Index>(i);
-    if (leg == state.lifted) place[axis] += state.foot[i].value;
-    place[axis] -= pose[i];
+    if (leg == state.lifted) place[i] += state.foot[i].value;
+    place[i] -= pose[i];
   }
   return turned.transpose() * place;
 }
@@ -103,7 +78,7 @@ double Stance::spare(const State& state, const Pose& pose) const noexcept {
     const LegSolution solution = kinematics.inverse(foot_in_base(state, leg, pose, turned));
     if (solution.reach != FootReach::kReached) return -1;
     for (std::size_t i = 0; i < kLegJoints; ++i) {
-      const double angle = solution.angles[static_cast<Eigen::Index>(i)];
+      const double angle = solution.angles[i];
       const JointRange& range = kinematics.range(i);
       result = std::min({result, angle - range.lower, range.upper - angle});
     }
@@ -123,8 +98,7 @@ void Stance::set_angles(State& state, std::uint64_t& reasons) const noexcept {
     for (std::size_t i = 0; i < kLegJoints; ++i) {
       const std::size_t joint = kLegJoints * leg + i;
       double& angle = state.angles[joint];
-      angle = std::clamp(solution.angles[static_cast<Eigen::Index>(i)], angle - joint_steps_[joint],
-                         angle + joint_steps_[joint]);
+      angle = std::clamp(solution.angles[i], angle - joint_steps_[joint], angle + joint_steps_[joint]);
     }
   }
 }
@@ -141,7 +115,7 @@ Eigen::Vector2d Stance::above_support(const State& state) const noexcept {
   return middle - Map(state.centre.data()).head<2>() + height / state.up[2] * Map(state.up.data()).head<2>();
 }
 
-void Stance::roll_feet(State& state, const std::array<double, kLegsJoints>& rates) const noexcept {
+void Stance::roll_feet(State& state, const JointValues& rates) const noexcept {
   const Eigen::Matrix3d turned = rotation(pose(state));
   const Eigen::Vector3d body(state.body[kRoll].speed, state.body[kPitch].speed, state.body[kYaw].speed);
   for (std::size_t leg = 0; leg < kLegs; ++leg) {
@@ -170,7 +144,7 @@ void Stance::accelerate(State& state, const LeggedMotion& motion) const noexcept
   state.velocity = velocity;
 }
 
-void Stance::command(State& state, const std::array<double, kLegsJoints>& rates, CommandFrame& out) const noexcept {
+void Stance::command(State& state, const JointValues& rates, CommandFrame& out) const noexcept {
   roll_feet(state, rates);
   const Pose pose = this->pose(state);
   const Eigen::Matrix3d turned = rotation(pose);
@@ -195,11 +169,9 @@ void Stance::command(State& state, const std::array<double, kLegsJoints>& rates,
     const std::size_t first = kLegJoints * leg;
     Eigen::Vector3d foot;
     const Eigen::Matrix3d jacobian = legs_[leg].kinematics.jacobian(LegModel::angles_of(state.angles, leg), foot);
-    const Eigen::Vector3d effort =
-        efforts.segment<3>(static_cast<Eigen::Index>(6 + first)) - jacobian.transpose() * forces[leg];
+    const Eigen::Vector3d effort = efforts.segment<3>(6 + first) - jacobian.transpose() * forces[leg];
     for (std::size_t i = 0; i < kLegJoints; ++i)
-      out.joints[first + i] =
-          tuning_.impedance(state.angles[first + i], rates[first + i], effort[static_cast<Eigen::Index>(i)]);
+      out.joints[first + i] = tuning_.impedance(state.angles[first + i], rates[first + i], effort[i]);
   }
   for (std::size_t axis = 0; axis < 3; ++axis) {
     out.twist_limited.linear[axis] = state.body[axis].speed;

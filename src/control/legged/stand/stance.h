@@ -23,8 +23,6 @@
 
 namespace robot_control {
 
-struct WalkingBody;
-
 class Stance {
  public:
   /// The body in the stance frame: x, y, height above one that lies level in m, roll, pitch, yaw in rad.
@@ -32,7 +30,7 @@ class Stance {
   static constexpr std::size_t kX = 0, kY = 1, kZ = 2, kRoll = 3, kPitch = 4, kYaw = 5;  ///< indices of a Pose
 
   struct State {
-    std::array<double, kLegsJoints> angles{};        ///< rad, of the last command
+    JointValues angles{};                            ///< rad, of the last command
     std::array<Vector3, kLegs> places{};             ///< m, aᵢ
     std::array<TrackedAxis, 6> body{};               ///< by index of a Pose
     std::uint64_t lifted = kLegs;                    ///< the leg in the air, or on its way; kLegs: none
@@ -48,13 +46,9 @@ class Stance {
   Stance(const LegModel& robot, double period);
 
   /// Fills the joints of the command, and the twist of the body. The angles have changed with these rates in rad/s.
-  void command(State& state, const std::array<double, kLegsJoints>& rates, CommandFrame& out) const noexcept;
+  void command(State& state, const JointValues& rates, CommandFrame& out) const noexcept;
 
  protected:
-  /// The feet stand where the legs lie.
-  void put_feet_where_they_lie(State& state) const noexcept;
-  /// The feet stand where they are, `ground` m above the base of a body that walks. The body will lie amid them.
-  void put_feet_where_they_are(State& state, const WalkingBody& body, double ground) const noexcept;
   /// Moves the joint angles to those of the present pose, no faster than the joints may. The nearest angles to a foot
   /// out of reach are not continuous. Notes if a leg does not reach its foot.
   void set_angles(State& state, std::uint64_t& reasons) const noexcept;
@@ -75,11 +69,11 @@ class Stance {
  private:
   Eigen::Vector3d foot_in_base(const State& state, std::size_t leg, const Pose& pose,
                                const Eigen::Matrix3d& turned) const noexcept;
-  void roll_feet(State& state, const std::array<double, kLegsJoints>& rates) const noexcept;
+  void roll_feet(State& state, const JointValues& rates) const noexcept;
   void accelerate(State& state, const LeggedMotion& motion) const noexcept;
 
   LegDynamics dynamics_;
-  std::array<double, kLegsJoints> joint_steps_{};  ///< rad, of a cycle at the speed limit
+  JointValues joint_steps_{};  ///< rad, of a cycle at the speed limit
 };
 
 }  // namespace robot_control

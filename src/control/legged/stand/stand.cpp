@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "control/legged/stand/body_bounds.h"
+#include "control/legged/walk/walker.h"
 
 namespace robot_control {
 namespace {
@@ -20,6 +21,12 @@ void approach(double& value, double target, double step) noexcept {
   value += std::clamp(target - value, -step, step);
 }
 
+bool arrived(const std::array<TrackedAxis, 6>& body, const Stance::Pose& target) noexcept {
+  for (std::size_t i = 0; i < target.size(); ++i)
+    if (std::abs(body[i].value - target[i]) >= kArrived || std::abs(body[i].speed) >= kArrivedSpeed) return false;
+  return true;
+}
+
 }  // namespace
 
 std::uint64_t lifted_by(const Mode& mode) noexcept {
@@ -29,14 +36,29 @@ std::uint64_t lifted_by(const Mode& mode) noexcept {
 Stand::Stand(const LegModel& robot, double period) : Stance(robot, period), body_motion_(body_bounds(robot)) {}
 
 void Stand::begin(State& state) const noexcept {
-  put_feet_where_they_lie(state);
+  state.body = {};
+  state.share = {};
+  state.lifted = kLegs;
   state.held = {};
   state.follows = 0;
+  for (std::size_t leg = 0; leg < kLegs; ++leg)
+    Eigen::Map<Eigen::Vector3d>(state.places[leg].data()) = legs_[leg].kinematics.position(legs_[leg].lying);
 }
 
 void Stand::begin(State& state, const WalkingBody& body, double ground) const noexcept {
   state = {};
-  put_feet_where_they_are(state, body, ground);
+  state.angles = body.angles;
+  Eigen::Vector2d lies = Eigen::Vector2d::Zero();  // m, where the body will lie amid its feet
+  for (std::size_t leg = 0; leg < kLegs; ++leg)
+    lies += (body.feet[leg] - legs_[leg].kinematics.position(legs_[leg].lying)).head<2>() / kLegs;
+  const Pose pose{-lies.x(), -lies.y(), ground_ - ground, body.roll, body.pitch, 0};
+  for (std::size_t i = 0; i < pose.size(); ++i) state.body[i].value = pose[i];
+  for (std::size_t leg = 0; leg < kLegs; ++leg) {
+    const Eigen::Vector3d& foot = body.feet[leg];
+    state.places[leg] = {foot.x() - lies.x(), foot.y() - lies.y(), foot.z() + pose[kZ]};
+  }
+  state.share.fill(1);
+  Eigen::Map<Eigen::Vector3d>(state.centre.data()) = body.equations.centre_of_gravity;
   find_home(state);
   set_margin(state);
 }
@@ -51,7 +73,12 @@ void Stand::find_home(State& state) const noexcept {
 }
 
 void Stand::rise(State& state, double elapsed, std::uint64_t& reasons) const noexcept {
-  const double part = smooth_step(elapsed / tuning_.rise_time);
+  find_home(state);
+  sink(state, elapsed, reasons);
+}
+
+void Stand::sink(State& state, double left, std::uint64_t& reasons) const noexcept {
+  const double part = smooth_step(left / tuning_.rise_time);
   const double standing[3] = {state.home[0], state.home[1], nominal_};
   for (std::size_t i = 0; i < 3; ++i) {
     const double before = state.body[i].value;
@@ -60,7 +87,7 @@ void Stand::rise(State& state, double elapsed, std::uint64_t& reasons) const noe
   }
   for (std::size_t leg = 0; leg < kLegs; ++leg) {
     approach(state.places[leg][2], ground_ + legs_[leg].foot_radius, kSetDown * period_);
-    state.share[leg] = std::clamp(elapsed / kLoadTime, 0.0, 1.0);
+    state.share[leg] = std::clamp(left / kLoadTime, 0.0, 1.0);
   }
   set_angles(state, reasons);
 }
@@ -93,7 +120,7 @@ bool Stand::settle(State& state, std::uint64_t& reasons) const noexcept {
   const Pose nominal = nominal_pose(state);
   track(state.body, nominal, body_motion_, period_);
   set_angles(state, reasons);
-  const bool arrived_all = arrived(state, nominal);
+  const bool arrived_all = arrived(state.body, nominal);
   if (state.lifted != kLegs) move_foot(state, nullptr, arrived_all, 1, reasons);
   return arrived_all && state.lifted == kLegs;
 }
@@ -166,17 +193,9 @@ bool Stand::move(State& state, const Pose& target, double pace, std::uint64_t& r
     reasons |= kReasonOutOfReach;
   }
   set_angles(state, reasons);
-  if (arrived(state, target)) return true;
+  if (arrived(state.body, target)) return true;
   if (pace < 1) reasons |= kReasonPermitSlow;
   return false;
-}
-
-bool Stand::arrived(const State& state, const Pose& target) const noexcept {
-  for (std::size_t i = 0; i < target.size(); ++i) {
-    const TrackedAxis& axis = state.body[i];
-    if (std::abs(axis.value - target[i]) >= kArrived || std::abs(axis.speed) >= kArrivedSpeed) return false;
-  }
-  return true;
 }
 
 /// The foot goes up to the `wanted` place after its share of the weight went to zero. Without one it takes its share

@@ -29,6 +29,8 @@
 
 namespace robot_control {
 
+struct WalkingBody;
+
 inline constexpr double kLoadTime = 0.2;  ///< s, in which a foot's share of the weight comes and goes
 
 /// Returns the leg whose foot this mode lifts; kLegs: none.
@@ -61,8 +63,8 @@ class Stand : public Stance {
   /// Puts the body where it is `elapsed` s after it began to rise.
   void rise(State& state, double elapsed, std::uint64_t& reasons) const noexcept;
 
-  /// Makes the place amid the feet the home of the body.
-  void find_home(State& state) const noexcept;
+  /// Puts the body where it is `left` s before it lies.
+  void sink(State& state, double left, std::uint64_t& reasons) const noexcept;
 
   /// Follows the request in force; a body that shall walk returns to the nominal pose. `speed_limit` m/s.
   void step(State& state, const Request& request, bool walks, double speed_limit,
@@ -80,11 +82,11 @@ class Stand : public Stance {
   double rise_time() const noexcept { return tuning_.rise_time; }
 
  private:
+  void find_home(State& state) const noexcept;
   Pose nominal_pose(const State& state) const noexcept;
   void choose_pose(State& state, const Posture& to, std::uint64_t& reasons) const noexcept;
   void limit_lean(State& state, std::uint64_t& reasons) const noexcept;
   bool move(State& state, const Pose& target, double pace, std::uint64_t& reasons) const noexcept;
-  bool arrived(const State& state, const Pose& target) const noexcept;
   void move_foot(State& state, const Posture* wanted, bool supported, double pace,
                  std::uint64_t& reasons) const noexcept;
 

@@ -68,10 +68,10 @@ class Walk {
 
  private:
   std::uint64_t choose_gait(State& state, const Request& request, const WalkingTwist& target) const noexcept;
+  double pace_of(const WalkingTwist& twist) const noexcept;
   WalkingTwist capable(const State& state, std::uint64_t wanted) const noexcept;
   bool may_end(const State& state, const ControlInput& input) const noexcept;
   bool carries(const State& state, std::uint64_t gait, const WalkingTwist& twist) const noexcept;
-  double pace_of(const WalkingTwist& twist) const noexcept;
   double used(const State& state, const WalkingTwist& twist, const CarriedBody& body, std::uint64_t wanted,
               const CarriedBody& rates = {}) const noexcept;
   double carried_part(State& state, const WalkingTwist& twist, std::uint64_t wanted) const noexcept;

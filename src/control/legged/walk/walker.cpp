@@ -41,7 +41,7 @@ double within(const JointRange& range, double angle) noexcept {
 }
 
 Eigen::Index joint_row(std::size_t leg) noexcept {
-  return static_cast<Eigen::Index>(6 + kLegJoints * leg);
+  return 6 + kLegJoints * leg;
 }
 
 }  // namespace
@@ -309,8 +309,7 @@ double Walker::part_in_reach(const State& state, const WalkInput& input) const n
     if (state.bears[leg] == 0) continue;
     const LegKinematics& kinematics = legs_[leg].kinematics;
     LegAngles now;
-    for (std::size_t i = 0; i < kLegJoints; ++i)
-      now[static_cast<Eigen::Index>(i)] = input.sensors->joints[kLegJoints * leg + i].position;
+    for (std::size_t i = 0; i < kLegJoints; ++i) now[i] = input.sensors->joints[kLegJoints * leg + i].position;
     const Eigen::Vector3d foot = kinematics.position(now);
     const Eigen::Vector3d way =
         bears_for(state, input.gait, leg) * (leaning.transpose() * velocity_below(leaning * foot, input.twist));
@@ -343,19 +342,17 @@ void Walker::bear(const State& state, const WalkingBody& body, std::size_t leg, 
       -body.jacobians[leg].transpose() * (body.turned.transpose() * ConstMap(state.forces[leg].data()));
   double part = 1;
   for (std::size_t i = 0; i < kLegJoints; ++i) {
-    const auto axis = static_cast<Eigen::Index>(i);
-    const double room = effort_limits_[kLegJoints * leg + i] - std::copysign(own[axis], own[axis] * load[axis]);
-    if (std::abs(load[axis]) > room) part = std::min(part, std::max(0.0, room) / std::abs(load[axis]));
+    const double room = effort_limits_[kLegJoints * leg + i] - std::copysign(own[i], own[i] * load[i]);
+    if (std::abs(load[i]) > room) part = std::min(part, std::max(0.0, room) / std::abs(load[i]));
   }
   for (std::size_t i = 0; i < kLegJoints; ++i) {
     const std::size_t joint = kLegJoints * leg + i;
-    const auto axis = static_cast<Eigen::Index>(i);
     const double ahead = body.angles[joint] + tuning_.damping / tuning_.stiffness * body.rates[joint];
     const double stop = tuning_.stiffness * (within(legs_[leg].kinematics.range(i), ahead) - ahead);
     const double limit = effort_limits_[joint];
     out.joints[joint] = {.mode = JointMode::kImpedance,
                          .position = body.angles[joint],
-                         .effort = std::clamp(own[axis] + part * load[axis] + stop, -limit, limit)};
+                         .effort = std::clamp(own[i] + part * load[i] + stop, -limit, limit)};
   }
 }
 
@@ -379,11 +376,10 @@ void Walker::swing(const State& state, const WalkInput& input, const WalkingBody
       body.equations.mass.block<3, 3>(row, row) * accelerations + body.equations.bias.segment<3>(row);
   for (std::size_t i = 0; i < kLegJoints; ++i) {
     const std::size_t joint = kLegJoints * leg + i;
-    const auto axis = static_cast<Eigen::Index>(i);
     const double limit = effort_limits_[joint];
-    const double angle = within(kinematics.range(i), solution.angles[axis]);
-    const double rate = angle == solution.angles[axis] ? rates[axis] : 0;
-    out.joints[joint] = tuning_.impedance(angle, rate, std::clamp(efforts[axis], -limit, limit));
+    const double angle = within(kinematics.range(i), solution.angles[i]);
+    const double rate = angle == solution.angles[i] ? rates[i] : 0;
+    out.joints[joint] = tuning_.impedance(angle, rate, std::clamp(efforts[i], -limit, limit));
   }
 }
 
