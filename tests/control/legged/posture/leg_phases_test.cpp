@@ -290,6 +290,17 @@ TEST(LoweringLegs, StandUpAgainFromWhereTheyAre) {
   EXPECT_EQ(legs.out.legged.phase, LegPhase::kStanding);
 }
 
+TEST(RisingLegs, SinkWithinTheRiseTimeIfALieIsRequestedInTheirLastCycle) {
+  IdealLegs legs(lopsided()), next = legs;
+  legs.request(stance_of({ModeKind::kStand}));
+  for (next = legs; next.out.legged.phase != LegPhase::kStanding; next.step()) legs = next;
+  const double height = legs.pose()[2];
+  legs.step(stance_of({ModeKind::kLie}));
+  legs.step();
+  EXPECT_EQ(legs.out.legged.phase, LegPhase::kLowering);
+  EXPECT_NEAR(legs.pose()[2], height, 0.01);
+}
+
 TEST(LoweringLegs, StandAgainAtOnceWhereTheBodyHasNotSunk) {
   IdealLegs legs = standing();
   Request pose;
