@@ -17,7 +17,7 @@ LegController::LegController(const LegModel& robot, const LegControllerParameter
     : period_(period),
       lie_down_after_(parameters.lie_down_after),
       gathering_(robot),
-      joints_(robot, period),
+      joint_bounds_(joint_bounds(robot)),
       stand_(robot, period),
       walk_(robot, parameters, period),
       state_(CommandWatch(parameters.request_timeout, period, kExecutable)) {}
@@ -98,11 +98,12 @@ bool LegController::advance(const Request& request, const ControlInput& input, s
       if (!up && wanted != ModeKind::kJoints) return false;
       if (up && state_.steep != 0 && !gathering_.stands_up_here(input.state, stand.up, reasons)) return false;
       for (std::size_t i = 0; i < kLegsJoints; ++i) stand.angles[i] = input.sensors->joints[i].position;
-      state_.joints.motion.begin(stand.angles);
+      state_.joints.begin(stand.angles);
       enter(up ? LegPhase::kGathering : LegPhase::kJoints);
       return true;
     case LegPhase::kJoints:
-      joints_.step(state_.joints, request, state_.watch.request_cycle(), stand.angles, reasons);
+      state_.joints.step(request, state_.watch.request_cycle(), joint_bounds_, period_, reasons);
+      for (std::size_t i = 0; i < kLegsJoints; ++i) stand.angles[i] = state_.joints.axes[i].value;
       if (up) enter(LegPhase::kGathering);
       if (down) enter(LegPhase::kLying);
       return false;

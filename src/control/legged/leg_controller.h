@@ -63,7 +63,7 @@ class LegController {
     std::uint64_t lies_next = 0;  ///< 1: it lies down when the walk has ended
     std::uint64_t steep = 0;      ///< 1: it lies as gathered, on a slope that is too steep
     Gathering::State gathering;
-    Joints::State joints;
+    JointMotion joints;
     Stand::State stand;
     Walk::State walk;
   };
@@ -82,7 +82,7 @@ class LegController {
   double period_;
   double lie_down_after_;  ///< s; 0: never
   Gathering gathering_;
-  Joints joints_;
+  AllJointBounds joint_bounds_;
   Stand stand_;
   Walk walk_;
   State state_;

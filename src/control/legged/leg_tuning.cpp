@@ -94,10 +94,10 @@ double within(double value, double range, std::uint64_t& reasons) noexcept {
   return std::clamp(value, -range, range);
 }
 
-std::array<JointBounds, kLegsJoints> joint_bounds(const LegModel& robot) noexcept {
+AllJointBounds joint_bounds(const LegModel& robot) noexcept {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   const AxisBounds motion = leg_tuning(robot).joint;
-  std::array<JointBounds, kLegsJoints> bounds;
+  AllJointBounds bounds;
   for (std::size_t i = 0; i < kLegsJoints; ++i) {
     const JointModel& joint = robot.joints[i];
     bounds[i].range = joint.range.value_or(JointRange{-kInfinity, kInfinity});

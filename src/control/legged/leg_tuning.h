@@ -54,6 +54,7 @@ struct JointBounds {
   JointRange range;   ///< rad; ±∞ where it turns without end
   AxisBounds motion;  ///< rad
 };
-std::array<JointBounds, kLegsJoints> joint_bounds(const LegModel& robot) noexcept;
+using AllJointBounds = std::array<JointBounds, kLegsJoints>;
+AllJointBounds joint_bounds(const LegModel& robot) noexcept;
 
 }  // namespace robot_control

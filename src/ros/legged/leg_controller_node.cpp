@@ -174,7 +174,7 @@ class LegControllerNode final : public CommandedNode {
       return "that of " + execution_->sender.name + " is being executed for another " +
              shortest(std::max(0.1, std::round(10 * left) / 10)) + " s; an empty one ends it";
     }
-    const std::array<JointBounds, kLegsJoints> bounds = joint_bounds(leg_model_of(robot()));
+    const AllJointBounds bounds = joint_bounds(leg_model_of(robot()));
     JointTrajectory::Positions start{};
     for (std::size_t i = 0; i < kLegsJoints; ++i) {
       const bool moves = phase == LegPhase::kJoints && command.joints[i].mode == JointMode::kImpedance;

@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <utility>
 
 #include "control/legged/leg_tuning.h"
 #include "control/legged/tracked_axis.h"
@@ -27,6 +28,7 @@ struct JointMotion {
   JointValues reference{};                      ///< rad
   double left = 0;                              ///< s, until the reference reaches the target
   std::uint64_t follows = 0;                    ///< 1: a request was in force in the last step
+  std::uint64_t requested = 0;                  ///< cycle of the last request
 
   /// Begins at rest at these positions in rad.
   void begin(const JointValues& positions) noexcept {
@@ -35,64 +37,43 @@ struct JointMotion {
     for (std::size_t i = 0; i < kLegsJoints; ++i) axes[i].value = positions[i];
   }
 
+  /// Advances by `dt` s with the request in force, which was received in `request_cycle`.
+  void step(const Request& request, std::uint64_t request_cycle, const AllJointBounds& bounds, double dt,
+            std::uint64_t& reasons) noexcept {
+    if (request.mode.kind != ModeKind::kJoints) return stop(bounds, dt);
+    JointValues target = request.joints;
+    for (std::size_t i = 0; i < kLegsJoints; ++i)
+      target[i] = std::clamp(target[i], bounds[i].range.lower, bounds[i].range.upper);
+    if (target != request.joints) reasons |= kReasonOutOfReach;
+    follow(target, std::exchange(requested, request_cycle) != request_cycle, bounds, dt);
+  }
+
   /// Advances by `dt` s towards `target` in rad; `fresh`: it was requested now.
-  void follow(const JointValues& target, bool fresh, const std::array<JointBounds, kLegsJoints>& bounds,
-              double dt) noexcept {
+  void follow(const JointValues& target, bool fresh, const AllJointBounds& bounds, double dt) noexcept {
     follows = 1;
     if (fresh) left = kHorizon;
     const double part = left > dt ? dt / left : 1;
     left = std::max(0.0, left - dt);
     for (std::size_t i = 0; i < kLegsJoints; ++i) reference[i] += part * (target[i] - reference[i]);
-    step(bounds, dt);
+    move(bounds, dt);
   }
 
   /// Advances by `dt` s without a request.
-  void stop(const std::array<JointBounds, kLegsJoints>& bounds, double dt) noexcept {
+  void stop(const AllJointBounds& bounds, double dt) noexcept {
     for (std::size_t i = 0; i < kLegsJoints && follows != 0; ++i)
       reference[i] = stopping_place(std::array{axes[i]}, std::array{bounds[i].motion})[0];
     follows = 0;
-    step(bounds, dt);
+    move(bounds, dt);
   }
 
  private:
-  void step(const std::array<JointBounds, kLegsJoints>& bounds, double dt) noexcept {
+  void move(const AllJointBounds& bounds, double dt) noexcept {
     for (std::size_t i = 0; i < kLegsJoints; ++i) {
       std::array axis{axes[i]};
       track(axis, std::array{reference[i]}, std::array{bounds[i].motion}, dt);
       axes[i] = axis[0];
     }
   }
-};
-
-class Joints {
- public:
-  struct State {
-    JointMotion motion;
-    std::uint64_t requested = 0;  ///< cycle of the request that they follow
-  };
-
-  /// `period` s.
-  Joints(const LegModel& robot, double period) : period_(period), bounds_(joint_bounds(robot)) {}
-
-  /// Sets the joint angles of the next cycle. The request in force was received in `request_cycle`.
-  void step(State& state, const Request& request, std::uint64_t request_cycle, JointValues& angles,
-            std::uint64_t& reasons) const noexcept {
-    if (request.mode.kind == ModeKind::kJoints) {
-      JointValues target = request.joints;
-      for (std::size_t i = 0; i < kLegsJoints; ++i)
-        target[i] = std::clamp(target[i], bounds_[i].range.lower, bounds_[i].range.upper);
-      if (target != request.joints) reasons |= kReasonOutOfReach;
-      state.motion.follow(target, state.requested != request_cycle, bounds_, period_);
-      state.requested = request_cycle;
-    } else {
-      state.motion.stop(bounds_, period_);
-    }
-    for (std::size_t i = 0; i < kLegsJoints; ++i) angles[i] = state.motion.axes[i].value;
-  }
-
- private:
-  double period_;
-  std::array<JointBounds, kLegsJoints> bounds_;
 };
 
 }  // namespace robot_control

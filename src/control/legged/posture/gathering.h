@@ -49,7 +49,7 @@ class Gathering {
   }
 
  private:
-  std::array<JointBounds, kLegsJoints> bounds_;
+  AllJointBounds bounds_;
   JointValues lying_{};  ///< rad
   double lying_pitch_;   ///< rad
 };

@@ -19,7 +19,7 @@ class JointMotionOf : public testing::Test {
     motion_.begin(start_);
   }
   Positions start_{}, target_{};
-  std::array<JointBounds, kLegsJoints> bounds_{};
+  AllJointBounds bounds_{};
   JointMotion motion_;
 };
 
@@ -102,7 +102,7 @@ class LyingJoints : public testing::Test {
 
 TEST_F(LyingJoints, GoToTheRequestWithinTheirBounds) {
   const Request wanted = near(0.2);
-  const std::array<JointBounds, kLegsJoints> bounds = joint_bounds(legs_.robot);
+  const AllJointBounds bounds = joint_bounds(legs_.robot);
   legs_.step(wanted);
   EXPECT_EQ(legs_.out.legged.phase, LegPhase::kJoints);
   for (std::size_t i = 0; i < kLegsJoints; ++i) {
