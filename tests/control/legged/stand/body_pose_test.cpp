@@ -142,7 +142,8 @@ TEST(BodyPose, StopsBeforeAKneeIsStraight) {
     const LegKinematics& kinematics = nominal.robot.legs[leg].kinematics;
     for (int k = 0; k < 100; ++k) {
       state.stand.places[leg][2] -= 0.001;
-      const Eigen::Vector3d foot(state.stand.places[leg][0] - nominal.pose()[0], state.stand.places[leg][1] - nominal.pose()[1],
+      const Eigen::Vector3d foot(state.stand.places[leg][0] - nominal.pose()[0],
+                                 state.stand.places[leg][1] - nominal.pose()[1],
                                  state.stand.places[leg][2] - nominal.pose()[2]);
       if (std::abs(kinematics.bend(kinematics.inverse(foot).angles)) < 0.5) break;
     }
