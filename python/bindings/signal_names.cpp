@@ -6,6 +6,7 @@
 #include <string>
 #include <string_view>
 
+#include "control/legged/walk/gait.h"
 #include "control/legged/walk/own_gaits.h"
 #include "signals/names.h"
 #include "signals/robot_kinds.h"
