@@ -54,7 +54,7 @@ void LegController::step(const ControlInput& input, CommandFrame& out) noexcept 
   }
   if (state_.phase != LegPhase::kWalking) state_.gap = 0;
   note_ignored(request, out.reasons);
-  const JointValues before = state_.stand.angles;
+  const LegsValues before = state_.stand.angles;
   const bool began = advance(request, input, out.reasons);
   if (state_.phase == LegPhase::kWalking) return walk(input, request, out);
   report(out);
@@ -62,7 +62,7 @@ void LegController::step(const ControlInput& input, CommandFrame& out) noexcept 
     out.reasons |= kReasonHolding;
     return;
   }
-  JointValues rates{};
+  LegsValues rates{};
   for (std::size_t i = 0; i < kLegsJoints && !began; ++i) rates[i] = (state_.stand.angles[i] - before[i]) / period_;
   stand_.command(state_.stand, rates, out);
 }

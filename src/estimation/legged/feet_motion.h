@@ -17,7 +17,7 @@ struct FeetMotion {
   std::array<Eigen::Matrix3d, kLegs> jacobian;       ///< m/rad
   std::array<Eigen::Vector3d, kLegs> rolling;        ///< m/s, of the foot's centre over the ground while it stands
   std::array<Eigen::Vector3d, kLegs> base_velocity;  ///< m/s, of the base's origin if this foot stands
-  JointValues angles{}, rates{};                     ///< rad, rad/s; 0 where they are not valid
+  LegsValues angles{}, rates{};                      ///< rad, rad/s; 0 where they are not valid
 };
 
 /// `rate` is that of the base in rad/s.

@@ -41,7 +41,7 @@ class FootContacts {
   static constexpr double kBlur = 0.2;
 
   struct State {
-    JointValues rates{}, efforts{};     ///< rad/s, N·m: low passes
+    LegsValues rates{}, efforts{};      ///< rad/s, N·m: low passes
     Vector3 angular{}, force{};         ///< rad/s, m/s²: low passes of gyro and accelerometer
     std::array<double, kLegs> loads{};  ///< N
     std::array<double, kLegs> probability{};

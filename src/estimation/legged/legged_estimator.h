@@ -59,7 +59,7 @@ class LeggedEstimator {
     std::array<std::uint64_t, kLegs> bears{};  ///< 1: the foot is a landmark
     Vector3 rate{}, force{};                   ///< rad/s, m/s², base axes: the newest sample
     Vector3 mean_rate{};                       ///< rad/s, base axes
-    JointValues mean_rates{};                  ///< rad/s, of the joints
+    LegsValues mean_rates{};                   ///< rad/s, of the joints
     double ground = 0;                         ///< m, odom axes: height of the centres of feet on the ground
     std::uint64_t grounded = 0;                ///< 1: `ground` is known
     std::uint64_t lay = 1;                     ///< 1: no foot has borne since the robot lay

@@ -5,6 +5,8 @@
 
 #include <cmath>
 
+#include "control/legged/walk/own_gaits.h"
+
 namespace robot_control {
 namespace {
 

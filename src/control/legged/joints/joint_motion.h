@@ -25,13 +25,13 @@ struct JointMotion {
   static constexpr double kHorizon = 0.1;  ///< s
 
   std::array<TrackedAxis, kLegsJoints> axes{};  ///< rad
-  JointValues reference{};                      ///< rad
+  LegsValues reference{};                       ///< rad
   double left = 0;                              ///< s, until the reference reaches the target
   std::uint64_t follows = 0;                    ///< 1: a request was in force in the last step
   std::uint64_t requested = 0;                  ///< cycle of the last request
 
   /// Begins at rest at these positions in rad.
-  void begin(const JointValues& positions) noexcept {
+  void begin(const LegsValues& positions) noexcept {
     *this = {};
     reference = positions;
     for (std::size_t i = 0; i < kLegsJoints; ++i) axes[i].value = positions[i];
@@ -41,7 +41,7 @@ struct JointMotion {
   void step(const Request& request, std::uint64_t request_cycle, const AllJointBounds& bounds, double dt,
             std::uint64_t& reasons) noexcept {
     if (request.mode.kind != ModeKind::kJoints) return stop(bounds, dt);
-    JointValues target = request.joints;
+    LegsValues target = request.joints;
     for (std::size_t i = 0; i < kLegsJoints; ++i)
       target[i] = std::clamp(target[i], bounds[i].range.lower, bounds[i].range.upper);
     if (target != request.joints) reasons |= kReasonOutOfReach;
@@ -49,7 +49,7 @@ struct JointMotion {
   }
 
   /// Advances by `dt` s towards `target` in rad; `fresh`: it was requested now.
-  void follow(const JointValues& target, bool fresh, const AllJointBounds& bounds, double dt) noexcept {
+  void follow(const LegsValues& target, bool fresh, const AllJointBounds& bounds, double dt) noexcept {
     follows = 1;
     if (fresh) left = kHorizon;
     const double part = left > dt ? dt / left : 1;

@@ -19,7 +19,7 @@ class Gathering {
   static constexpr double kMinTime = 0.1;  ///< s
 
   struct State {
-    JointValues from{};  ///< rad, joint angles at the beginning
+    LegsValues from{};  ///< rad, joint angles at the beginning
   };
 
   explicit Gathering(const LegModel& robot) : bounds_(joint_bounds(robot)), lying_pitch_(robot.lying_pitch) {
@@ -27,7 +27,7 @@ class Gathering {
   }
 
   /// Sets the joint angles of `elapsed` s after the beginning. Returns true at the end.
-  bool step(const State& state, double elapsed, JointValues& angles) const noexcept {
+  bool step(const State& state, double elapsed, LegsValues& angles) const noexcept {
     double time = kMinTime;
     for (std::size_t i = 0; i < kLegsJoints; ++i)  // the smooth way is 1.5 times as fast in its middle
       time = std::max(time, 1.5 * std::abs(lying_[i] - state.from[i]) / bounds_[i].motion.speed);
@@ -50,8 +50,8 @@ class Gathering {
 
  private:
   AllJointBounds bounds_;
-  JointValues lying_{};  ///< rad
-  double lying_pitch_;   ///< rad
+  LegsValues lying_{};  ///< rad
+  double lying_pitch_;  ///< rad
 };
 
 }  // namespace robot_control

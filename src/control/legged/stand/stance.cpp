@@ -28,7 +28,7 @@ Eigen::Matrix3d rotation(const Stance::Pose& pose) noexcept {
 
 /// Returns the rate of the reference in the base's axes.
 LeggedMotion reference_motion(const Stance::State& state, const Eigen::Matrix3d& turned,
-                              const JointValues& rates) noexcept {
+                              const LegsValues& rates) noexcept {
   const std::array<TrackedAxis, 6>& body = state.body;
   LeggedMotion motion{.angles = state.angles, .rates = rates};
   const Eigen::Matrix3d yawed =
@@ -115,7 +115,7 @@ Eigen::Vector2d Stance::above_support(const State& state) const noexcept {
   return middle - Map(state.centre.data()).head<2>() + height / state.up[2] * Map(state.up.data()).head<2>();
 }
 
-void Stance::roll_feet(State& state, const JointValues& rates) const noexcept {
+void Stance::roll_feet(State& state, const LegsValues& rates) const noexcept {
   const Eigen::Matrix3d turned = rotation(pose(state));
   const Eigen::Vector3d body(state.body[kRoll].speed, state.body[kPitch].speed, state.body[kYaw].speed);
   for (std::size_t leg = 0; leg < kLegs; ++leg) {
@@ -144,7 +144,7 @@ void Stance::accelerate(State& state, const LeggedMotion& motion) const noexcept
   state.velocity = velocity;
 }
 
-void Stance::command(State& state, const JointValues& rates, CommandFrame& out) const noexcept {
+void Stance::command(State& state, const LegsValues& rates, CommandFrame& out) const noexcept {
   roll_feet(state, rates);
   const Pose pose = this->pose(state);
   const Eigen::Matrix3d turned = rotation(pose);

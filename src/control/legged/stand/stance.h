@@ -30,7 +30,7 @@ class Stance {
   static constexpr std::size_t kX = 0, kY = 1, kZ = 2, kRoll = 3, kPitch = 4, kYaw = 5;  ///< indices of a Pose
 
   struct State {
-    JointValues angles{};                            ///< rad, of the last command
+    LegsValues angles{};                             ///< rad, of the last command
     std::array<Vector3, kLegs> places{};             ///< m, aᵢ
     std::array<TrackedAxis, 6> body{};               ///< by index of a Pose
     std::uint64_t lifted = kLegs;                    ///< the leg in the air, or on its way; kLegs: none
@@ -46,7 +46,7 @@ class Stance {
   Stance(const LegModel& robot, double period);
 
   /// Fills the joints of the command, and the twist of the body. The angles have changed with these rates in rad/s.
-  void command(State& state, const JointValues& rates, CommandFrame& out) const noexcept;
+  void command(State& state, const LegsValues& rates, CommandFrame& out) const noexcept;
 
  protected:
   /// Moves the joint angles to those of the present pose, no faster than the joints may. The nearest angles to a foot
@@ -69,11 +69,11 @@ class Stance {
  private:
   Eigen::Vector3d foot_in_base(const State& state, std::size_t leg, const Pose& pose,
                                const Eigen::Matrix3d& turned) const noexcept;
-  void roll_feet(State& state, const JointValues& rates) const noexcept;
+  void roll_feet(State& state, const LegsValues& rates) const noexcept;
   void accelerate(State& state, const LeggedMotion& motion) const noexcept;
 
   LegDynamics dynamics_;
-  JointValues joint_steps_{};  ///< rad, of a cycle at the speed limit
+  LegsValues joint_steps_{};  ///< rad, of a cycle at the speed limit
 };
 
 }  // namespace robot_control

@@ -63,8 +63,8 @@ struct WalkingBody {
   Eigen::Vector3d centre = Eigen::Vector3d::Zero();      ///< m, centre of gravity, level axes
   Eigen::Vector3d moves = Eigen::Vector3d::Zero();       ///< m/s, of the centre of gravity, level axes
   double roll = 0, pitch = 0;                            ///< rad
-  JointValues angles{};                                  ///< rad
-  JointValues rates{};                                   ///< rad/s
+  LegsValues angles{};                                   ///< rad
+  LegsValues rates{};                                    ///< rad/s
   std::array<Eigen::Vector3d, kLegs> feet{};             ///< m, level axes
   std::array<Eigen::Matrix3d, kLegs> jacobians{};        ///< base axes
   LeggedEquations equations;
@@ -143,7 +143,7 @@ class Walker {
   std::array<Leg, kLegs> legs_;
   LegDynamics dynamics_;
   LegTuning tuning_;
-  JointValues effort_limits_{};  ///< N·m
+  LegsValues effort_limits_{};  ///< N·m
   Gaits gaits_;
   double length_;                                 ///< m, of a leg
   std::array<Eigen::Vector2d, kLegs> nominal_{};  ///< m, feet from the centre of gravity
