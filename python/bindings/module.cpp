@@ -27,9 +27,9 @@
 #include "bindings/wheeled/offline_estimator.h"
 #include "bindings/wheeled/wheel_loops.h"
 #include "control/common/limits/stop_distance.h"
-#include "control/legged/gait.h"
-#include "control/legged/own_gaits.h"
-#include "control/legged/walking/twist_limiter.h"
+#include "control/legged/walk/gait.h"
+#include "control/legged/walk/own_gaits.h"
+#include "control/legged/walk/twist_limiter.h"
 #include "control/wheeled/limits/drive_limits.h"
 #include "control/wheeled/smooth_speed.h"
 #include "control/wheeled/wheel_loops/wheel_loop_stability.h"
@@ -241,6 +241,12 @@ void bind_spectral_radius(py::module_& module) {
       "delay"_a = 0);
 }
 
+using ModeNumbers = std::array<std::uint64_t, 2>;  // kind and index
+
+Mode mode_of(const ModeNumbers& numbers) {
+  return {static_cast<ModeKind>(numbers[0]), numbers[1]};
+}
+
 void bind_closed_loop(py::module_& module) {
   py::class_<ClosedLoop>(module, "ClosedLoop")
       .def(py::init([](const std::string& path, const LayerValues& values) {
@@ -254,15 +260,16 @@ void bind_closed_loop(py::module_& module) {
             loop.command(planar(linear, lateral, angular));
           },
           "linear"_a, "angular"_a, "lateral"_a = 0.0)
-      .def("choose_mode", &ClosedLoop::choose_mode, "mode"_a)
+      .def(
+          "choose_mode", [](ClosedLoop& loop, const ModeNumbers& mode) { loop.choose_mode(mode_of(mode)); }, "mode"_a)
       .def(
           "request",
-          [](ClosedLoop& loop, const std::array<double, 6>& pose, std::uint64_t mode,
+          [](ClosedLoop& loop, const std::array<double, 6>& pose, const ModeNumbers& mode,
              const std::array<double, kRequestJoints>& joints) {
             const auto& [x, y, height, roll, pitch, yaw] = pose;
             loop.request({.twist = {},
                           .posture = {.height = height, .roll = roll, .pitch = pitch, .x = x, .y = y, .yaw = yaw},
-                          .mode = mode,
+                          .mode = mode_of(mode),
                           .joints = joints});
           },
           "pose"_a, "mode"_a, "joints"_a)

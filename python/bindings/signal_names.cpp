@@ -1,9 +1,13 @@
 #include "bindings/signal_names.h"
 
+#include <pybind11/stl.h>
+
 #include <span>
 #include <string>
 #include <string_view>
 
+#include "control/legged/walk/gait.h"
+#include "control/legged/walk/own_gaits.h"
 #include "signals/names.h"
 #include "signals/robot_kinds.h"
 
@@ -54,8 +58,9 @@ py::dict signal_names() {
                   "DriverFault"_a = bits(kDriverFaultNames), "SupervisorState"_a = states<SupervisorState>(6),
                   "PermitAction"_a = states<PermitAction>(3), "GateVerdict"_a = states<GateVerdict>(5),
                   "DriverState"_a = states<DriverState>(5), "JointMode"_a = states<JointMode>(kJointModes),
-                  "LegPhase"_a = states<LegPhase>(7), "SensorIndex"_a = words(kStateSensorNames),
-                  "FaultComponent"_a = words(kFaultComponentNames), "FaultKind"_a = words(kFaultKindNames));
+                  "LegPhase"_a = states<LegPhase>(7), "Gait"_a = gait_words(all_gaits({})),
+                  "SensorIndex"_a = words(kStateSensorNames), "FaultComponent"_a = words(kFaultComponentNames),
+                  "FaultKind"_a = words(kFaultKindNames));
 }
 
 }  // namespace robot_control

@@ -73,7 +73,7 @@ void ClosedLoop::step() noexcept {
   if (controller_.step()) laws.controller = controller_faults_.replace(sensors, controller_.trace());
   const bool granted = monitor_.permit().action == PermitAction::kDrive;
   if (monitor_.step()) laws.monitor = monitor_faults_.replace(sensors, monitor_.trace());
-  if (granted && monitor_.permit().action != PermitAction::kDrive) mode_ = 0;
+  if (granted && monitor_.permit().action != PermitAction::kDrive) mode_ = {};
   row_ = {.run = static_cast<std::int64_t>(driver_.run()) - 1,
           .cycle = sensors.head.cycle,
           .time = row_time(sensors.head.cycle, parameters_.loop.period()),

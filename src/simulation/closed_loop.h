@@ -36,13 +36,13 @@ class ClosedLoop {
 
   /// Acts like a message received now on cmd_vel: it takes effect in the next step and times out like cmd_vel. The
   /// earliest cycle is 1, because the nodes enter the run in cycle 0.
-  void command(const Twist& twist) noexcept { request({.twist = twist, .mode = zero(twist) ? 0 : mode_}); }
+  void command(const Twist& twist) noexcept { request({.twist = twist, .mode = zero(twist) ? Mode{} : mode_}); }
   /// The same with every part of a request.
   void request(const Request& content) noexcept { request_ = {.content = content, .count = request_.count + 1}; }
 
   /// Sets Request::mode of later commands other than zero, as set_gait of a robot on legs does. It ends with the
   /// permission to move.
-  void choose_mode(std::uint64_t mode) noexcept { mode_ = mode; }
+  void choose_mode(const Mode& mode) noexcept { mode_ = mode; }
 
   /// These act like calls of e_stop_trigger and e_stop_reset, and like a message on heartbeat.
   void e_stop() noexcept { ++operator_input_.e_stop_services; }
@@ -122,7 +122,7 @@ class ClosedLoop {
   MonitorFaults monitor_faults_{FaultComponent::kMonitor, permit_.writer};
   std::unique_ptr<Retuner> retuner_;
   VelocityCommand request_;
-  std::uint64_t mode_ = 0;  ///< of later commands
+  Mode mode_;  ///< of later commands
   OperatorInput operator_input_;
   InjectedFaults faults_{};
   JoinedRow row_;

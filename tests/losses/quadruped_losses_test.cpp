@@ -4,8 +4,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "control/legged/gait.h"
 #include "control/legged/leg_controller.h"
+#include "control/legged/walk/gait_table.h"
 #include "hog.h"
 #include "losses_fixture.h"
 #include "machine/legs/leg_model.h"
@@ -36,7 +36,7 @@ struct LossOfQuadbot : ::testing::Test {
   /// False: a stall of this machine stopped it on the way.
   bool stand_and_sway() {
     robot_.make_ready();
-    robot_.ask_for({.twist = {}, .posture = {}, .mode = kStanceStand});
+    robot_.ask_for({.twist = {}, .posture = {}, .mode = {ModeKind::kStand}});
     robot_.await_cycles(2500);
     for (int k = 0; k < 30; ++k) {
       robot_.ask_for({.twist = {}, .posture = {.y = 0.04 * std::sin(std::numbers::pi * 0.02 * k)}});
@@ -47,8 +47,8 @@ struct LossOfQuadbot : ::testing::Test {
 
   /// The same. Each walk ends at another phase of the gait.
   bool trot() {
-    constexpr std::uint64_t kTrot = kStanceGait + static_cast<std::uint64_t>(GaitName::kTrot);
-    const double period = 1000 * kGaits[static_cast<std::size_t>(GaitName::kTrot)].period;  // cycles
+    constexpr Mode kTrot{ModeKind::kGait, gait_named("trot")};
+    const double period = 1000 * kGaits[gait_named("trot")].period;  // cycles
     robot_.make_ready();
     robot_.ask_for({.twist = {.linear = {kSpeed, 0, 0}}, .mode = kTrot});
     robot_.await_cycles(kUpCycles + static_cast<std::uint64_t>(period * walks_++ / kTrials));

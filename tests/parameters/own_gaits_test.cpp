@@ -1,5 +1,5 @@
 // Gaits of the user's own: maps gait_1 … gait_4 of the leg controller.
-#include "control/legged/gait.h"
+#include "control/legged/walk/gait_table.h"
 #include "parameters/parameter_file.h"
 #include "support/matchers.h"
 

@@ -2,17 +2,18 @@
 
 #include <limits>
 
-#include "control/legged/gait.h"
+#include "control/legged/walk/gait_table.h"
 #include "robots/quadruped_fixture.h"
 
 namespace robot_control::tests {
 
 TEST(LegsInputs, AnUnknownGaitMovesNothing) {
-  for (const std::uint64_t mode : {std::uint64_t{kStanceGait}, kStanceGait + kGaits.size(), ~std::uint64_t{0}}) {
+  for (const Mode& mode : {Mode{ModeKind::kGait, kStandGait}, Mode{ModeKind::kGait, kGaits.size()},
+                           Mode{ModeKind::kLift, kLegs}, Mode{static_cast<ModeKind>(6)}}) {
     QuadrupedLoop robot = loop_of("quadbot");
     robot.run(1.0, walk(0.5, 0, 0, mode));
-    EXPECT_EQ(robot.command().legged.phase, LegPhase::kLying) << mode;
-    EXPECT_NE(robot.command().reasons & kReasonPartIgnored, 0u) << mode;
+    EXPECT_EQ(robot.command().legged.phase, LegPhase::kLying) << mode.index;
+    EXPECT_NE(robot.command().reasons & kReasonPartIgnored, 0u) << mode.index;
   }
 }
 
@@ -37,7 +38,7 @@ TEST(LegsInputs, ATwistBeyondEveryLimitIsLimited) {
 TEST(LegsInputs, GaitsThatSwitchInEveryCycleDoNotStopTheWalk) {
   QuadrupedLoop robot = walking();
   for (std::uint64_t k = 0; k < 2000; ++k) {
-    robot.loop.request(walk(0.3, 0, 0, kStanceGait + 1 + k % 3));
+    robot.loop.request(walk(0.3, 0, 0, {ModeKind::kGait, 1 + k % 3}));
     robot.step();
   }
   EXPECT_EQ(robot.command().legged.phase, LegPhase::kWalking);
@@ -46,9 +47,9 @@ TEST(LegsInputs, GaitsThatSwitchInEveryCycleDoNotStopTheWalk) {
 }
 
 TEST(LegsInputs, NothingThatNeverTimesOutMovesAnythingAfterAStopAndItsReset) {
-  Request joints = stance(kStanceJoints);
+  Request joints = stance({ModeKind::kJoints});
   joints.joints.fill(0.1);
-  for (const Request& request : {stance(kStanceStand), walk(0.3), joints}) {
+  for (const Request& request : {stance({ModeKind::kStand}), walk(0.3), joints}) {
     Parameters parameters = QuadrupedLoop::parameters(0, ErrorLevel::kIdeal);
     parameters.leg_control.request_timeout = 0;
     QuadrupedLoop robot = loop_of(parameters);
@@ -57,15 +58,15 @@ TEST(LegsInputs, NothingThatNeverTimesOutMovesAnythingAfterAStopAndItsReset) {
     for (int seconds = 0; seconds < 3; ++seconds) {
       robot.loop.e_stop_reset();
       robot.wait(1.0);
-      EXPECT_EQ(robot.gate().verdict, GateVerdict::kBrake) << request.mode;
-      EXPECT_EQ(robot.command().legged.phase, LegPhase::kLying) << request.mode;
+      EXPECT_EQ(robot.gate().verdict, GateVerdict::kBrake) << static_cast<int>(request.mode.kind);
+      EXPECT_EQ(robot.command().legged.phase, LegPhase::kLying) << static_cast<int>(request.mode.kind);
     }
     robot.loop.command({});
     robot.wait(0.1);
     robot.loop.e_stop_reset();
     robot.wait(1.0);
     EXPECT_EQ(robot.permit().causes, 0u) << robot.causes();
-    EXPECT_EQ(robot.command().legged.phase, LegPhase::kLying) << request.mode;
+    EXPECT_EQ(robot.command().legged.phase, LegPhase::kLying) << static_cast<int>(request.mode.kind);
   }
 }
 

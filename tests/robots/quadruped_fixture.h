@@ -21,7 +21,7 @@ inline QuadrupedLoop loop_of(const std::string& name, std::uint64_t seed = 0, Er
 }
 
 /// A request of a twist, m/s and rad/s.
-inline Request walk(double linear, double lateral = 0, double angular = 0, std::uint64_t mode = kStanceStay) {
+inline Request walk(double linear, double lateral = 0, double angular = 0, const Mode& mode = {}) {
   return {.twist = {.linear = {linear, lateral, 0}, .angular = {0, 0, angular}}, .posture = {}, .mode = mode};
 }
 

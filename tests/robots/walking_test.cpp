@@ -1,12 +1,12 @@
 /// Robots on legs that walk, in the closed loop.
 
-#include "control/legged/gait.h"
+#include "control/legged/walk/gait_table.h"
 #include "robots/quadruped_fixture.h"
 
 namespace robot_control::tests {
 
-std::uint64_t gait(GaitName name) {
-  return kStanceGait + static_cast<std::uint64_t>(name);
+Mode gait(std::uint64_t index) {
+  return {ModeKind::kGait, index};
 }
 
 /// Returns the mean twist of the base, by truth, while it walks so for `seconds`.
@@ -76,8 +76,8 @@ TEST_P(WalkOfQuadbot, FollowsTheTwist) {
 INSTANTIATE_TEST_SUITE_P(Walks, WalkOfQuadbot,
                          testing::Values(Walk{walk(1.0, 0, 0), 0.05, 0.15}, Walk{walk(0, 0.3, 0), 0.05, 0.15},
                                          Walk{walk(0, 0, 1.5), 0.05, 0.15}, Walk{walk(0.5, 0.2, 0.5), 0.05, 0.15},
-                                         Walk{walk(0.2, 0, 0, gait(GaitName::kCrawl)), 0.03, 0.15},
-                                         Walk{walk(0.5, 0, 0, gait(GaitName::kWalkingTrot)), 0.03, 0.15}));
+                                         Walk{walk(0.2, 0, 0, gait(gait_named("crawl"))), 0.03, 0.15},
+                                         Walk{walk(0.5, 0, 0, gait(gait_named("walking_trot"))), 0.03, 0.15}));
 
 /// One foot after the other swings, for a quarter of the period.
 TEST(Walking, AGaitOfOnesOwnCarriesTheRobotAndIsLimitedByItsLegs) {
@@ -88,7 +88,7 @@ TEST(Walking, AGaitOfOnesOwnCarriesTheRobotAndIsLimitedByItsLegs) {
   QuadrupedLoop robot(model, parameters);
   robot.wait(0.3);
   const std::uint64_t amble = kGaits.size();
-  const Request slow = walk(0.3, 0, 0, kStanceGait + amble);
+  const Request slow = walk(0.3, 0, 0, gait(amble));
   robot.run(3.0, slow);
   expect_walk(robot, slow, 0.03, 0.15);
   EXPECT_EQ(robot.command().legged.gait, amble);
@@ -96,11 +96,11 @@ TEST(Walking, AGaitOfOnesOwnCarriesTheRobotAndIsLimitedByItsLegs) {
   Gaits gaits = all_gaits(parameters.leg_control.gaits);
   for (Gait& each : gaits) each = gait_of(model, stance, each);
   const double fastest = walking_speeds(model, stance, gaits)[amble][0];
-  robot.run(3.0, walk(1.5, 0, 0, kStanceGait + amble));
+  robot.run(3.0, walk(1.5, 0, 0, gait(amble)));
   EXPECT_NE(robot.command().reasons & kReasonLegSpeed, 0u);
-  EXPECT_NEAR(mean_twist(robot, 1.2, walk(1.5, 0, 0, kStanceGait + amble))[0], fastest, 0.05 * fastest);
+  EXPECT_NEAR(mean_twist(robot, 1.2, walk(1.5, 0, 0, gait(amble)))[0], fastest, 0.05 * fastest);
   EXPECT_EQ(robot.permit().causes | robot.permit().warnings, 0u) << robot.causes();
-  robot.run(0.1, walk(0.4, 0, 0, kStanceGait + amble + 1));
+  robot.run(0.1, walk(0.4, 0, 0, gait(amble + 1)));
   EXPECT_NE(robot.command().reasons & kReasonPartIgnored, 0u);
 }
 
@@ -109,7 +109,7 @@ TEST(Walking, GoesOverTilesOfUpTo40Millimetres) {
   Parameters parameters = QuadrupedLoop::parameters(0, ErrorLevel::kIdeal);
   parameters.plant.scene = PROJECT_DIRECTORY "/urdf/scenes/tiles.xml";
   QuadrupedLoop robot = loop_of(parameters);
-  robot.run(10.0, walk(0.4, 0, 0, gait(GaitName::kWalkingTrot)));
+  robot.run(10.0, walk(0.4, 0, 0, gait(gait_named("walking_trot"))));
   EXPECT_GT(robot.truth().pose_world.position[0], 2.5);
   EXPECT_LE(robot.tilt, 0.11);
   EXPECT_EQ(robot.permit().causes, 0u) << robot.causes();
@@ -165,7 +165,7 @@ TEST(Walking, DoesNotBecomeFasterThanRequestedWhenItStarts) {
   robot.run(3.0, walk(0.01, 0, 0));
   double fastest = 0;
   for (int steps = 0; steps < 8; ++steps)
-    fastest = std::max(fastest, mean_twist(robot, kGaits[1].period, walk(0.5, 0, 0, gait(GaitName::kTrot)))[0]);
+    fastest = std::max(fastest, mean_twist(robot, kGaits[1].period, walk(0.5, 0, 0, gait(gait_named("trot"))))[0]);
   EXPECT_LE(fastest, 0.53);
 }
 
@@ -187,9 +187,9 @@ TEST(Walking, IsNotStoppedForATiltThatOnlyABiasOfTheGyroShows) {
 
 TEST(Walking, GoesOnWhenATrotBecomesACrawlThatIsRequestedFaster) {
   QuadrupedLoop robot = loop_of("quadbot");
-  robot.run(5.0, walk(1.0, 0, 0, gait(GaitName::kTrot)));
-  robot.run(3.0, walk(0.55, 0, 0, gait(GaitName::kCrawl)));
-  EXPECT_EQ(robot.command().legged.gait, static_cast<std::uint64_t>(GaitName::kCrawl));
+  robot.run(5.0, walk(1.0, 0, 0, gait(gait_named("trot"))));
+  robot.run(3.0, walk(0.55, 0, 0, gait(gait_named("crawl"))));
+  EXPECT_EQ(robot.command().legged.gait, gait_named("crawl"));
   EXPECT_EQ(robot.command().legged.phase, LegPhase::kWalking);
   EXPECT_EQ(robot.command().reasons, kReasonLegSpeed);
   EXPECT_EQ(robot.permit().causes, 0u) << robot.causes();
@@ -197,11 +197,10 @@ TEST(Walking, GoesOnWhenATrotBecomesACrawlThatIsRequestedFaster) {
 
 /// A crawl ends while its body is twice as fast as requested, and a trot has two feet to bear it.
 TEST(Walking, DoesNotRunAheadWhereACrawlBecomesATrot) {
-  for (const GaitName next : {GaitName::kTrot, GaitName::kWalkingTrot}) {
+  for (const std::uint64_t next : {gait_named("trot"), gait_named("walking_trot")}) {
     QuadrupedLoop robot = loop_of("quadbot");
-    robot.run(6.0, walk(0.13, 0, 0, gait(GaitName::kCrawl)));
-    while (robot.command().legged.gait != static_cast<std::uint64_t>(next))
-      robot.run(0.001, walk(0.13, 0, 0, gait(next)));
+    robot.run(6.0, walk(0.13, 0, 0, gait(gait_named("crawl"))));
+    while (robot.command().legged.gait != next) robot.run(0.001, walk(0.13, 0, 0, gait(next)));
     double fastest = 0;
     robot.after_step = [&] { fastest = std::max(fastest, robot.truth().twist_base.linear[0]); };
     robot.run(1.0, walk(0.13, 0, 0, gait(next)));
@@ -235,7 +234,7 @@ TEST(Walking, IsStoppedUprightWhereItsFeetSlip) {
     Parameters parameters = QuadrupedLoop::parameters(seed, ErrorLevel::kDataSheet);
     parameters.plant.ground_friction = 0.1;
     QuadrupedLoop robot = loop_of(parameters);
-    robot.run(8.0, walk(0.2, 0, 0, gait(GaitName::kCrawl)));
+    robot.run(8.0, walk(0.2, 0, 0, gait(gait_named("crawl"))));
     EXPECT_EQ(names_of(kStopCauseNames, robot.permit().first_cause), "foot_slip");
     EXPECT_LT(robot.tilt, 0.25);
     EXPECT_LT(robot.tilt_now(), 0.05);
@@ -245,7 +244,7 @@ TEST(Walking, IsStoppedUprightWhereItsFeetSlip) {
 /// Its speed jumps, which looks like a load. A foot that bears has no commanded angle.
 TEST(Walking, AThighWhoseEncoderTurnsRoundInMidSwingIsNamedInThatSwing) {
   constexpr std::size_t kLeg = 3;
-  const Gait& trot = kGaits[static_cast<std::size_t>(GaitName::kTrot)];
+  const Gait& trot = kGaits[gait_named("trot")];
   QuadrupedLoop robot = with_errors("quadbot", 0);
   robot.run(4.0, walk(0.4, 0, 0));
   const auto amid = [&] { return trot.swung(kLeg, robot.command().legged.gait_phase) > 0.6; };

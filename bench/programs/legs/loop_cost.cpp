@@ -49,7 +49,7 @@ Frames record(const LegModel& model, Requests requests, std::size_t begins) {
     frames.permits.push_back(robot.permit());
   };
   for (int k = 0; k < 300; ++k) step({});
-  for (int k = 0; k < 2500; ++k) step(stance(kStanceStand));
+  for (int k = 0; k < 2500; ++k) step(stance({ModeKind::kStand}));
   for (std::size_t k = 0; k < begins; ++k) step(requests(model, k));
   frames.begin = frames.sensors.size();
   for (std::size_t k = 0; k <= kCycles; ++k) step(requests(model, begins + k));
@@ -240,7 +240,7 @@ void walking_cost(const LegModel& model, std::uint64_t /*seed*/, WorstValues& wo
   controller.set_state(begin);
   for (std::size_t k = 0; k < kCycles; ++k) {
     step(frames.begin + k);
-    if (controller.state().walk.planned == 0) planned.push_back(fastest[k]);
+    if (controller.state().walk.walker.planned == 0) planned.push_back(fastest[k]);
   }
   worst.add("allocations", static_cast<double>(allocations), "calls");
   worst.add("controller that does not walk", command.legged.phase == LegPhase::kWalking ? 0 : 1, "runs");

@@ -1,7 +1,7 @@
 #pragma once
 /// These are the user's parameters of the leg controller.
 
-#include "control/legged/own_gaits.h"
+#include "control/legged/walk/own_gaits.h"
 #include "parameters/block.h"
 
 namespace robot_control {

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "machine/gravity.h"
+#include "signals/legged/legged_command.h"
 
 namespace robot_control {
 namespace {
@@ -25,9 +26,9 @@ LoadedKnee loaded_knee_at(const LegModel& robot, double height) noexcept {
 
 double standing_height(const LegModel& robot) noexcept {
   constexpr double kLowest = 0.7, kHighest = 0.85, kStep = 0.01;  // of the leg length
-  constexpr double kOfKnee = 0.6;
+  constexpr double kKneeShare = 0.6;
   double height = kLowest;
-  while (height < kHighest && loaded_knee_at(robot, height * robot.leg_length()).part > kOfKnee) height += kStep;
+  while (height < kHighest && loaded_knee_at(robot, height * robot.leg_length()).part > kKneeShare) height += kStep;
   return height * robot.leg_length();
 }
 
@@ -41,12 +42,11 @@ double needed_speed(const LegModel& robot, std::size_t leg, const Eigen::Vector3
   const Eigen::Vector3d rates = kinematics.jacobian(*angles, foot).inverse().col(2) * upward;
   double part = 0;
   for (std::size_t i = 0; i < kLegJoints; ++i)
-    part = std::max(part,
-                    std::abs(rates[static_cast<Eigen::Index>(i)]) / robot.joints[kLegJoints * leg + i].velocity_limit);
+    part = std::max(part, std::abs(rates[i]) / robot.joints[kLegJoints * leg + i].velocity_limit);
   return part;
 }
 
-/// Returns the time in s in which the body rises above its feet, and no joint is faster than kOfLimit of its limit.
+/// Returns the time in s in which the body rises above its feet, and no joint is faster than kLimitShare of its limit.
 double fastest_rise(const LegModel& robot) noexcept {
   constexpr int kParts = 20;
   double time = 0;
@@ -58,7 +58,7 @@ double fastest_rise(const LegModel& robot) noexcept {
     for (int i = 1; i < kParts; ++i) {
       const double s = static_cast<double>(i) / kParts;
       foot.z() = lies - s * s * (3 - 2 * s) * rise;
-      time = std::max(time, needed_speed(robot, leg, foot, -6 * s * (1 - s) * rise) / kOfLimit);
+      time = std::max(time, needed_speed(robot, leg, foot, -6 * s * (1 - s) * rise) / kLimitShare);
     }
   }
   return time;
@@ -89,15 +89,20 @@ LegTuning leg_tuning(const LegModel& robot) noexcept {
   return tuning;
 }
 
-std::array<JointBounds, kLegsJoints> joint_bounds(const LegModel& robot) noexcept {
+double within(double value, double range, std::uint64_t& reasons) noexcept {
+  if (std::abs(value) > range) reasons |= kReasonOutOfReach;
+  return std::clamp(value, -range, range);
+}
+
+AllJointBounds joint_bounds(const LegModel& robot) noexcept {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   const AxisBounds motion = leg_tuning(robot).joint;
-  std::array<JointBounds, kLegsJoints> bounds;
+  AllJointBounds bounds;
   for (std::size_t i = 0; i < kLegsJoints; ++i) {
     const JointModel& joint = robot.joints[i];
     bounds[i].range = joint.range.value_or(JointRange{-kInfinity, kInfinity});
     bounds[i].motion = motion;
-    bounds[i].motion.speed = std::min(motion.speed, kOfLimit * joint.velocity_limit);
+    bounds[i].motion.speed = std::min(motion.speed, kLimitShare * joint.velocity_limit);
   }
   return bounds;
 }

@@ -90,7 +90,7 @@ std::string JointTrajectory::read(const trajectory_msgs::JointTrajectory& messag
                                   const Positions& start) {
   std::vector<std::size_t> joints;
   if (std::string problem = find_joints(message, robot, joints); !problem.empty()) return problem;
-  const std::array<JointBounds, kLegsJoints> bounds = joint_bounds(robot);
+  const AllJointBounds bounds = joint_bounds(robot);
   std::vector<Point> points{{.time = 0, .positions = start}};
   for (std::size_t number = 1; number <= message.points.size(); ++number) {
     const trajectory_msgs::JointTrajectoryPoint& given = message.points[number - 1];

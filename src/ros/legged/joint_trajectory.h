@@ -33,7 +33,7 @@ using BoundedJointTrajectory = Bounded<trajectory_msgs::JointTrajectory, 24, kMa
 
 class JointTrajectory {
  public:
-  using Positions = std::array<double, kLegsJoints>;  ///< rad, in the order of MachineModel::joints
+  using Positions = LegsValues;  ///< rad, in the order of MachineModel::joints
 
   /// Reads a message with at least one point. Returns "", or why it is refused; then the path is as before.
   std::string read(const trajectory_msgs::JointTrajectory& message, const LegModel& robot, const Positions& start);

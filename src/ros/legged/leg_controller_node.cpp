@@ -18,6 +18,7 @@
 #include "ros/messages/service_answer.h"
 #include "ros/nodes/commanded_node.h"
 #include "ros/reports/diagnostics.h"
+#include "ros/reports/name_list.h"
 #include "ros/reports/pacer.h"
 #include "rt/futex.h"
 #include "signals/names.h"
@@ -36,8 +37,8 @@ double seconds_of(std::int64_t ns) {
 }
 
 /// Returns whether the robot already is in this posture, or on its way. It may still refuse while it gathers its legs.
-bool begun(StanceMode mode, LegPhase phase) {
-  if (mode == kStanceLie) return phase == LegPhase::kLying || phase == LegPhase::kLowering;
+bool begun(const Mode& mode, LegPhase phase) {
+  if (mode.kind == ModeKind::kLie) return phase == LegPhase::kLying || phase == LegPhase::kLowering;
   return phase == LegPhase::kRising || phase == LegPhase::kStanding || phase == LegPhase::kWalking;
 }
 
@@ -174,7 +175,7 @@ class LegControllerNode final : public CommandedNode {
       return "that of " + execution_->sender.name + " is being executed for another " +
              shortest(std::max(0.1, std::round(10 * left) / 10)) + " s; an empty one ends it";
     }
-    const std::array<JointBounds, kLegsJoints> bounds = joint_bounds(leg_model_of(robot()));
+    const AllJointBounds bounds = joint_bounds(leg_model_of(robot()));
     JointTrajectory::Positions start{};
     for (std::size_t i = 0; i < kLegsJoints; ++i) {
       const bool moves = phase == LegPhase::kJoints && command.joints[i].mode == JointMode::kImpedance;
@@ -192,7 +193,7 @@ class LegControllerNode final : public CommandedNode {
     input_.receive({.sender = sender,
                     .twist = {},
                     .stamp_ns = stamp_ns,
-                    .mode = kStanceJoints,
+                    .mode = {ModeKind::kJoints},
                     .joints = execution.path.at(execution.time + JointMotion::kHorizon)},
                    arrival_of(sender.name));
     store();
@@ -242,11 +243,11 @@ class LegControllerNode final : public CommandedNode {
 
   bool set_gait(SetGait::Request& request, SetGait::Response& response) {
     const std::lock_guard lock(input_mutex_);
-    const std::optional<std::uint64_t> mode = mode_of_gait(request.gait, gaits_);
+    const std::optional<Mode> mode = mode_of_gait(request.gait, gaits_);
     const LegPhase phase = command_.legged.phase;
     std::string problem = refusal_of_permission();
     if (!mode) {
-      problem = "there is no gait '" + request.gait + "'; name one of " + gait_names(gaits_);
+      problem = "there is no gait '" + request.gait + "'; name one of " + joined(gait_words(gaits_));
     } else if (problem.empty() && phase != LegPhase::kStanding && phase != LegPhase::kWalking) {
       problem = "the robot does not stand or walk, it is " + std::string(name_of(phase)) +
                 ": call set_posture with 'standing'";
@@ -270,8 +271,8 @@ class LegControllerNode final : public CommandedNode {
 
   /// Returns "" once the robot is in the posture or on its way to it, or why it is not.
   std::string reach(const std::string& posture) {
-    const StanceMode mode = mode_of(posture);
-    if (mode == kStanceStay) return "there is no posture '" + posture + "'; name standing or lying";
+    const Mode mode = mode_of(posture);
+    if (mode == Mode{}) return "there is no posture '" + posture + "'; name standing or lying";
     for (const std::string& name : missing()) return "the loop does not run: waiting for " + name;
     SensorFrame sensors;
     if (process().sensors().newest(sensors) == Lookup::kFrame && sensors.driver_state == DriverState::kPaused)
@@ -283,7 +284,7 @@ class LegControllerNode final : public CommandedNode {
       if (process().output().newest(command) == Lookup::kFrame && process().is_current(command.head) &&
           (command.reasons & (kReasonNoPermit | kReasonPermitBrake)) == 0) {
         if (begun(mode, command.legged.phase)) return "";
-        if (mode == kStanceStand && command.legged.phase == LegPhase::kGathering) waited_ns = 0;
+        if (mode.kind == ModeKind::kStand && command.legged.phase == LegPhase::kGathering) waited_ns = 0;
       }
       {
         const std::lock_guard lock(input_mutex_);

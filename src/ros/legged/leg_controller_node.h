@@ -3,10 +3,10 @@
 /// joint_trajectory, and has the services set_posture and set_gait. It publishes leg_state and cmd_vel_out.
 ///
 /// A trajectory (ros/legged/joint_trajectory.h) is executed while the robot lies. This node requests every 10 ms where
-/// the joints shall be kHorizon later (control/legged/joint_motion.h), as if its sender had done so. It ends early with
-/// the permission to move and with the connection of its sender. An empty trajectory of any sender and a message on
-/// another topic end it, too. Its sender may replace it, others may not. After it the sender counts as having sent
-/// zero.
+/// the joints shall be kHorizon later (control/legged/joints/joint_motion.h), as if its sender had done so. It ends
+/// early with the permission to move and with the connection of its sender. An empty trajectory of any sender and a
+/// message on another topic end it, too. Its sender may replace it, others may not. After it the sender counts as
+/// having sent zero.
 ///
 /// While the robot walks, a body_pose belongs to the request of the node that sends the twists (command_input.h). The
 /// gait of set_gait holds until the permission to move ends.

@@ -15,7 +15,7 @@
 #include <optional>
 #include <string>
 
-#include "control/legged/gait.h"
+#include "control/legged/walk/gait.h"
 #include "machine/legs/leg_model.h"
 #include "ros/messages/bounded_message.h"
 #include "signals/command_frame.h"
@@ -38,17 +38,14 @@ std::optional<Request> request_of(const FootTarget& message);
 /// Returns "front_left, front_right, rear_left, rear_right".
 std::string foot_names();
 
-/// Returns "auto, trot, walking_trot, crawl" and the names of the user's own gaits.
-std::string gait_names(const Gaits& gaits);
-
-/// Returns the mode of a posture of set_posture; kStanceStay for an unknown one.
-StanceMode mode_of(const std::string& posture);
+/// Returns the mode of a posture of set_posture, the default one for an unknown posture.
+Mode mode_of(const std::string& posture);
 
 /// Returns the gait of a mode that mode_of_gait returns, as set_gait takes it.
-std::string gait_of_mode(std::uint64_t mode, const Gaits& gaits);
+std::string gait_of_mode(const Mode& mode, const Gaits& gaits);
 
-/// Returns the mode that walks with the gait of set_gait: kStanceStay for "auto". Returns none for an unknown one.
-std::optional<std::uint64_t> mode_of_gait(const std::string& gait, const Gaits& gaits);
+/// Returns the mode that walks with the gait of set_gait, the default one for "auto". Returns none for an unknown gait.
+std::optional<Mode> mode_of_gait(const std::string& gait, const Gaits& gaits);
 
 /// The inputs of a LegState. `plan` is the command two cycles before `command`; an ideal joint now has its angles.
 struct LegReport {

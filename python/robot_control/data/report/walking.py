@@ -40,7 +40,7 @@ def phase_steps(drive: Drive) -> FloatArray:
 
 def walked_speed(drive: Drive) -> FloatArray:
     """m/s to the front: the command after limits. While the feet swing it passes the low pass of half a period that the
-    target of a walk has (control/legged/walking/walker.h).
+    target of a walk has (control/legged/walk/walker.h).
     """
     speed, parts = drive.column("limited_linear").copy(), np.minimum(1.0, 2 * phase_steps(drive))
     for row in np.flatnonzero(parts):
