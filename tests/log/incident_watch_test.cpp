@@ -1,6 +1,6 @@
-#include "log/black_box/black_box_keeper.h"
-
 #include <gtest/gtest.h>
+
+#include "log/black_box/black_box_keeper.h"
 
 namespace robot_control::tests {
 

@@ -1,7 +1,6 @@
-#include "log/bag_log.h"
-
 #include <gtest/gtest.h>
 
+#include "log/bag_log.h"
 #include "log/rows/traces.h"
 
 namespace robot_control::tests {

@@ -7,7 +7,6 @@
 #include <random>
 #include <vector>
 
-
 namespace robot_control::tests {
 
 constexpr std::int64_t kSecond = 1'000'000'000;

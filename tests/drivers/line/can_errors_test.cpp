@@ -1,7 +1,7 @@
-#include "drivers/line/bus_watch.h"
-
 #include <gtest/gtest.h>
 #include <linux/can/error.h>
+
+#include "drivers/line/bus_watch.h"
 
 namespace robot_control::tests {
 
