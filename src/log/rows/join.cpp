@@ -137,4 +137,9 @@ void Join::emit(std::uint64_t cycle) {
   give_repeated();
 }
 
+template void Join::add_to<0>(const DriverTrace&);
+template void Join::add_to<1>(const EstimatorTrace&);
+template void Join::add_to<2>(const ControllerTrace&);
+template void Join::add_to<3>(const MonitorTrace&);
+
 }  // namespace robot_control
