@@ -19,7 +19,7 @@ from robot_control.setup.description import describe
 from bench.faults.random_drive import Leg, draw_drive
 from bench.robot_corpus import DIFFBOT, QUADBOT, SCENES, urdf_of
 
-GAITS = ("auto", "trot", "walking_trot", "crawl")
+GAITS = states("Gait")
 COMPONENTS = (
     "left_encoder",
     "right_encoder",

@@ -1,9 +1,13 @@
 #include "bindings/signal_names.h"
 
+#include <pybind11/stl.h>
+
 #include <span>
 #include <string>
 #include <string_view>
 
+#include "control/legged/walk/gait.h"
+#include "control/legged/walk/own_gaits.h"
 #include "signals/names.h"
 #include "signals/robot_kinds.h"
 
@@ -64,6 +68,7 @@ py::dict signal_names() {
   all["DriverState"] = states<DriverState>(5);
   all["JointMode"] = states<JointMode>(kJointModes);
   all["LegPhase"] = states<LegPhase>(7);
+  all["Gait"] = gait_words(all_gaits({}));
   all["SensorIndex"] = words(kStateSensorNames);
   all["FaultComponent"] = words(kFaultComponentNames);
   all["FaultKind"] = words(kFaultKindNames);

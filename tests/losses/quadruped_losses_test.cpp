@@ -5,7 +5,7 @@
 #include <numbers>
 
 #include "control/legged/leg_controller.h"
-#include "control/legged/walk/gait.h"
+#include "control/legged/walk/gait_table.h"
 #include "hog.h"
 #include "losses_fixture.h"
 #include "machine/legs/leg_model.h"
@@ -49,8 +49,8 @@ class LossOfQuadbot : public ::testing::Test {
 
   /// The same. Each walk ends at another phase of the gait.
   bool trot() {
-    constexpr std::uint64_t kTrot = kStanceGait + static_cast<std::uint64_t>(GaitName::kTrot);
-    const double period = 1000 * kGaits[static_cast<std::size_t>(GaitName::kTrot)].period;  // cycles
+    constexpr std::uint64_t kTrot = kStanceGait + gait_named("trot");
+    const double period = 1000 * kGaits[gait_named("trot")].period;  // cycles
     robot_.make_ready();
     robot_.ask_for({.twist = {.linear = {kSpeed, 0, 0}}, .mode = kTrot});
     robot_.await_cycles(kUpCycles + static_cast<std::uint64_t>(period * walks_++ / kTrials));

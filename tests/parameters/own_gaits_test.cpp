@@ -2,7 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "control/legged/walk/gait.h"
+#include "control/legged/walk/gait_table.h"
 #include "parameters/parameter_file.h"
 
 namespace robot_control {

@@ -358,15 +358,20 @@ def test_nothing_simulated_is_in_the_product():
     assert violations(rule) == []
 
 
+def product_texts():
+    """Texts of the files of the product, by their paths."""
+    tops = ("src", "python", "launch", "scripts", "config", "cmake", "msg", "srv")
+    paths = [path for top in tops for path in (ROOT / top).rglob("*") if path.is_file() and path.suffix != ".pyc"]
+    return {str(path.relative_to(ROOT)): path.read_text(errors="ignore") for path in paths}
+
+
 MAX_NAMING_A_DRIVE = 3
 """files of the product outside its own folder and its example in config/drives"""
 
 
 def test_few_files_name_a_drive():
     """As a word, a class, a namespace, a header or its example."""
-    tops = ("src", "python", "launch", "scripts", "config", "cmake")
-    paths = [path for top in tops for path in (ROOT / top).rglob("*") if path.is_file() and path.suffix != ".pyc"]
-    texts = {str(path.relative_to(ROOT)): path.read_text(errors="ignore") for path in paths}
+    texts = product_texts()
 
     def naming(name):
         names = rf"\b{name}::|[\"']{name}[\"']|\({name},|drivers/{name}/|{name}\.yaml|\b{name.capitalize()}(?=[A-Z])"
@@ -376,6 +381,24 @@ def test_few_files_name_a_drive():
     found = {name: naming(name) for name in DRIVES}
     assert all("src/drivers/drive_table.def" in files for files in found.values())
     assert {name: files for name, files in found.items() if len(files) > MAX_NAMING_A_DRIVE} == {}
+
+
+GAIT_TABLE = "src/control/legged/walk/gait_table.h"
+MAX_NAMING_A_GAIT = 2
+"""files of the product outside the folder of the table"""
+
+
+def test_few_files_name_a_gait():
+    """As a word in quotes or a constant. The page for users names each of them."""
+    texts = product_texts()
+    gaits = re.findall(r'^    Gait\{\{"(\w+)"\}', texts[GAIT_TABLE], re.MULTILINE)
+    assert gaits[0] == "stand"
+    folder = str(Path(GAIT_TABLE).parent)
+    for gait in gaits[1:]:
+        names = re.compile(rf"[\"']{gait}[\"']|\bk{gait.title().replace('_', '')}\b")
+        files = [path for path, text in texts.items() if names.search(text) and not path.startswith(folder)]
+        assert len(files) <= MAX_NAMING_A_GAIT, files
+        assert f"`{gait}`" in (ROOT / "docs/legs.md").read_text()
 
 
 PROGRAMS = re.compile(r"\b(?:mujoco_plant|state_estimator|(?:diff_drive|leg)_controller(?!\.h)|safety_monitor)\b")

@@ -2,7 +2,7 @@
 
 #include <limits>
 
-#include "control/legged/walk/gait.h"
+#include "control/legged/walk/gait_table.h"
 #include "robots/quadruped_fixture.h"
 
 namespace robot_control {

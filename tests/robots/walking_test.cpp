@@ -1,6 +1,6 @@
 /// Robots on legs that walk, in the closed loop.
 
-#include "control/legged/walk/gait.h"
+#include "control/legged/walk/gait_table.h"
 #include "robots/quadruped_fixture.h"
 
 namespace robot_control {
@@ -10,8 +10,8 @@ Request walk(double linear, double lateral, double angular, std::uint64_t mode =
   return {.twist = {.linear = {linear, lateral, 0}, .angular = {0, 0, angular}}, .posture = {}, .mode = mode};
 }
 
-std::uint64_t gait(GaitName name) {
-  return kStanceGait + static_cast<std::uint64_t>(name);
+std::uint64_t gait(std::uint64_t index) {
+  return kStanceGait + index;
 }
 
 /// Returns the mean twist of the base, by truth, while it walks so for `seconds`.
@@ -83,8 +83,8 @@ TEST_P(WalkOfQuadbot, FollowsTheTwist) {
 INSTANTIATE_TEST_SUITE_P(Walks, WalkOfQuadbot,
                          testing::Values(Walk{walk(1.0, 0, 0), 0.05, 0.15}, Walk{walk(0, 0.3, 0), 0.05, 0.15},
                                          Walk{walk(0, 0, 1.5), 0.05, 0.15}, Walk{walk(0.5, 0.2, 0.5), 0.05, 0.15},
-                                         Walk{walk(0.2, 0, 0, gait(GaitName::kCrawl)), 0.03, 0.15},
-                                         Walk{walk(0.5, 0, 0, gait(GaitName::kWalkingTrot)), 0.03, 0.15}));
+                                         Walk{walk(0.2, 0, 0, gait(gait_named("crawl"))), 0.03, 0.15},
+                                         Walk{walk(0.5, 0, 0, gait(gait_named("walking_trot"))), 0.03, 0.15}));
 
 /// One foot after the other swings, for a quarter of the period.
 TEST(Walking, AGaitOfOnesOwnCarriesTheRobotAndIsLimitedByItsLegs) {
@@ -117,7 +117,7 @@ TEST(Walking, GoesOverTilesOfUpTo40Millimetres) {
   parameters.plant.scene = PROJECT_DIRECTORY "/urdf/scenes/tiles.xml";
   QuadrupedLoop robot(legged_robot("quadbot"), parameters);
   robot.wait(0.3);
-  robot.run(10.0, walk(0.4, 0, 0, gait(GaitName::kWalkingTrot)));
+  robot.run(10.0, walk(0.4, 0, 0, gait(gait_named("walking_trot"))));
   EXPECT_GT(robot.truth().pose_world.position[0], 2.5);
   EXPECT_LE(robot.tilt, 0.11);
   EXPECT_EQ(robot.permit().causes, 0u) << robot.causes();
@@ -160,7 +160,7 @@ TEST(Walking, LiesDownOnlyAfterTheWalkHasEnded) {
 
 TEST(Walking, WalksWithAnotherGaitFromTheEndOfTheCycleOn) {
   QuadrupedLoop robot = walking();
-  const auto crawl = static_cast<std::uint64_t>(GaitName::kCrawl);
+  const auto crawl = gait_named("crawl");
   double phase = robot.command().legged.gait_phase;
   while (robot.command().legged.gait != crawl) {
     phase = robot.command().legged.gait_phase;
@@ -176,22 +176,22 @@ TEST(Walking, ChoosesTheGaitByTheSpeedWithAHysteresisUnlessOneIsRequested) {
   robot.wait(0.3);
   const auto gait_at = [&](double speed, std::uint64_t mode) {
     robot.run(2.0, walk(speed, 0, 0, mode));
-    return static_cast<GaitName>(robot.command().legged.gait);
+    return robot.command().legged.gait;
   };
   robot.run(2.5, walk(0.2, 0, 0));
-  EXPECT_EQ(gait_at(0.2, kStanceStay), GaitName::kWalkingTrot);
-  EXPECT_EQ(gait_at(0.35, kStanceStay), GaitName::kWalkingTrot);
-  EXPECT_EQ(gait_at(0.45, kStanceStay), GaitName::kTrot);
-  EXPECT_EQ(gait_at(0.35, kStanceStay), GaitName::kTrot);
-  EXPECT_EQ(gait_at(0.25, kStanceStay), GaitName::kWalkingTrot);
-  EXPECT_EQ(gait_at(0.25, gait(GaitName::kTrot)), GaitName::kTrot);
+  EXPECT_EQ(gait_at(0.2, kStanceStay), gait_named("walking_trot"));
+  EXPECT_EQ(gait_at(0.35, kStanceStay), gait_named("walking_trot"));
+  EXPECT_EQ(gait_at(0.45, kStanceStay), gait_named("trot"));
+  EXPECT_EQ(gait_at(0.35, kStanceStay), gait_named("trot"));
+  EXPECT_EQ(gait_at(0.25, kStanceStay), gait_named("walking_trot"));
+  EXPECT_EQ(gait_at(0.25, gait(gait_named("trot"))), gait_named("trot"));
   EXPECT_EQ(robot.permit().causes, 0u) << robot.causes();
 }
 
 TEST(Walking, EndsWithFeetOnTheirPlacesSoThatTheRobotCanLieDown) {
   QuadrupedLoop robot = loop_of("quadbot");
   robot.wait(0.3);
-  robot.run(6.0, walk(0.2, 0, 0, gait(GaitName::kCrawl)));
+  robot.run(6.0, walk(0.2, 0, 0, gait(gait_named("crawl"))));
   robot.run(5.0, {.mode = kStanceLie});
   EXPECT_EQ(robot.command().legged.phase, LegPhase::kLying);
   EXPECT_EQ(robot.permit().causes, 0u) << robot.causes();
@@ -239,7 +239,7 @@ TEST(Walking, DoesNotBecomeFasterThanRequestedWhenItStarts) {
   robot.run(3.0, walk(0.01, 0, 0));
   double fastest = 0;
   for (int steps = 0; steps < 8; ++steps)
-    fastest = std::max(fastest, mean_twist(robot, kGaits[1].period, walk(0.5, 0, 0, gait(GaitName::kTrot)))[0]);
+    fastest = std::max(fastest, mean_twist(robot, kGaits[1].period, walk(0.5, 0, 0, gait(gait_named("trot"))))[0]);
   EXPECT_LE(fastest, 0.53);
 }
 
@@ -263,9 +263,9 @@ TEST(Walking, IsNotStoppedForATiltThatOnlyABiasOfTheGyroShows) {
 TEST(Walking, GoesOnWhenATrotBecomesACrawlThatIsRequestedFaster) {
   QuadrupedLoop robot = loop_of("quadbot");
   robot.wait(0.3);
-  robot.run(5.0, walk(1.0, 0, 0, gait(GaitName::kTrot)));
-  robot.run(3.0, walk(0.55, 0, 0, gait(GaitName::kCrawl)));
-  EXPECT_EQ(robot.command().legged.gait, static_cast<std::uint64_t>(GaitName::kCrawl));
+  robot.run(5.0, walk(1.0, 0, 0, gait(gait_named("trot"))));
+  robot.run(3.0, walk(0.55, 0, 0, gait(gait_named("crawl"))));
+  EXPECT_EQ(robot.command().legged.gait, gait_named("crawl"));
   EXPECT_EQ(robot.command().legged.phase, LegPhase::kWalking);
   EXPECT_EQ(robot.command().reasons, kReasonLegSpeed);
   EXPECT_EQ(robot.permit().causes, 0u) << robot.causes();
@@ -273,10 +273,10 @@ TEST(Walking, GoesOnWhenATrotBecomesACrawlThatIsRequestedFaster) {
 
 /// A crawl ends while its body is twice as fast as requested, and a trot has two feet to bear it.
 TEST(Walking, DoesNotRunAheadWhereACrawlBecomesATrot) {
-  for (const GaitName next : {GaitName::kTrot, GaitName::kWalkingTrot}) {
+  for (const std::uint64_t next : {gait_named("trot"), gait_named("walking_trot")}) {
     QuadrupedLoop robot = loop_of("quadbot");
     robot.wait(0.3);
-    robot.run(6.0, walk(0.13, 0, 0, gait(GaitName::kCrawl)));
+    robot.run(6.0, walk(0.13, 0, 0, gait(gait_named("crawl"))));
     while (robot.command().legged.gait != static_cast<std::uint64_t>(next))
       robot.run(0.001, walk(0.13, 0, 0, gait(next)));
     double fastest = 0;
@@ -314,7 +314,7 @@ TEST(Walking, IsStoppedUprightWhereItsFeetSlip) {
     parameters.plant.ground_friction = 0.1;
     QuadrupedLoop robot(legged_robot("quadbot"), parameters);
     robot.wait(0.3);
-    robot.run(8.0, walk(0.2, 0, 0, gait(GaitName::kCrawl)));
+    robot.run(8.0, walk(0.2, 0, 0, gait(gait_named("crawl"))));
     EXPECT_EQ(names_of(kStopCauseNames, robot.permit().first_cause), "foot_slip");
     EXPECT_LT(robot.tilt, 0.25);
     EXPECT_LT(robot.tilt_now(), 0.05);
@@ -324,7 +324,7 @@ TEST(Walking, IsStoppedUprightWhereItsFeetSlip) {
 /// Its speed jumps, which looks like a load. A foot that bears has no commanded angle.
 TEST(Walking, AThighWhoseEncoderTurnsRoundInMidSwingIsNamedInThatSwing) {
   constexpr std::size_t kLeg = 3;
-  const Gait& trot = kGaits[static_cast<std::size_t>(GaitName::kTrot)];
+  const Gait& trot = kGaits[gait_named("trot")];
   QuadrupedLoop robot = with_errors("quadbot", 0);
   robot.run(4.0, walk(0.4, 0, 0));
   const auto amid = [&] { return trot.swung(kLeg, robot.command().legged.gait_phase) > 0.6; };

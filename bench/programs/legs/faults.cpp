@@ -1,5 +1,5 @@
 #include "bench/programs/legs/loop_rows.h"
-#include "control/legged/walk/gait.h"
+#include "control/legged/walk/gait_table.h"
 
 namespace robot_control::bench {
 namespace {
@@ -40,8 +40,8 @@ bool names(const Permit& permit, const Fault& fault) {
 }  // namespace
 
 void faults(const LegModel& model, std::uint64_t seed, WorstValues& worst) {
-  const double period = kGaits[static_cast<std::size_t>(GaitName::kTrot)].scaled(model.leg_length()).period;
-  Request trot = stance(kStanceGait + static_cast<std::uint64_t>(GaitName::kTrot));
+  const double period = kGaits[gait_named("trot")].scaled(model.leg_length()).period;
+  Request trot = stance(kStanceGait + gait_named("trot"));
   trot.twist.linear[0] = 0.5;
   for (const Fault& fault : faults_of(model)) {
     QuadrupedLoop robot(model, walking_parameters(seed));

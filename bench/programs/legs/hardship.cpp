@@ -1,7 +1,7 @@
 #include <random>
 
 #include "bench/programs/legs/loop_rows.h"
-#include "control/legged/walk/gait.h"
+#include "control/legged/walk/gait_table.h"
 #include "machine/bodies/rigid_bodies.h"
 
 namespace robot_control::bench {
@@ -10,9 +10,8 @@ namespace {
 constexpr double kBegin = 5, kDisturbed = 5;  // s
 
 Request trot(double speed, double lateral = 0) {
-  return {.twist = {.linear = {speed, lateral, 0}, .angular = {}},
-          .posture = {},
-          .mode = kStanceGait + static_cast<std::uint64_t>(GaitName::kTrot)};
+  return {
+      .twist = {.linear = {speed, lateral, 0}, .angular = {}}, .posture = {}, .mode = kStanceGait + gait_named("trot")};
 }
 
 double stopped(const QuadrupedLoop& robot) {
@@ -104,7 +103,7 @@ void switches(const LegModel& model, std::uint64_t seed, WorstValues& worst) {
 void disturbances(const LegModel& model, std::uint64_t seed, WorstValues& worst) {
   constexpr int kDirections = 8, kPhases = 24;
   constexpr double kForce = 150, kDuration = 0.1;  // N on a robot of 12.7 kg, s
-  const Gait gait = kGaits[static_cast<std::size_t>(GaitName::kTrot)].scaled(model.leg_length());
+  const Gait gait = kGaits[gait_named("trot")].scaled(model.leg_length());
   for (int i = 0; i < kDirections; ++i) {
     Parameters parameters = walking_parameters(seed);
     const double direction = 2 * kPi * i / kDirections, force = kForce * model.mass / 12.7;
@@ -140,14 +139,14 @@ void push_limits(const LegModel& model, std::uint64_t seed, WorstValues& worst) 
   constexpr int kDirections = 8, kPhases = 24, kSteps = 10;
   constexpr double kStep = 5, kDuration = 0.1;  // N·s on a robot of 12.7 kg, s
   struct Walk {
-    GaitName gait;
+    std::uint64_t gait;
     double speed;  // m/s
   };
-  for (const Walk& each : {Walk{GaitName::kTrot, 0.3}, Walk{GaitName::kTrot, 1.0}, Walk{GaitName::kWalkingTrot, 0.3},
-                           Walk{GaitName::kCrawl, 0.15}}) {
-    const Gait gait = kGaits[static_cast<std::size_t>(each.gait)].scaled(model.leg_length());
+  for (const Walk& each : {Walk{gait_named("trot"), 0.3}, Walk{gait_named("trot"), 1.0},
+                           Walk{gait_named("walking_trot"), 0.3}, Walk{gait_named("crawl"), 0.15}}) {
+    const Gait gait = kGaits[each.gait].scaled(model.leg_length());
     Request walk = trot(each.speed);
-    walk.mode = kStanceGait + static_cast<std::uint64_t>(each.gait);
+    walk.mode = kStanceGait + each.gait;
     for (int i = 0; i < kDirections; ++i) {
       Parameters parameters = walking_parameters(seed);
       parameters.plant.push_start = kBegin + gait.period * static_cast<double>(seed % kPhases) / kPhases;
@@ -172,7 +171,7 @@ void push_limits(const LegModel& model, std::uint64_t seed, WorstValues& worst) 
 
 void walking_silent(const LegModel& model, std::uint64_t seed, WorstValues& worst) {
   constexpr int kLosses = 200, kMin = 5, kMax = 19;  // cycles
-  const double period = kGaits[static_cast<std::size_t>(GaitName::kTrot)].scaled(model.leg_length()).period;
+  const double period = kGaits[gait_named("trot")].scaled(model.leg_length()).period;
   for (const std::string node : {"controller", "estimator", "monitor"}) {
     QuadrupedLoop robot(model, walking_parameters(seed));
     robot.wait(0.3);

@@ -2,7 +2,7 @@
 #include <random>
 
 #include "bench/programs/legs/loop_rows.h"
-#include "control/legged/walk/gait.h"
+#include "control/legged/walk/gait_table.h"
 
 namespace robot_control::bench {
 namespace {
@@ -126,8 +126,7 @@ void hour(const LegModel& model, std::uint64_t seed, WorstValues& worst) {
 }
 
 void walking_hours(const LegModel& model, std::uint64_t seed, WorstValues& worst) {
-  constexpr double kTime = 600, kStretch = 60;         // s
-  constexpr double kFastest[] = {0.6, 0.6, 0.5, 0.2};  // m/s, by GaitName
+  constexpr double kTime = 600, kStretch = 60;  // s
   QuadrupedLoop robot(model, walking_parameters(seed));
   Draw draw(seed);
   double warned = 0, walked = 0;
@@ -136,8 +135,10 @@ void walking_hours(const LegModel& model, std::uint64_t seed, WorstValues& worst
   double next = robot.loop.time() + kStretch;
   while (robot.loop.time() < kTime && robot.permit().causes == 0) {
     const std::uint64_t gait = draw.below(kGaits.size());
-    Request walk = stance(gait == 0 ? std::uint64_t{kStanceStay} : kStanceGait + gait);
-    walk.twist.linear[0] = draw.within(-0.5, 1) * kFastest[gait];
+    const double duty = kGaits[gait == kStandGait ? kFastGait : gait].duty;
+    const double fastest = duty >= kOfCrawl ? 0.2 : duty > 0.5 ? 0.5 : 0.6;  // m/s
+    Request walk = stance(gait == kStandGait ? std::uint64_t{kStanceStay} : kStanceGait + gait);
+    walk.twist.linear[0] = draw.within(-0.5, 1) * fastest;
     walk.twist.linear[1] = draw.within(-0.1, 0.1);
     walk.twist.angular[2] = draw.within(-0.4, 0.4);
     for (double left = draw.within(2, 6); left > 0 && robot.permit().causes == 0; left -= 0.02) {

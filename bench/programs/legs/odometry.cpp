@@ -3,7 +3,7 @@
 #include <functional>
 
 #include "bench/programs/legs/loop_rows.h"
-#include "control/legged/walk/gait.h"
+#include "control/legged/walk/gait_table.h"
 #include "estimation/legged/legged_estimator.h"
 
 namespace robot_control::bench {
@@ -129,10 +129,11 @@ void contact(const LegModel& model, std::uint64_t seed, WorstValues& worst) {
   constexpr double kTouches = 1;                        // N
   constexpr double kSeconds = 10;
   struct Walk {
-    GaitName gait;
+    std::uint64_t gait;
     double speed;
   };
-  for (const Walk& chosen : {Walk{GaitName::kTrot, 0.5}, Walk{GaitName::kTrot, 1.0}, Walk{GaitName::kCrawl, 0.2}}) {
+  for (const Walk& chosen :
+       {Walk{gait_named("trot"), 0.5}, Walk{gait_named("trot"), 1.0}, Walk{gait_named("crawl"), 0.2}}) {
     Parameters parameters = QuadrupedLoop::parameters(seed, ErrorLevel::kField);
     parameters.plant.contact_sensors = false;
     QuadrupedLoop robot(model, parameters);
@@ -140,7 +141,7 @@ void contact(const LegModel& model, std::uint64_t seed, WorstValues& worst) {
     std::array<int, kLegs> air{}, since{};
     std::array<bool, kLegs> waits{};
     double touchdowns = 0, found = 0, swing = 0, wrong = 0;
-    const Request request = walk({chosen.speed, 0}, kStanceGait + static_cast<std::uint64_t>(chosen.gait));
+    const Request request = walk({chosen.speed, 0}, kStanceGait + chosen.gait);
     for (int k = 0; k < kSeconds * 1000; ++k) {
       if (k % 20 == 0) robot.loop.request(request);
       robot.step();
@@ -157,8 +158,7 @@ void contact(const LegModel& model, std::uint64_t seed, WorstValues& worst) {
         wrong += swings && said ? 1 : 0;
       }
     }
-    const std::string name = std::string(kGaits[static_cast<std::size_t>(chosen.gait)].name.data()) +
-                             (chosen.speed == 1.0 ? " 1.0 m/s" : "");
+    const std::string name = std::string(kGaits[chosen.gait].name.data()) + (chosen.speed == 1.0 ? " 1.0 m/s" : "");
     worst.add("touchdowns not found in 15 ms, " + name, 100 * (1 - found / touchdowns), "%");
     worst.add("swing taken for a stance, " + name, 100 * wrong / swing, "%");
     worst.add("no touchdown, " + name, touchdowns > 20 ? 0 : 1, "runs");

@@ -1,5 +1,5 @@
 #include "bench/programs/legs/loop_rows.h"
-#include "control/legged/walk/gait.h"
+#include "control/legged/walk/gait_table.h"
 #include "control/legged/walk/twist_limiter.h"
 
 namespace robot_control::bench {
@@ -11,13 +11,13 @@ constexpr double kStart = 5, kMeasured = 7, kSend = 0.02;  // s
 struct Walk {
   std::string name;
   std::array<double, 3> twist;
-  GaitName gait = GaitName::kTrot;
+  std::uint64_t gait = gait_named("trot");
 };
 
 Request request_of(const Walk& walk) {
   return {.twist = {.linear = {walk.twist[0], walk.twist[1], 0}, .angular = {0, 0, walk.twist[2]}},
           .posture = {},
-          .mode = kStanceGait + static_cast<std::uint64_t>(walk.gait)};
+          .mode = kStanceGait + walk.gait};
 }
 
 /// Stands up, walks, and measures the mean of the true twist, angles, joints and clamps.
@@ -90,8 +90,8 @@ void trot(const LegModel& model, std::uint64_t seed, WorstValues& worst) {
 }
 
 void gaits(const LegModel& model, std::uint64_t seed, WorstValues& worst) {
-  for (const Walk& each :
-       {Walk{"crawl", {0.2, 0, 0}, GaitName::kCrawl}, Walk{"walking trot", {0.5, 0, 0}, GaitName::kWalkingTrot}}) {
+  for (const Walk& each : {Walk{"crawl", {0.2, 0, 0}, gait_named("crawl")},
+                           Walk{"walking trot", {0.5, 0, 0}, gait_named("walking_trot")}}) {
     QuadrupedLoop robot(model, walking_parameters(seed));
     walk(robot, each, worst);
   }
@@ -99,7 +99,7 @@ void gaits(const LegModel& model, std::uint64_t seed, WorstValues& worst) {
   own.leg_control.gaits[0] = {
       .name = "pace", .period = 0.3, .duty = 0.8, .phases = NumberList<4>{0.5, 0, 0.5, 0}, .lift = 0.06};
   QuadrupedLoop robot(model, own);
-  walk(robot, {"pace", {0.5, 0, 0}, static_cast<GaitName>(kGaits.size())}, worst);
+  walk(robot, {"pace", {0.5, 0, 0}, kGaits.size()}, worst);
 }
 
 void robots(const LegModel& model, std::uint64_t seed, WorstValues& worst) {
@@ -111,8 +111,8 @@ void walking_stop(const LegModel& model, std::uint64_t seed, WorstValues& worst)
   constexpr std::uint64_t kPhases = 40;
   for (const Walk& each :
        {Walk{"0.5 m/s", {0.5, 0, 0}}, Walk{"1.0 m/s", {1, 0, 0}}, Walk{"1.5 m/s", {1.5, 0, 0}},
-        Walk{"crawl", {0.2, 0, 0}, GaitName::kCrawl}, Walk{"sideways", {0, 0.3, 0}}, Walk{"turn", {0, 0, 1.5}}}) {
-    const double period = kGaits[static_cast<std::size_t>(each.gait)].scaled(model.leg_length()).period / kPhases;
+        Walk{"crawl", {0.2, 0, 0}, gait_named("crawl")}, Walk{"sideways", {0, 0.3, 0}}, Walk{"turn", {0, 0, 1.5}}}) {
+    const double period = kGaits[each.gait].scaled(model.leg_length()).period / kPhases;
     QuadrupedLoop robot(model, walking_parameters(seed));
     robot.wait(0.3);
     robot.run(kStart + period * static_cast<double>(seed % kPhases), request_of(each));

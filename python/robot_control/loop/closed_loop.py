@@ -152,10 +152,10 @@ class ClosedLoop:
         """Acts as a call of `set_gait` of a robot on legs, for the commands that follow, until a stop or a reset.
 
         Args:
-            gait: "auto" (the speed chooses), "trot", "walking_trot", "crawl", or one of the parameters gait_1 … gait_4
+            gait: "auto" (the speed chooses), or a gait of docs/legs.md or of the parameters gait_1 … gait_4
 
         Raises:
-            ValueError: another word.
+            ValueError: another word, with the list of those there are.
         """
         index = _index(gait, self._loop.gaits, "gait")
         self._loop.choose_mode(_GAIT + index if index else 0)

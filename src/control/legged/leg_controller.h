@@ -104,8 +104,8 @@ class LegController {
   struct CarriedTwist {
     WalkingTwist twist{};
     std::array<CarriedBody, 2> bodies{};
-    std::array<std::uint64_t, 2> gaits{};  ///< GaitName
-    double part = 1;                       ///< 0 … 1
+    std::array<std::uint64_t, 2> gaits{};
+    double part = 1;  ///< 0 … 1
 
     bool operator==(const CarriedTwist&) const = default;
   };
@@ -143,7 +143,7 @@ class LegController {
     CarriedBody lean_wanted{};                       ///< what was requested last, within the ranges
     CarriedBody lean_target{};                       ///< what the legs carry of it on the spot
     CarriedTwist carried_twist;                      ///< of the last cycle
-    std::uint64_t gait = 0;                          ///< GaitName, the last one that was chosen
+    std::uint64_t gait = 0;                          ///< the last one that was chosen
     std::uint64_t lies_next = 0;                     ///< 1: it lies down when the walk has ended
     std::uint64_t steep = 0;                         ///< 1: it lies as gathered, on a slope that is too steep
     double idle = 0;                                 ///< s without a request of motion
@@ -162,16 +162,16 @@ class LegController {
   void begin_walk(const ControlInput& input) noexcept;
   void walk(const ControlInput& input, const Request& request, CommandFrame& out) noexcept;
   bool placed(const ControlInput& input) const noexcept;
-  GaitName choose_gait(const Request& request, const WalkingTwist& twist) noexcept;
-  WalkingTwist capable(GaitName wanted) const noexcept;
-  bool carries(GaitName gait, const WalkingTwist& twist) const noexcept;
+  std::uint64_t choose_gait(const Request& request, const WalkingTwist& twist) noexcept;
+  WalkingTwist capable(std::uint64_t wanted) const noexcept;
+  bool carries(std::uint64_t gait, const WalkingTwist& twist) const noexcept;
   double time_scale() const noexcept;
   double pace_of(const WalkingTwist& twist) const noexcept;
   CarriedBody carried_body() const noexcept;
-  double used(const WalkingTwist& twist, const CarriedBody& body, GaitName wanted,
+  double used(const WalkingTwist& twist, const CarriedBody& body, std::uint64_t wanted,
               const CarriedBody& rates = {}) const noexcept;
-  double carried_part(const WalkingTwist& twist, GaitName wanted) noexcept;
-  void carry(const Request& request, GaitName wanted, std::uint64_t& reasons) noexcept;
+  double carried_part(const WalkingTwist& twist, std::uint64_t wanted) noexcept;
+  void carry(const Request& request, std::uint64_t wanted, std::uint64_t& reasons) noexcept;
   void stand_here(const ControlInput& input) noexcept;
   void pause() noexcept;
   void report(CommandFrame& out) const noexcept;
@@ -219,7 +219,7 @@ class LegController {
   TwistLimiter limiter_;
   Walker walker_;
   LegUse leg_use_;
-  Speeds fastest_;            ///< by GaitName
+  Speeds fastest_;            ///< by gait
   double foot_distance_ = 0;  ///< m, of the farthest foot from the centre of gravity
   State state_;
 };

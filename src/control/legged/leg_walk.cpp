@@ -10,8 +10,8 @@ namespace robot_control {
 namespace {
 
 constexpr double kSlow = 0.3;         // m/s, of a body of legs of kReferenceLeg whose walk may end
-constexpr double kTrotFrom = 0.4;     // m/s, of the feet (docs/evidence/derivations.md)
-constexpr double kTrotUntil = 0.3;    // m/s, likewise
+constexpr double kFastFrom = 0.4;     // m/s, of the feet (docs/evidence/derivations.md)
+constexpr double kFastUntil = 0.3;    // m/s, likewise
 constexpr double kPlaced = 0.1;       // of the leg length, of the feet at the end of a walk
 constexpr double kInPlace = 3;        // s, after which a walk ends wherever the feet are
 constexpr double kCarriedPart = 0.5;  // of the ranges and speeds of a standing body
@@ -70,11 +70,11 @@ void LegController::begin_walk(const ControlInput& input) noexcept {
   const CarriedBody body = carried_body();
   const bool in_range =
       std::abs(body[0]) <= kCarriedPart * tuning_.bob && std::hypot(body[1], body[2]) <= kCarriedPart * tuning_.lean;
-  if (!nominal(body) && !(in_range && used({}, body, GaitName::kTrot, rates_of(state_.carried)) <= 1)) return;
+  if (!nominal(body) && !(in_range && used({}, body, kFastGait, rates_of(state_.carried)) <= 1)) return;
   state_.twist = {};
   state_.lean_wanted = state_.lean_target = {};
   state_.carried_twist = {};
-  state_.gait = static_cast<std::uint64_t>(GaitName::kStand);
+  state_.gait = kStandGait;
   walker_.begin(state_.walk, *input.sensors, *input.state);
   enter(LegPhase::kWalking, 0);
 }
@@ -97,7 +97,7 @@ void LegController::walk(const ControlInput& input, const Request& request, Comm
     out.reasons |= kReasonPermitSlow;
     for (double& axis : target) axis *= input.permit->speed_limit / speed;
   }
-  const GaitName gait = choose_gait(request, target);
+  const std::uint64_t gait = choose_gait(request, target);
   const WalkingTwist speeds = capable(gait);
   carry(request, gait, out.reasons);
   WalkInput to{.sensors = input.sensors,
@@ -116,17 +116,17 @@ void LegController::walk(const ControlInput& input, const Request& request, Comm
     for (std::size_t i = 0; i < target.size(); ++i) target[i] = part * to.twist[i];
     out.reasons |= kReasonLegSpeed;
   }
-  const auto now = static_cast<GaitName>(state_.walk.gait);
+  const std::uint64_t now = state_.walk.gait;
   const WalkingTwist twist =
       limiter_.step(state_.twist, target, speeds, (out.reasons & kEmergencies) != 0, period_, out.reasons);
   const Vector3& moves = input.state->base.twist_base.linear;
   const bool slow = std::hypot(moves[0], moves[1]) < kSlow * time_scale();
-  const bool all_down = state_.walk.gait == static_cast<std::uint64_t>(GaitName::kStand);
+  const bool all_down = state_.walk.gait == kStandGait;
   state_.idle = !wanted && rests(twist) ? state_.idle + period_ : 0;
   const bool ends = state_.idle > 0 && (all_down || (slow && (placed(input) || state_.idle > kInPlace)));
   to.twist = twist;
-  to.gait = ends                   ? GaitName::kStand
-            : state_.idle > 0      ? GaitName::kTrot  // it sets the feet on their places
+  to.gait = ends                   ? kStandGait
+            : state_.idle > 0      ? kFastGait  // it sets the feet on their places
             : carries(gait, twist) ? gait
                                    : now;
   const bool planned = walker_.step(state_.walk, to, out);
@@ -141,31 +141,29 @@ bool LegController::placed(const ControlInput& input) const noexcept {
   return walker_.farthest_foot(body) < kPlaced * legs_[0].kinematics.length();
 }
 
-/// Returns the gait that is requested. Otherwise the walking trot, or the trot from kTrotFrom on until below
-/// kTrotUntil.
-GaitName LegController::choose_gait(const Request& request, const WalkingTwist& target) noexcept {
-  constexpr auto kTrot = static_cast<std::uint64_t>(GaitName::kTrot);
+/// Returns the gait that is requested. Otherwise the slow gait, or the fast one from kFastFrom on until below
+/// kFastUntil.
+std::uint64_t LegController::choose_gait(const Request& request, const WalkingTwist& target) noexcept {
   if (request.mode > kStanceGait) {
     state_.gait = std::min<std::uint64_t>(request.mode - kStanceGait, fastest_.size() - 1);
   } else if (!rests(target)) {
     const auto& now = state_.twist.axes;
     const double fastest =
         std::max(pace_of(target), pace_of({now[0].speed, now[1].speed, now[2].speed})) / time_scale();
-    const bool trots = fastest >= (state_.gait == kTrot ? kTrotUntil : kTrotFrom);
-    state_.gait = trots ? kTrot : static_cast<std::uint64_t>(GaitName::kWalkingTrot);
+    state_.gait = fastest >= (state_.gait == kFastGait ? kFastUntil : kFastFrom) ? kFastGait : kSlowGait;
   } else if (state_.gait == 0) {
-    state_.gait = kTrot;
+    state_.gait = kFastGait;
   }
-  return static_cast<GaitName>(state_.gait);
+  return state_.gait;
 }
 
 /// Returns the speeds that the gait in force and the wanted one can have. In its first period some feet still bear
 /// since the last gait, whose speeds count as well.
-WalkingTwist LegController::capable(GaitName wanted) const noexcept {
+WalkingTwist LegController::capable(std::uint64_t wanted) const noexcept {
   const Walker::State& walk = state_.walk;
-  WalkingTwist speeds = fastest_[static_cast<std::size_t>(wanted)];
+  WalkingTwist speeds = fastest_[wanted];
   const auto bound = [&](std::uint64_t gait) {
-    if (gait == static_cast<std::uint64_t>(GaitName::kStand)) return;
+    if (gait == kStandGait) return;
     for (std::size_t i = 0; i < speeds.size(); ++i) speeds[i] = std::min(speeds[i], fastest_[gait][i]);
   };
   bound(walk.gait);
@@ -174,16 +172,15 @@ WalkingTwist LegController::capable(GaitName wanted) const noexcept {
 }
 
 /// Returns true if the legs carry the body at this twist, in this gait and the pose in force.
-bool LegController::carries(GaitName gait, const WalkingTwist& twist) const noexcept {
+bool LegController::carries(std::uint64_t gait, const WalkingTwist& twist) const noexcept {
   constexpr double kRounding = 1e-9;
-  if (used_part(twist, fastest_[static_cast<std::size_t>(gait)]) > 1 + kRounding) return false;
-  return static_cast<std::uint64_t>(gait) == state_.walk.gait || nominal(carried_body()) ||
-         used(twist, carried_body(), gait) <= 1;
+  if (used_part(twist, fastest_[gait]) > 1 + kRounding) return false;
+  return gait == state_.walk.gait || nominal(carried_body()) || used(twist, carried_body(), gait) <= 1;
 }
 
 /// Returns √(l / kReferenceLeg): times and speeds of robots of equal Froude number are as these.
 double LegController::time_scale() const noexcept {
-  return walker_.gaits()[1].period / kGaits[1].period;
+  return walker_.gaits()[kFastGait].period / kGaits[kFastGait].period;
 }
 
 /// Returns the speed of the fastest foot under the body in m/s.
@@ -197,11 +194,11 @@ CarriedBody LegController::carried_body() const noexcept {
 
 /// Returns what the gait in force and the wanted one use of what the legs can, at this twist in this pose. The pose
 /// changes with `rates`.
-double LegController::used(const WalkingTwist& twist, const CarriedBody& body, GaitName wanted,
+double LegController::used(const WalkingTwist& twist, const CarriedBody& body, std::uint64_t wanted,
                            const CarriedBody& rates) const noexcept {
   double used = 0;
-  for (const std::uint64_t gait : {static_cast<std::uint64_t>(wanted), state_.walk.gait}) {
-    if (walker_.gaits()[gait].duty >= 1 || (used > 0 && gait == static_cast<std::uint64_t>(wanted))) continue;
+  for (const std::uint64_t gait : {wanted, state_.walk.gait}) {
+    if (walker_.gaits()[gait].duty >= 1 || (used > 0 && gait == wanted)) continue;
     used = std::max(used, leg_use_.steady(walker_.gaits()[gait], twist, body, kUseSamples, rates) / kOfJointSpeed);
   }
   return used;
@@ -210,11 +207,11 @@ double LegController::used(const WalkingTwist& twist, const CarriedBody& body, G
 /// Returns the largest part of a twist that the legs carry in the pose in force and in its target. The nominal pose is
 /// that of walking_speed.h. While nothing but the pose in force changes, the part changes by at most a step per cycle,
 /// which bounds the work of a cycle.
-double LegController::carried_part(const WalkingTwist& twist, GaitName wanted) noexcept {
+double LegController::carried_part(const WalkingTwist& twist, std::uint64_t wanted) noexcept {
   CarriedTwist last = state_.carried_twist;
   CarriedTwist now{.twist = twist,
                    .bodies = {carried_body(), state_.lean_target},
-                   .gaits = {static_cast<std::uint64_t>(wanted), state_.walk.gait},
+                   .gaits = {wanted, state_.walk.gait},
                    .part = last.part};
   if (now == last) return now.part;
   last.bodies[0] = now.bodies[0];
@@ -241,7 +238,7 @@ double LegController::carried_part(const WalkingTwist& twist, GaitName wanted) n
 }
 
 /// Moves height, roll and pitch towards the requested ones.
-void LegController::carry(const Request& request, GaitName wanted, std::uint64_t& reasons) noexcept {
+void LegController::carry(const Request& request, std::uint64_t wanted, std::uint64_t& reasons) noexcept {
   CarriedBody to{within(request.posture.height, kCarriedPart * tuning_.bob, reasons), request.posture.roll,
                  request.posture.pitch};
   const double lean = std::hypot(to[1], to[2]), range = kCarriedPart * tuning_.lean;
@@ -249,7 +246,7 @@ void LegController::carry(const Request& request, GaitName wanted, std::uint64_t
     reasons |= kReasonOutOfReach;
     for (double* axis : {&to[1], &to[2]}) *axis *= range / lean;
   }
-  const std::array gaits{static_cast<std::uint64_t>(wanted), state_.walk.gait};
+  const std::array gaits{wanted, state_.walk.gait};
   if (to != state_.lean_wanted || gaits != state_.carried_twist.gaits) {
     state_.lean_wanted = state_.lean_target = to;
     for (int i = 0; i < kCarriedHalvings && !nominal(state_.lean_target); ++i) {

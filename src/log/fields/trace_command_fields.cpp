@@ -31,7 +31,7 @@ void add_legs(TraceFields& to) {
   field<C, u64>(to, "legged_lifted", "1 + leg of the foot in the air; 0: none", MEMBER(command.legged.lifted));
   field<C, f32>(to, "legged_body", "m, rad: x y height roll pitch yaw from the nominal pose, after limits",
                 MEMBER(command.legged.body));
-  field<C, u64>(to, "legged_gait", "GaitName", MEMBER(command.legged.gait)).shown();
+  field<C, u64>(to, "legged_gait", "index of the robot's gaits; 0: stand", MEMBER(command.legged.gait)).shown();
   field<C, f64>(to, "legged_gait_phase", "0 to 1", MEMBER(command.legged.gait_phase)).shown();
   field<C, f64>(to, "legged_stance", "by leg: part of the stance that was asked for; 0: it shall not bear",
                 MEMBER(command.legged.stance))

@@ -60,7 +60,7 @@ std::optional<Request> request_of(const msg::FootTarget& message);
 /// Returns "front_left, front_right, rear_left, rear_right".
 std::string foot_names();
 
-/// Returns "auto, trot, walking_trot, crawl" and the names of the user's own gaits.
+/// Returns "auto" and the names of these gaits, which set_gait accepts.
 std::string gait_names(const Gaits& gaits);
 
 /// Returns the mode of a posture of set_posture; kStanceStay for an unknown one.

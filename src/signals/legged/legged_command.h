@@ -13,7 +13,7 @@ enum StanceMode : std::uint64_t {
   kStanceStand = 2,
   kStanceLift = 3,    ///< kStanceLift + i lifts the foot of LegPlace i.
   kStanceJoints = 7,  ///< Move the joints to Request::joints while the robot lies.
-  kStanceGait = 8,    ///< kStanceGait + i walks with the gait of this GaitName. In mode 0 the speed chooses it.
+  kStanceGait = 8,    ///< kStanceGait + i walks with gait i. In mode 0 the speed chooses it.
 };
 
 enum class LegPhase : std::uint64_t {
@@ -44,7 +44,7 @@ struct LeggedCommand {
   LegPhase phase = LegPhase::kLying;
   std::uint64_t lifted = 0;      ///< 1 + i: the foot of LegPlace i is in the air, or on its way; 0: none
   std::array<double, 6> body{};  ///< m and rad: x y height roll pitch yaw from the nominal pose, after limits
-  std::uint64_t gait = 0;        ///< GaitName (control/legged/walk/gait.h)
+  std::uint64_t gait = 0;        ///< index of the robot's gaits (control/legged/walk/gait_table.h)
   double gait_phase = 0;         ///< 0 … 1
   FootStances stance{};
 };

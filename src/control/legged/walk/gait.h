@@ -79,7 +79,7 @@ struct Gait {
   }
 };
 
-/// The gaits of a robot, by GaitName; then those of its user.
+/// The gaits of a robot: those of gait_table.h, then those of its user. A gait is named by its index in this list.
 using Gaits = std::vector<Gait>;
 
 inline constexpr double kMinSwing = 0.05;  ///< s, of a foot
@@ -120,16 +120,5 @@ inline std::size_t fewest_feet(const Gait& gait) noexcept {
   for_each_support(gait, [&](double, const std::bitset<kLegs>& feet) { fewest = std::min(fewest, feet.count()); });
   return fewest;
 }
-
-enum class GaitName { kStand, kTrot, kWalkingTrot, kCrawl };
-
-/// By GaitName.
-inline constexpr std::array kGaits{
-    Gait{{"stand"}, 0.5, 1, {0, 0, 0, 0}, 0},
-    Gait{{"trot"}, 0.38, 0.5, {0.5, 0, 0, 0.5}, 0.08, 0.75},
-    Gait{{"walking_trot"}, 0.5, 0.6, {0.5, 0, 0, 0.5}, 0.07, 0.9},
-    Gait{{"crawl"}, 1.0, 0.78, {0, 0.5, 0.25, 0.75}, 0.06, 0.75},
-};
-static_assert(std::all_of(kGaits.begin(), kGaits.end(), walkable));
 
 }  // namespace robot_control

@@ -4,7 +4,7 @@
 #include <bitset>
 #include <cmath>
 
-#include "control/legged/walk/gait.h"
+#include "control/legged/walk/gait_table.h"
 #include "machine/gravity.h"
 
 namespace robot_control {
@@ -96,7 +96,7 @@ Keys keys(OwnGaits& gaits) {
 
 void check(const OwnGaits& gaits, const std::string& block, GivenValues& given) {
   std::vector<std::string> names = gait_words(all_gaits({}));
-  names.emplace_back(kGaits[static_cast<std::size_t>(GaitName::kStand)].name.data());
+  names.emplace_back(kGaits[kStandGait].name.data());
   for (std::size_t i = 0; i < gaits.size(); ++i) {
     const std::string path = block + "." + std::string(kOwnGaits[i]) + ".";
     if (!is_whole(path, given)) continue;

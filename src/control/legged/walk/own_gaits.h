@@ -1,5 +1,5 @@
 #pragma once
-/// Gaits that a user describes in the parameters gait_1 … gait_4 of the leg controller, beside those of gait.h.
+/// Gaits that a user describes in the parameters gait_1 … gait_4 of the leg controller, beside those of gait_table.h.
 ///
 /// A gait has all of its members. It is refused where its name is taken, or where a foot swings for less than
 /// kMinSwing. It is also refused where fewer than two feet bear at any time. It begins with phase 0. How fast a robot
@@ -44,7 +44,7 @@ using OwnGaits = std::array<OwnGait, kOwnGaits.size()>;
 Keys keys(OwnGaits& gaits);
 void check(const OwnGaits& gaits, const std::string& block, GivenValues& given);
 
-/// Returns the gaits of gait.h, and those that were given.
+/// Returns the gaits of gait_table.h, and those that were given.
 std::vector<Gait> all_gaits(const OwnGaits& own);
 
 /// Returns the words of set_gait: auto, and the names of these gaits but stand.

@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "control/common/limits/stop_distance.h"
-#include "control/legged/walk/gait.h"
+#include "control/legged/walk/gait_table.h"
 #include "signals/command_frame.h"
 #include "signals/legged/legged_command.h"
 
@@ -33,8 +33,8 @@ double walking_stop_distance(const LegControllerParameters& parameters, double l
                              bool emergency) noexcept {
   const MotionLimits ahead = twist_limits(parameters)[0];
   const double deceleration = emergency ? ahead.emergency_deceleration : ahead.deceleration;
-  const Gait trot = kGaits[static_cast<std::size_t>(GaitName::kTrot)].scaled(leg_length);
-  return stop_distance(speed, deceleration, ahead.jerk) + std::abs(speed) * trot.period / 2;
+  const Gait gait = kGaits[kFastGait].scaled(leg_length);
+  return stop_distance(speed, deceleration, ahead.jerk) + std::abs(speed) * gait.period / 2;
 }
 
 WalkingTwist TwistLimiter::step(State& state, const WalkingTwist& target, const WalkingTwist& capable, bool emergency,

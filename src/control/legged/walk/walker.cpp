@@ -176,9 +176,8 @@ Eigen::Vector3d Walker::fit_ground(const State& state) const noexcept {
   return squares.inverse() * heights;
 }
 
-bool Walker::changes_after(const State& state, GaitName wanted, double later) const noexcept {
-  return wanted != GaitName::kStand && static_cast<std::uint64_t>(wanted) != state.gait &&
-         state.lasted + later > gait(state).period - period_;
+bool Walker::changes_after(const State& state, std::uint64_t wanted, double later) const noexcept {
+  return wanted != kStandGait && wanted != state.gait && state.lasted + later > gait(state).period - period_;
 }
 
 void Walker::begin_gait(State& state, std::uint64_t next) const noexcept {
@@ -188,13 +187,12 @@ void Walker::begin_gait(State& state, std::uint64_t next) const noexcept {
   state.lasted = 0;
 }
 
-void Walker::turn_clock(State& state, GaitName wanted) const noexcept {
-  const auto next = static_cast<std::uint64_t>(wanted);
+void Walker::turn_clock(State& state, std::uint64_t wanted) const noexcept {
   const Gait& gait = this->gait(state);
   state.lasted += period_;
   if (gait.duty >= 1) {
-    if (wanted == GaitName::kStand) return;
-    begin_gait(state, next);
+    if (wanted == kStandGait) return;
+    begin_gait(state, wanted);
     return;
   }
   const double step = period_ / gait.period;
@@ -203,11 +201,11 @@ void Walker::turn_clock(State& state, GaitName wanted) const noexcept {
   state.phase -= std::floor(state.phase);
   double farthest = 0;
   for (std::size_t leg = 0; leg < kLegs; ++leg) farthest = std::max(farthest, gait.swung(leg, state.phase));
-  const bool ends = wanted == GaitName::kStand && farthest * (1 - gait.duty) < 1.5 * step;
+  const bool ends = wanted == kStandGait && farthest * (1 - gait.duty) < 1.5 * step;
   const bool changes = wraps && changes_after(state, wanted, 0);
   if (!ends && !changes) return;
   state.swings = {};  // a foot that then swings begins where it is, in the air or not
-  begin_gait(state, next);
+  begin_gait(state, wanted);
   if (ends) state.ahead = {};
 }
 
@@ -285,19 +283,19 @@ void Walker::plan(State& state, const WalkInput& input, const WalkingBody& body)
   for (std::size_t leg = 0; leg < kLegs; ++leg) state.forces[leg] = plain(result.forces[leg]);
 }
 
-bool Walker::will_bear(const State& state, GaitName wanted, std::size_t leg, double later) const noexcept {
+bool Walker::will_bear(const State& state, std::uint64_t wanted, std::size_t leg, double later) const noexcept {
   const Gait& gait = this->gait(state);
   const double left = (1 - state.phase) * gait.period;
   if (later < left || !changes_after(state, wanted, left)) return gait.bears(leg, state.phase + later / gait.period);
-  const Gait& next = gaits_[static_cast<std::size_t>(wanted)];
+  const Gait& next = gaits_[wanted];
   return !next.swings_since(leg, next.begins_after(gait) + (later - left) / next.period, later - left);
 }
 
-double Walker::bears_for(const State& state, GaitName wanted, std::size_t leg) const noexcept {
+double Walker::bears_for(const State& state, std::uint64_t wanted, std::size_t leg) const noexcept {
   const Gait& gait = this->gait(state);
   const double left = (1 - state.phase) * gait.period, bears = gait.bears_for(leg, state.phase);
   if (bears < left || !changes_after(state, wanted, left)) return bears;
-  const Gait& next = gaits_[static_cast<std::size_t>(wanted)];
+  const Gait& next = gaits_[wanted];
   return left + next.bears_for(leg, next.begins_after(gait));
 }
 

@@ -35,7 +35,7 @@
 #include "control/legged/stand/nominal_stance.h"
 #include "control/legged/tracked_axis.h"
 #include "control/legged/walk/force_plan.h"
-#include "control/legged/walk/gait.h"
+#include "control/legged/walk/gait_table.h"
 #include "control/legged/walk/twist_limiter.h"
 #include "machine/legs/leg_dynamics.h"
 #include "machine/legs/leg_model.h"
@@ -52,7 +52,7 @@ struct WalkInput {
   double height = 0;                     ///< m, of the body from the nominal one
   double roll = 0, pitch = 0;            ///< rad
   std::array<double, 3> rates{};         ///< m/s, rad/s, of height, roll and pitch
-  GaitName gait = GaitName::kStand;      ///< wanted; kStand ends the walk
+  std::uint64_t gait = kStandGait;       ///< wanted; kStandGait ends the walk
 };
 
 /// The body as it is.
@@ -76,8 +76,8 @@ class Walker {
   static constexpr std::uint64_t kFailures = 3;
 
   struct State {
-    std::uint64_t gait = 0;  ///< GaitName
-    std::uint64_t last = 0;  ///< GaitName, the one before
+    std::uint64_t gait = kStandGait;
+    std::uint64_t last = kStandGait;  ///< the gait before
     double phase = 0;
     double lasted = 0;                          ///< s since this gait began
     std::array<std::uint64_t, kLegs> bears{};   ///< 1: its force is planned
@@ -111,7 +111,7 @@ class Walker {
   /// meanwhile.
   double part_in_reach(const State& state, const WalkInput& input) const noexcept;
 
-  /// The gaits of this robot, by GaitName.
+  /// The gaits of this robot.
   const Gaits& gaits() const noexcept { return gaits_; }
 
   WalkingBody measure(const SensorFrame& sensors, const StateFrame& estimate) const noexcept;
@@ -123,16 +123,16 @@ class Walker {
   Eigen::Vector3d fit_ground(const State& state) const noexcept;
   void move(State& state, const WalkInput& input, const WalkingBody& body) const noexcept;
   /// Returns whether the wanted gait replaces this one if the phase wraps in `later` s.
-  bool changes_after(const State& state, GaitName wanted, double later) const noexcept;
+  bool changes_after(const State& state, std::uint64_t wanted, double later) const noexcept;
   void begin_gait(State& state, std::uint64_t next) const noexcept;
-  void turn_clock(State& state, GaitName wanted) const noexcept;
+  void turn_clock(State& state, std::uint64_t wanted) const noexcept;
   bool choose_feet(State& state, const WalkInput& input, const WalkingBody& body) const noexcept;
   Eigen::Vector3d landing(const State& state, const WalkInput& input, const WalkingBody& body,
                           std::size_t leg) const noexcept;
   /// Returns whether the clock lets a foot bear in `later` s.
-  bool will_bear(const State& state, GaitName wanted, std::size_t leg, double later) const noexcept;
+  bool will_bear(const State& state, std::uint64_t wanted, std::size_t leg, double later) const noexcept;
   /// Returns for how many s a foot that bears still does by the clock.
-  double bears_for(const State& state, GaitName wanted, std::size_t leg) const noexcept;
+  double bears_for(const State& state, std::uint64_t wanted, std::size_t leg) const noexcept;
   void plan(State& state, const WalkInput& input, const WalkingBody& body) noexcept;
   void bear(const State& state, const WalkingBody& body, std::size_t leg, CommandFrame& out) const noexcept;
   void swing(const State& state, const WalkInput& input, const WalkingBody& body, std::size_t leg,

@@ -26,7 +26,7 @@ Gait gait_of(const LegModel& robot, const NominalStance& stance, const Gait& ref
 
 using Speeds = std::vector<WalkingTwist>;
 
-/// Returns, by GaitName, the largest speeds to the front, to the left, and turning, each of them alone; at least
+/// Returns, by gait, the largest speeds to the front, to the left, and turning, each of them alone; at least
 /// kMinSpeed. `gaits` are those of `gait_of`.
 Speeds walking_speeds(const LegModel& robot, const NominalStance& stance, const Gaits& gaits);
 

@@ -8,6 +8,7 @@
 #include <random>
 
 #include "control/legged/walk/foothold.h"
+#include "control/legged/walk/gait_table.h"
 #include "machine/gravity.h"
 #include "support/allocation_guard.h"
 
@@ -299,7 +300,7 @@ class RigidWalker {
 };
 
 struct Walk {
-  GaitName gait;
+  std::uint64_t gait;
   Eigen::Vector3d request;  ///< m/s, m/s, rad/s
 };
 
@@ -307,7 +308,7 @@ class RigidWalk : public testing::TestWithParam<Walk> {};
 
 TEST_P(RigidWalk, FollowsTheRequestUpright) {
   const Eigen::Vector3d request = GetParam().request;
-  RigidWalker robot(kGaits[static_cast<std::size_t>(GetParam().gait)], request);
+  RigidWalker robot(kGaits[GetParam().gait], request);
   for (int i = 0; i < 3000; ++i) robot.step();
   Eigen::Vector3d mean = Eigen::Vector3d::Zero();
   for (int i = 0; i < 5000; ++i) {
@@ -321,11 +322,11 @@ TEST_P(RigidWalk, FollowsTheRequestUpright) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Walks, RigidWalk,
-                         testing::Values(Walk{GaitName::kTrot, {0.5, 0, 0}}, Walk{GaitName::kTrot, {1.5, 0, 0}},
-                                         Walk{GaitName::kTrot, {0, 0.3, 0}}, Walk{GaitName::kTrot, {0, 0, 1.5}},
-                                         Walk{GaitName::kTrot, {0.5, 0.2, 0.5}},
-                                         Walk{GaitName::kWalkingTrot, {0.5, 0, 0}},
-                                         Walk{GaitName::kCrawl, {0.2, 0, 0}}));
+                         testing::Values(Walk{gait_named("trot"), {0.5, 0, 0}}, Walk{gait_named("trot"), {1.5, 0, 0}},
+                                         Walk{gait_named("trot"), {0, 0.3, 0}}, Walk{gait_named("trot"), {0, 0, 1.5}},
+                                         Walk{gait_named("trot"), {0.5, 0.2, 0.5}},
+                                         Walk{gait_named("walking_trot"), {0.5, 0, 0}},
+                                         Walk{gait_named("crawl"), {0.2, 0, 0}}));
 
 }  // namespace
 }  // namespace robot_control

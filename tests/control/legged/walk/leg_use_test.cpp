@@ -11,7 +11,7 @@ namespace {
 struct LegUseTest : testing::Test {
   LegModel robot = legged_robot("quadbot");
   NominalStance stance = nominal_stance(robot);
-  Gait trot = gait_of(robot, stance, kGaits[static_cast<std::size_t>(GaitName::kTrot)]);
+  Gait trot = gait_of(robot, stance, kGaits[gait_named("trot")]);
   double steady(const WalkingTwist& twist, const CarriedBody& body = {}) const {
     return LegUse(robot, stance).steady(trot, twist, body);
   }

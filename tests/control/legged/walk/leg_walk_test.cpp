@@ -14,12 +14,8 @@ Request twist_of(double ahead, double left = 0, double turning = 0, std::uint64_
   return request;
 }
 
-constexpr std::uint64_t mode_of(GaitName gait) {
-  return kStanceGait + static_cast<std::uint64_t>(gait);
-}
-
-constexpr std::uint64_t number(GaitName gait) {
-  return static_cast<std::uint64_t>(gait);
+constexpr std::uint64_t mode_of(std::uint64_t gait) {
+  return kStanceGait + gait;
 }
 
 /// A robot on level ground whose body has the twist and the pose of the last command. A foot that bears stays where it
@@ -151,24 +147,24 @@ TEST(LegWalk, ChoosesATrotForFastFeetAndKeepsItUntilTheyAreSlow) {
         legs.run(1.2, twist_of(speed * way[0], speed * way[1], speed * way[2]));
         return legs.legs.state().gait;
       };
-      EXPECT_EQ(walk(0.25), number(GaitName::kWalkingTrot));
-      EXPECT_EQ(walk(0.39), number(GaitName::kWalkingTrot));
-      EXPECT_EQ(walk(0.41), number(GaitName::kTrot));
-      EXPECT_EQ(walk(0.31), number(GaitName::kTrot));
+      EXPECT_EQ(walk(0.25), gait_named("walking_trot"));
+      EXPECT_EQ(walk(0.39), gait_named("walking_trot"));
+      EXPECT_EQ(walk(0.41), gait_named("trot"));
+      EXPECT_EQ(walk(0.31), gait_named("trot"));
       legs.step(twist_of(0.1 * way[0], 0.1 * way[1], 0.1 * way[2]));
-      EXPECT_EQ(legs.legs.state().gait, number(GaitName::kTrot)) << "the body is still fast";
-      EXPECT_EQ(walk(0.29), number(GaitName::kWalkingTrot));
+      EXPECT_EQ(legs.legs.state().gait, gait_named("trot")) << "the body is still fast";
+      EXPECT_EQ(walk(0.29), gait_named("walking_trot"));
     }
   }
 }
 
 TEST(LegWalk, BeginsWithTheRequestedGait) {
-  for (const GaitName gait : {GaitName::kTrot, GaitName::kWalkingTrot, GaitName::kCrawl}) {
+  for (const std::uint64_t gait : {gait_named("trot"), gait_named("walking_trot"), gait_named("crawl")}) {
     WalkingLegs legs = ready();
     legs.step(stance_of(mode_of(gait)));
-    EXPECT_EQ(legs.gait(), number(gait)) << "in place, too";
+    EXPECT_EQ(legs.gait(), gait) << "in place, too";
     legs.run(1, twist_of(0.1, 0, 0, mode_of(gait)));
-    EXPECT_EQ(legs.gait(), number(gait));
+    EXPECT_EQ(legs.gait(), gait);
     EXPECT_TRUE(legs.walks());
   }
   for (const std::uint64_t mode : {std::uint64_t{kStanceGait}, kStanceGait + kGaits.size()}) {
@@ -182,27 +178,27 @@ TEST(LegWalk, BeginsWithTheRequestedGait) {
 TEST(LegWalk, ChangesToASlowerGaitWhenItsLegsCarryTheBody) {
   WalkingLegs legs = ready();
   const Speeds speeds = speeds_of(legs.robot());
-  const double slow = speeds[number(GaitName::kCrawl)][0];
-  legs.run(2, twist_of(0.9, 0, 0, mode_of(GaitName::kTrot)));
+  const double slow = speeds[gait_named("crawl")][0];
+  legs.run(2, twist_of(0.9, 0, 0, mode_of(gait_named("trot"))));
   ASSERT_NEAR(legs.speed(0), 0.9, 1e-9);
-  legs.step(twist_of(0.9, 0, 0, mode_of(GaitName::kCrawl)));
+  legs.step(twist_of(0.9, 0, 0, mode_of(gait_named("crawl"))));
   int cycles = 0;
-  for (; legs.gait() == number(GaitName::kTrot) && cycles < 400; ++cycles) {
+  for (; legs.gait() == gait_named("trot") && cycles < 400; ++cycles) {
     EXPECT_NE(legs.legs.out.reasons & kReasonLegSpeed, 0u);
     legs.step();
   }
   EXPECT_LE(legs.speed(0), slow + 1e-6);
-  legs.run(0.5, twist_of(0.9, 0, 0, mode_of(GaitName::kCrawl)));
+  legs.run(0.5, twist_of(0.9, 0, 0, mode_of(gait_named("crawl"))));
   EXPECT_NEAR(legs.speed(0), slow, 1e-6);
-  legs.step(twist_of(0.9, 0, 0, mode_of(GaitName::kTrot)));
-  for (; legs.gait() == number(GaitName::kCrawl) && cycles < 800; ++cycles) {
+  legs.step(twist_of(0.9, 0, 0, mode_of(gait_named("trot"))));
+  for (; legs.gait() == gait_named("crawl") && cycles < 800; ++cycles) {
     EXPECT_LE(legs.speed(0), slow + 1e-6) << "both gaits bound the speed until then";
     legs.step();
   }
-  const double period = Walker(legs.robot(), all_gaits({}), 0.4, kCycle).gaits()[number(GaitName::kTrot)].period;
-  legs.run(period - kCycle, twist_of(0.9, 0, 0, mode_of(GaitName::kTrot)));
+  const double period = Walker(legs.robot(), all_gaits({}), 0.4, kCycle).gaits()[gait_named("trot")].period;
+  legs.run(period - kCycle, twist_of(0.9, 0, 0, mode_of(gait_named("trot"))));
   EXPECT_NEAR(legs.speed(0), slow, 1e-6) << "feet still bear that the crawl had set down";
-  legs.run(1, twist_of(0.9, 0, 0, mode_of(GaitName::kTrot)));
+  legs.run(1, twist_of(0.9, 0, 0, mode_of(gait_named("trot"))));
   EXPECT_NEAR(legs.speed(0), 0.9, 1e-9);
 }
 
@@ -326,23 +322,23 @@ TEST(LegWalk, KeepsTheSpeedOfThePermitWithoutTurningTheTwist) {
   held.run(0.5, twist_of(0.3));
   EXPECT_TRUE(held.walks());
   EXPECT_EQ(held.speed(0), 0);
-  EXPECT_EQ(held.gait(), number(GaitName::kTrot)) << "in place";
+  EXPECT_EQ(held.gait(), gait_named("trot")) << "in place";
 }
 
 TEST(LegWalk, TurnsBackSlowlyUntilTheFeetHaveLandedAnew) {
   WalkingLegs legs = ready();
-  const double turning = 0.95 * speeds_of(legs.robot())[number(GaitName::kCrawl)][2];
-  legs.run(3, twist_of(0, 0, -turning, mode_of(GaitName::kCrawl)));
+  const double turning = 0.95 * speeds_of(legs.robot())[gait_named("crawl")][2];
+  legs.run(3, twist_of(0, 0, -turning, mode_of(gait_named("crawl"))));
   EXPECT_EQ(legs.speed(2), -turning);
   EXPECT_EQ(legs.legs.out.reasons, 0u) << "a steady turn has reach";
-  legs.legs.request(twist_of(0, 0, turning, mode_of(GaitName::kCrawl)));
+  legs.legs.request(twist_of(0, 0, turning, mode_of(gait_named("crawl"))));
   std::uint64_t reasons = 0;
   for (double time = 0; time < 1; time += kCycle) {
     legs.step();
     reasons |= legs.legs.out.reasons;
   }
   EXPECT_NE(reasons & kReasonLegSpeed, 0u);
-  legs.run(2, twist_of(0, 0, turning, mode_of(GaitName::kCrawl)));
+  legs.run(2, twist_of(0, 0, turning, mode_of(gait_named("crawl"))));
   EXPECT_EQ(legs.speed(2), turning);
   EXPECT_EQ(legs.legs.out.reasons, 0u);
 }
@@ -427,11 +423,11 @@ TEST(LegWalk, CarriesTheBodyWithinHalfOfItsRanges) {
 TEST(LegWalk, AsksForNoMoreSpeedThanTheLegsCarryInThePoseInForce) {
   WalkingLegs legs = ready();
   const LegTuning tuning = leg_tuning(legs.robot());
-  Request request = twist_of(1.5, 0, 0, mode_of(GaitName::kTrot));
+  Request request = twist_of(1.5, 0, 0, mode_of(gait_named("trot")));
   legs.run(2, request);
   EXPECT_NEAR(legs.speed(0), 1.5, 1e-6);
   const LegUse use(legs.robot(), nominal_stance(legs.robot()));
-  const Gait trot = gait_of(legs.robot(), nominal_stance(legs.robot()), kGaits[number(GaitName::kTrot)]);
+  const Gait trot = gait_of(legs.robot(), nominal_stance(legs.robot()), kGaits[gait_named("trot")]);
   request.posture = {.height = 0.4 * tuning.bob, .pitch = 0.08};
   legs.run(3, request);
   EXPECT_LT(legs.speed(0), 1.45);
@@ -451,21 +447,21 @@ TEST(LegWalk, TakesOfAPoseWhatTheLegsCarryInTheGaitOfNow) {
   for (std::size_t leg = 0; leg < kLegs; ++leg) weak.joints[kLegJoints * leg].effort_limit *= 0.68;
   const NominalStance stance = nominal_stance(weak);
   const LegUse use(weak, stance);
-  const auto used = [&](GaitName gait, const WalkingTwist& twist, const CarriedBody& body) {
-    return use.steady(gait_of(weak, stance, kGaits[number(gait)]), twist, body, 8) / kOfJointSpeed;
+  const auto used = [&](std::uint64_t gait, const WalkingTwist& twist, const CarriedBody& body) {
+    return use.steady(gait_of(weak, stance, kGaits[gait]), twist, body, 8) / kOfJointSpeed;
   };
   const LegTuning tuning = leg_tuning(weak);
   const CarriedBody whole{0.5 * tuning.bob, 0, 0.5 * tuning.lean};
-  ASSERT_LT(used(GaitName::kCrawl, {}, whole), 0.75);
-  ASSERT_GT(used(GaitName::kTrot, {}, whole), 0.75);
+  ASSERT_LT(used(gait_named("crawl"), {}, whole), 0.75);
+  ASSERT_GT(used(gait_named("trot"), {}, whole), 0.75);
   WalkingLegs legs(weak);
-  Request request = stance_of(mode_of(GaitName::kCrawl));
+  Request request = stance_of(mode_of(gait_named("crawl")));
   request.posture = {.height = whole[0], .roll = 0, .pitch = whole[2]};
   legs.run(2, request);
   EXPECT_EQ(legs.legs.out.reasons, 0u);
-  request.mode = mode_of(GaitName::kTrot);
+  request.mode = mode_of(gait_named("trot"));
   legs.run(3, request);
-  EXPECT_EQ(legs.gait(), number(GaitName::kTrot));
+  EXPECT_EQ(legs.gait(), gait_named("trot"));
   EXPECT_EQ(legs.legs.out.reasons, std::uint64_t{kReasonOutOfReach});
   WalkingLegs trots(weak);
   trots.run(1, request);

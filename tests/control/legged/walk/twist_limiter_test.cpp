@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "control/legged/walk/gait.h"
+#include "control/legged/walk/gait_table.h"
 #include "signals/command_frame.h"
 #include "signals/legged/legged_command.h"
 
@@ -167,7 +167,7 @@ TEST_F(TwistLimiterTest, TheStopDistanceIsThatOfTheRampAndOfHalfAPeriod) {
         step({}, emergency);
         distance += twist[0] * kPeriod;
       }
-      const double half = std::sqrt(0.852 / 0.426) * kGaits[static_cast<std::size_t>(GaitName::kTrot)].period / 2;
+      const double half = std::sqrt(0.852 / 0.426) * kGaits[gait_named("trot")].period / 2;
       for (const double sense : {1.0, -1.0})
         EXPECT_NEAR(walking_stop_distance(kParameters, 0.852, sense * speed, emergency), distance + speed * half,
                     speed * 2 * kPeriod);

@@ -33,7 +33,7 @@ struct WalkerTest : testing::Test {
   bool plan() {
     out = {};
     state.planned = Walker::plan_cycles(0.001);
-    return walker.step(state, {.sensors = &sensors, .state = &estimate, .twist = {}, .gait = GaitName::kStand}, out);
+    return walker.step(state, {.sensors = &sensors, .state = &estimate, .twist = {}, .gait = kStandGait}, out);
   }
 
   LegModel robot = legged_robot("quadbot");
@@ -59,15 +59,15 @@ TEST_F(WalkerTest, KeepsTheLastForcesForThreePlansThatFailAndSaysSo) {
 }
 
 TEST_F(WalkerTest, AFootThatIsInTheAirWhenTheGaitChangesSwingsOnFromWhereItIs) {
-  state.gait = static_cast<std::uint64_t>(GaitName::kCrawl);
+  state.gait = gait_named("crawl");
   state.phase = 1 - 1e-9;
-  state.lasted = walker.gaits()[static_cast<std::size_t>(GaitName::kCrawl)].period;
+  state.lasted = walker.gaits()[gait_named("crawl")].period;
   state.swings[0] = 1;
   state.bears[0] = 0;
   state.bore[0] = {-0.3, 0, 0};
   estimate.contacts[0].probability = 0;
-  walker.step(state, {.sensors = &sensors, .state = &estimate, .twist = {}, .gait = GaitName::kTrot}, out);
-  ASSERT_EQ(state.gait, static_cast<std::uint64_t>(GaitName::kTrot));
+  walker.step(state, {.sensors = &sensors, .state = &estimate, .twist = {}, .gait = gait_named("trot")}, out);
+  ASSERT_EQ(state.gait, gait_named("trot"));
   for (std::size_t i = 0; i < kLegJoints; ++i)
     EXPECT_NEAR(out.joints[i].position, sensors.joints[i].position, 1e-3) << i;
 }
@@ -75,10 +75,10 @@ TEST_F(WalkerTest, AFootThatIsInTheAirWhenTheGaitChangesSwingsOnFromWhereItIs) {
 TEST_F(WalkerTest, ACrawlIsSoSlowThatAFootReachesThroughItsStanceAfterTheEndOfThatOfATrot) {
   const NominalStance stance = nominal_stance(robot);
   const Gaits& gaits = walker.gaits();
-  const Gait& trot = gaits[static_cast<std::size_t>(GaitName::kTrot)];
-  const Gait& crawl = gaits[static_cast<std::size_t>(GaitName::kCrawl)];
+  const Gait& trot = gaits[gait_named("trot")];
+  const Gait& crawl = gaits[gait_named("crawl")];
   const Speeds speeds = walking_speeds(robot, stance, gaits);
-  const double fastest = speeds[static_cast<std::size_t>(GaitName::kCrawl)][0];
+  const double fastest = speeds[gait_named("crawl")][0];
   EXPECT_GT(fastest, 0.3);
   for (std::size_t leg = 0; leg < kLegs; ++leg) {
     const double stood = (trot.leg_phase(leg, 0) > 0 ? 0.5 : -0.5) * trot.stance_time();
@@ -86,8 +86,8 @@ TEST_F(WalkerTest, ACrawlIsSoSlowThatAFootReachesThroughItsStanceAfterTheEndOfTh
     const Eigen::Vector3d way(fastest * (stood + stands), 0, 0);
     EXPECT_EQ(robot.legs[leg].kinematics.inverse(stance.feet[leg] - way).reach, FootReach::kReached) << leg;
   }
-  EXPECT_GT(speeds[static_cast<std::size_t>(GaitName::kWalkingTrot)][0], 1.0);
-  EXPECT_DOUBLE_EQ(speeds[static_cast<std::size_t>(GaitName::kTrot)][0], 1.7);  // of any gait
+  EXPECT_GT(speeds[gait_named("walking_trot")][0], 1.0);
+  EXPECT_DOUBLE_EQ(speeds[gait_named("trot")][0], 1.7);  // of any gait
 }
 
 }  // namespace

@@ -37,8 +37,6 @@ double fastest_joint(const LegModel& robot, std::size_t leg, double time, const 
 }
 
 struct WalkingSpeedTest : testing::Test {
-  static std::size_t number(GaitName name) { return static_cast<std::size_t>(name); }
-
   /// Returns the velocity of a foot that stands, under a body with this speed on one axis.
   Eigen::Vector3d under(std::size_t leg, std::size_t axis, double speed) const {
     const Eigen::Vector3d& foot = stance.feet[leg];
@@ -126,7 +124,7 @@ TEST_F(WalkingSpeedTest, NoJointNeedsMoreThanItsPartAtTheSpeedsOfAGaitAndItsChan
       if (axis == 0 && speeds[gait][axis] == fastest(robot)) continue;
       EXPECT_GT(beyond, kOfJointSpeed) << gaits[gait].name.data() << axis;
     }
-    EXPECT_EQ(speeds[number(GaitName::kStand)][axis], kMinSpeed);
+    EXPECT_EQ(speeds[kStandGait][axis], kMinSpeed);
   }
 }
 
@@ -135,14 +133,14 @@ TEST_F(WalkingSpeedTest, NoGaitIsFasterThanATrotKeepsItsBalance) {
     LegModel fast = sized(size);
     for (JointModel& joint : fast.joints) joint.velocity_limit = 1000;
     const NominalStance stands = nominal_stance(fast);
-    Gait trot = gait_of(fast, stands, kGaits[number(GaitName::kTrot)]);
+    Gait trot = gait_of(fast, stands, kGaits[gait_named("trot")]);
     trot.period /= 2;  // so that the legs reach
     EXPECT_EQ(walking_speeds(fast, stands, {trot})[0][0], fastest(fast));
   }
 }
 
 TEST_F(WalkingSpeedTest, AStepInPlaceIsLowerWhereItsJointsAreSlow) {
-  const Gait trot = kGaits[number(GaitName::kTrot)].scaled(robot.leg_length());
+  const Gait trot = kGaits[gait_named("trot")].scaled(robot.leg_length());
   for (JointModel& joint : robot.joints) joint.velocity_limit = 1000;
   EXPECT_EQ(gait_of(robot, stance, trot).lift, trot.lift);
   const double needs = steady(trot, 0, 0);
@@ -171,7 +169,7 @@ TEST_F(WalkingSpeedTest, AnEmergencyEndsAWalkAfterTheSlowestAxisAndAPeriodOfTheC
     }
     for (const double size : {1.0, 0.25}) {
       const LegModel legs = sized(size);
-      const double crawl = kGaits[number(GaitName::kCrawl)].period * std::sqrt(legs.leg_length() / kReferenceLeg);
+      const double crawl = kGaits[gait_named("crawl")].period * std::sqrt(legs.leg_length() / kReferenceLeg);
       EXPECT_NEAR(walk_ending_time(parameters, legs), time + crawl + kAllDown, 3 * kTick) << slowest;
     }
   }
