@@ -245,6 +245,12 @@ void bind_spectral_radius(py::module_& module) {
       py::arg("damping"), py::arg("period"), py::arg("bandwidth"), py::arg("delay") = 0);
 }
 
+using ModeNumbers = std::array<std::uint64_t, 2>;  // kind and index
+
+Mode mode_of(const ModeNumbers& numbers) {
+  return {static_cast<ModeKind>(numbers[0]), numbers[1]};
+}
+
 void bind_closed_loop(py::module_& module) {
   py::class_<ClosedLoop>(module, "ClosedLoop")
       .def(py::init([](const std::string& path, const Values& values) {
@@ -258,15 +264,17 @@ void bind_closed_loop(py::module_& module) {
             loop.command(planar(linear, lateral, angular));
           },
           py::arg("linear"), py::arg("angular"), py::arg("lateral") = 0.0)
-      .def("choose_mode", &ClosedLoop::choose_mode, py::arg("mode"))
+      .def(
+          "choose_mode", [](ClosedLoop& loop, const ModeNumbers& mode) { loop.choose_mode(mode_of(mode)); },
+          py::arg("mode"))
       .def(
           "request",
-          [](ClosedLoop& loop, const std::array<double, 6>& pose, std::uint64_t mode,
+          [](ClosedLoop& loop, const std::array<double, 6>& pose, const ModeNumbers& mode,
              const std::array<double, kRequestJoints>& joints) {
             const auto& [x, y, height, roll, pitch, yaw] = pose;
             loop.request({.twist = {},
                           .posture = {.height = height, .roll = roll, .pitch = pitch, .x = x, .y = y, .yaw = yaw},
-                          .mode = mode,
+                          .mode = mode_of(mode),
                           .joints = joints});
           },
           py::arg("pose"), py::arg("mode"), py::arg("joints"))

@@ -12,6 +12,23 @@
 
 namespace robot_control {
 
+/// The ways of moving of all kinds of machines. A machine names one that it does not know (kReasonPartIgnored).
+enum class ModeKind : std::uint64_t {
+  kStay = 0,    ///< the default of the machine; on legs: stand with all feet, or lie, as before
+  kLie = 1,     ///< on legs
+  kStand = 2,   ///< on legs
+  kLift = 3,    ///< on legs: Mode::index is the LegPlace of the foot in the air.
+  kJoints = 4,  ///< on legs: Request::joints are the targets of the joints while the robot lies.
+  kGait = 5,    ///< on legs: Mode::index is the gait (control/legged/walk/gait_table.h).
+};
+
+struct Mode {
+  ModeKind kind = ModeKind::kStay;
+  std::uint64_t index = 0;
+
+  bool operator==(const Mode&) const = default;
+};
+
 /// The posture of the base relative to the nominal one, which is all zero. A mode may give it to another part of the
 /// machine, such as a foot.
 struct Posture {
@@ -33,7 +50,7 @@ inline constexpr std::size_t kRequestJoints = 12;
 struct Request {
   Twist twist{};  ///< base axes
   Posture posture{};
-  std::uint64_t mode = 0;                       ///< number of a way of moving, of the kind of machine; 0: its default
+  Mode mode{};
   std::array<double, kRequestJoints> joints{};  ///< rad or m, of the driven joints; used by modes that move joints
 };
 
@@ -65,7 +82,7 @@ inline std::array<double, 12> numbers_of(const Request& request) noexcept {
 
 /// Returns the RequestPart bits of the parts that are not zero.
 inline std::uint64_t parts_of(const Request& request) noexcept {
-  std::uint64_t parts = request.mode != 0 ? std::uint64_t{kPartMode} : 0;
+  std::uint64_t parts = request.mode != Mode{} ? std::uint64_t{kPartMode} : 0;
   std::uint64_t part = kPartLinearX;
   for (const double number : numbers_of(request)) {
     if (number != 0) parts |= part;

@@ -94,7 +94,7 @@ struct ClosedLoop::Parts {
   MonitorFaults monitor_faults{FaultComponent::kMonitor, permit.writer};
   std::unique_ptr<Retuner> retuner;
   VelocityCommand request;
-  std::uint64_t mode = 0;  ///< of later commands
+  Mode mode;  ///< of later commands
   OperatorInput operator_input;
   InjectedFaults faults{};
   JoinedRow row;
@@ -113,9 +113,9 @@ ClosedLoop::ClosedLoop(ClosedLoop&&) noexcept = default;
 ClosedLoop& ClosedLoop::operator=(ClosedLoop&&) noexcept = default;
 
 void ClosedLoop::command(const Twist& twist) noexcept {
-  request({.twist = twist, .mode = zero(twist) ? 0 : parts_->mode});
+  request({.twist = twist, .mode = zero(twist) ? Mode{} : parts_->mode});
 }
-void ClosedLoop::choose_mode(std::uint64_t mode) noexcept {
+void ClosedLoop::choose_mode(const Mode& mode) noexcept {
   parts_->mode = mode;
 }
 void ClosedLoop::request(const Request& content) noexcept {
@@ -147,7 +147,7 @@ void ClosedLoop::step() noexcept {
   if (parts.controller.step()) laws.controller = parts.controller_faults.replace(sensors, parts.controller.trace());
   const bool granted = parts.monitor.permit().action == PermitAction::kDrive;
   if (parts.monitor.step()) laws.monitor = parts.monitor_faults.replace(sensors, parts.monitor.trace());
-  if (granted && parts.monitor.permit().action != PermitAction::kDrive) parts.mode = 0;
+  if (granted && parts.monitor.permit().action != PermitAction::kDrive) parts.mode = {};
   parts.row = {.run = static_cast<std::int64_t>(parts.driver.run()) - 1,
                .cycle = sensors.head.cycle,
                .time = row_time(sensors.head.cycle, parts.parameters.loop.period()),

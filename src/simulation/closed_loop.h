@@ -40,7 +40,7 @@ class ClosedLoop {
 
   /// Sets Request::mode of later commands other than zero, as set_gait of a robot on legs does. It ends with the
   /// permission to move.
-  void choose_mode(std::uint64_t mode) noexcept;
+  void choose_mode(const Mode& mode) noexcept;
 
   /// These act like calls of e_stop_trigger and e_stop_reset, and like a message on heartbeat.
   void e_stop() noexcept;

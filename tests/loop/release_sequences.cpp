@@ -81,7 +81,7 @@ struct Statement {
   std::string process, topic;
   Request request;
   std::int64_t cycle = 0;  // of all driver cycles
-  std::uint64_t gait = 0;  // mode that was chosen then, since the last withdrawal
+  Mode gait{};               // that was chosen then, since the last withdrawal
 };
 
 /// A publisher of e_stop in the judge's model.
@@ -138,8 +138,8 @@ class Sequence {
   /// Calls the services that request something.
   virtual void call() {}
 
-  /// Returns the mode that set_gait chose since the last withdrawal; 0: none.
-  virtual std::uint64_t chosen() const { return 0; }
+  /// Returns the mode that set_gait chose since the last withdrawal.
+  virtual Mode chosen() const { return {}; }
 
   /// Returns whether the request in force consists of what one process has stated.
   virtual bool owned(const Request&) { return true; }
@@ -702,15 +702,16 @@ class LeggedSequence final : public Sequence {
       to.posture = {.height = -0.02, .roll = 0.1 + number};
     } else if (sender.part == StatedPart::kTwist || kind < 2) {
       to.twist.linear[0] = 0.3 + number;
-      if (sender.part == StatedPart::kAll) to.mode = random_() % 2 == 0 ? 0 : kStanceGait + 1 + random_() % 3;
+      if (sender.part == StatedPart::kAll)
+        to.mode = random_() % 2 == 0 ? Mode{} : Mode{ModeKind::kGait, 1 + random_() % 3};
     } else if (kind == 2) {
       to.posture = {.height = -0.02, .pitch = 0.1 + number};
     } else if (kind == 3) {
       to.posture = {.height = 0.08 + number};
-      to.mode = kStanceLift + random_() % kLegs;
+      to.mode = {ModeKind::kLift, random_() % kLegs};
     } else {
       to.joints.fill(0.1 + number);
-      to.mode = kStanceJoints;
+      to.mode = {ModeKind::kJoints};
     }
   }
 
@@ -730,18 +731,17 @@ class LeggedSequence final : public Sequence {
                          current(sensors_.reader, permit.head, model().hash) &&
                          command_.reader.newest(command) == Lookup::kFrame;
     if (granted && chance(400)) {
-      const std::uint64_t gait = kStanceGait + 1 + random_() % 3;
-      inbox_->choose_mode(gait);
-      chosen_ = {gait, cycles_};
+      chosen_ = {{ModeKind::kGait, 1 + random_() % 3}, cycles_};
+      inbox_->choose_mode(chosen_.first);
     }
-    if (posture_ == kStanceStay && granted && disturbs(200)) {
-      posture_ = chance(2) ? kStanceStand : kStanceLie;
+    if (posture_ == Mode{} && granted && disturbs(200)) {
+      posture_.kind = chance(2) ? ModeKind::kStand : ModeKind::kLie;
       called_at_ = now_;
     }
-    if (posture_ == kStanceStay || (now_ - called_at_) % 10 != 0) return;
+    if (posture_ == Mode{} || (now_ - called_at_) % 10 != 0) return;
     const LegPhase phase = command.legged.phase;
-    const bool begun = posture_ == kStanceLie ? phase == LegPhase::kLying || phase == LegPhase::kLowering
-                                              : phase > LegPhase::kLying && phase < LegPhase::kLowering;
+    const bool begun = posture_.kind == ModeKind::kLie ? phase == LegPhase::kLying || phase == LegPhase::kLowering
+                                                       : phase > LegPhase::kLying && phase < LegPhase::kLowering;
     if (granted && !begun && now_ - called_at_ < 1000) {
       follow_permission();
       const std::uint64_t accepted = inbox_->value().count;
@@ -751,10 +751,10 @@ class LeggedSequence final : public Sequence {
       return;
     }
     if (granted && !begun) inbox_->withdraw(posture_, loop_ns());
-    posture_ = kStanceStay;
+    posture_ = {};
   }
 
-  std::uint64_t chosen() const override { return chosen_.second >= withdrawn_cycle_ ? chosen_.first : 0; }
+  Mode chosen() const override { return chosen_.second >= withdrawn_cycle_ ? chosen_.first : Mode{}; }
 
   bool owned(const Request& request) override {
     const Statement* twist = nullptr;
@@ -763,7 +763,7 @@ class LeggedSequence final : public Sequence {
     const auto is = [](const Posture& a, const Posture& b) {
       return a.height == b.height && a.roll == b.roll && a.pitch == b.pitch;
     };
-    const bool has_rest = !is(request.posture, {}) || (request.mode != 0 && !walks);
+    const bool has_rest = !is(request.posture, {}) || (request.mode != Mode{} && !walks);
     for (const Statement& one : statements_) {
       if (one.cycle < withdrawn_cycle_ || (timeout_ > 0 && cycles_ - one.cycle > 2 * ticks_ + kMaxAway)) continue;
       if (walks && one.request.twist.linear == request.twist.linear) twist = &one;
@@ -800,10 +800,10 @@ class LeggedSequence final : public Sequence {
   MujocoPlant machine_{robot_.machine(), parameters_.plant, kPeriod};
   static constexpr std::int64_t kMaxAway = 100;  ///< ticks, more than a node is stopped
   std::uint64_t asked_ = 0;
-  std::pair<std::uint64_t, std::int64_t> chosen_{0, kNever};  ///< mode of the last set_gait, and its driver cycle
-  std::uint64_t posture_ = kStanceStay;                       ///< mode of the set_posture that is being answered
-  std::int64_t called_at_ = 0;                                ///< tick
-  double lay_at_ = 1;                                         ///< m, the lowest height of the body
+  std::pair<Mode, std::int64_t> chosen_{{}, kNever};  ///< mode of the last set_gait, and its driver cycle
+  Mode posture_;                                      ///< mode of the set_posture that is being answered
+  std::int64_t called_at_ = 0;                        ///< tick
+  double lay_at_ = 1;                                 ///< m, the lowest height of the body
   std::uint64_t run_ = 0;
   Vector3 rests_at_{};  ///< m, the place of the body
   int braked_ = 0;      ///< driver cycles of this run; another one begins the stop again

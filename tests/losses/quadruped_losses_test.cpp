@@ -38,7 +38,7 @@ class LossOfQuadbot : public ::testing::Test {
   /// False: a stall of this machine stopped it on the way.
   bool stand_and_sway() {
     robot_.make_ready();
-    robot_.ask_for({.twist = {}, .posture = {}, .mode = kStanceStand});
+    robot_.ask_for({.twist = {}, .posture = {}, .mode = {ModeKind::kStand}});
     robot_.await_cycles(2500);
     for (int k = 0; k < 30; ++k) {
       robot_.ask_for({.twist = {}, .posture = {.y = 0.04 * std::sin(std::numbers::pi * 0.02 * k)}});
@@ -49,7 +49,7 @@ class LossOfQuadbot : public ::testing::Test {
 
   /// The same. Each walk ends at another phase of the gait.
   bool trot() {
-    constexpr std::uint64_t kTrot = kStanceGait + gait_named("trot");
+    constexpr Mode kTrot{ModeKind::kGait, gait_named("trot")};
     const double period = 1000 * kGaits[gait_named("trot")].period;  // cycles
     robot_.make_ready();
     robot_.ask_for({.twist = {.linear = {kSpeed, 0, 0}}, .mode = kTrot});

@@ -8,7 +8,7 @@
 namespace robot_control {
 namespace {
 
-Request walk(double linear, std::uint64_t mode = kStanceStay) {
+Request walk(double linear, const Mode& mode = {}) {
   return {.twist = {.linear = {linear, 0, 0}, .angular = {}}, .posture = {}, .mode = mode};
 }
 
@@ -20,12 +20,13 @@ QuadrupedLoop walking() {
 }
 
 TEST(LegsInputs, AnUnknownGaitMovesNothing) {
-  for (const std::uint64_t mode : {std::uint64_t{kStanceGait}, kStanceGait + kGaits.size(), ~std::uint64_t{0}}) {
+  for (const Mode& mode : {Mode{ModeKind::kGait, kStandGait}, Mode{ModeKind::kGait, kGaits.size()},
+                           Mode{ModeKind::kLift, kLegs}, Mode{static_cast<ModeKind>(6)}}) {
     QuadrupedLoop robot = loop_of("quadbot");
     robot.wait(0.3);
     robot.run(1.0, walk(0.5, mode));
-    EXPECT_EQ(robot.command().legged.phase, LegPhase::kLying) << mode;
-    EXPECT_NE(robot.command().reasons & kReasonPartIgnored, 0u) << mode;
+    EXPECT_EQ(robot.command().legged.phase, LegPhase::kLying) << mode.index;
+    EXPECT_NE(robot.command().reasons & kReasonPartIgnored, 0u) << mode.index;
   }
 }
 
@@ -50,7 +51,7 @@ TEST(LegsInputs, ATwistBeyondEveryLimitIsLimited) {
 TEST(LegsInputs, GaitsThatSwitchInEveryCycleDoNotStopTheWalk) {
   QuadrupedLoop robot = walking();
   for (std::uint64_t k = 0; k < 2000; ++k) {
-    robot.loop.request(walk(0.3, kStanceGait + 1 + k % 3));
+    robot.loop.request(walk(0.3, {ModeKind::kGait, 1 + k % 3}));
     robot.step();
   }
   EXPECT_EQ(robot.command().legged.phase, LegPhase::kWalking);
@@ -59,9 +60,9 @@ TEST(LegsInputs, GaitsThatSwitchInEveryCycleDoNotStopTheWalk) {
 }
 
 TEST(LegsInputs, NothingThatNeverTimesOutMovesAnythingAfterAStopAndItsReset) {
-  Request joints = stance(kStanceJoints);
+  Request joints = stance({ModeKind::kJoints});
   joints.joints.fill(0.1);
-  for (const Request& request : {stance(kStanceStand), walk(0.3), joints}) {
+  for (const Request& request : {stance({ModeKind::kStand}), walk(0.3), joints}) {
     Parameters parameters = QuadrupedLoop::parameters(0, ErrorLevel::kIdeal);
     parameters.leg_control.request_timeout = 0;
     QuadrupedLoop robot(legged_robot("quadbot"), parameters);
@@ -71,23 +72,23 @@ TEST(LegsInputs, NothingThatNeverTimesOutMovesAnythingAfterAStopAndItsReset) {
     for (int seconds = 0; seconds < 3; ++seconds) {
       robot.loop.e_stop_reset();
       robot.wait(1.0);
-      EXPECT_EQ(robot.gate().verdict, GateVerdict::kBrake) << request.mode;
-      EXPECT_EQ(robot.command().legged.phase, LegPhase::kLying) << request.mode;
+      EXPECT_EQ(robot.gate().verdict, GateVerdict::kBrake) << static_cast<int>(request.mode.kind);
+      EXPECT_EQ(robot.command().legged.phase, LegPhase::kLying) << static_cast<int>(request.mode.kind);
     }
     robot.loop.command({});
     robot.wait(0.1);
     robot.loop.e_stop_reset();
     robot.wait(1.0);
     EXPECT_EQ(robot.permit().causes, 0u) << robot.causes();
-    EXPECT_EQ(robot.command().legged.phase, LegPhase::kLying) << request.mode;
+    EXPECT_EQ(robot.command().legged.phase, LegPhase::kLying) << static_cast<int>(request.mode.kind);
   }
 }
 
 TEST(LegsInputs, ATwistWhileAFootIsInTheAirSetsItDownFirst) {
   QuadrupedLoop robot = loop_of("quadbot");
   robot.wait(0.3);
-  robot.run(2.5, stance(kStanceStand));
-  robot.run(2.0, stance(kStanceLift));
+  robot.run(2.5, stance({ModeKind::kStand}));
+  robot.run(2.0, stance({ModeKind::kLift}));
   robot.run(0.1, walk(0.3));
   EXPECT_EQ(robot.command().legged.phase, LegPhase::kStanding);
   robot.run(3.0, walk(0.3));

@@ -18,7 +18,7 @@ TEST_P(QuadrupedOf, StandsUpWithinTwoSecondsAndLiesDownAgain) {
   QuadrupedLoop robot = loop_of(GetParam());
   robot.wait(0.3);
   robot.clear();
-  robot.run(2.0, stance(kStanceStand));
+  robot.run(2.0, stance({ModeKind::kStand}));
   EXPECT_LE(robot.tilt_now(), 0.03);
   EXPECT_EQ(robot.command().reasons & kReasonOutOfReach, 0u);
   EXPECT_LE(robot.effort, 0.9);
@@ -33,7 +33,7 @@ TEST_P(QuadrupedOf, StandsUpWithinTwoSecondsAndLiesDownAgain) {
   EXPECT_LE(creep, 0.001);
   EXPECT_NEAR(after[2], rise, 0.002);  // it was up after two seconds
   EXPECT_EQ(robot.permit().causes | robot.permit().warnings, 0u) << robot.causes();
-  robot.run(3.0, stance(kStanceLie));
+  robot.run(3.0, stance({ModeKind::kLie}));
   EXPECT_NE(robot.command().reasons & kReasonHolding, 0u);
   EXPECT_NEAR(robot.truth().pose_world.position[2], 0, 0.03);
   EXPECT_EQ(robot.permit().causes, 0u) << robot.causes();
@@ -51,7 +51,7 @@ void expect_fold(QuadrupedLoop& robot) {
 TEST_P(QuadrupedOf, IsFoldedByAnEmergencyStopAndLiesUpright) {
   QuadrupedLoop robot = loop_of(GetParam());
   robot.wait(0.3);
-  robot.run(2.5, stance(kStanceStand));
+  robot.run(2.5, stance({ModeKind::kStand}));
   expect_fold(robot);
 }
 
@@ -60,7 +60,7 @@ TEST_P(QuadrupedOf, KnowsItsHeightAfterEveryFold) {
   const auto error = [&] { return robot.state().base.pose_odom.position[2] - robot.truth().pose_world.position[2]; };
   robot.wait(0.3);
   for (int round = 0; round < 3; ++round) {
-    robot.run(3.0, stance(kStanceStand));
+    robot.run(3.0, stance({ModeKind::kStand}));
     EXPECT_NEAR(error(), 0, 0.01) << round;
     robot.fold();
     EXPECT_NEAR(error(), 0, 0.035) << round;  // it may lie on a folded leg
@@ -74,7 +74,7 @@ TEST_P(QuadrupedOf, KnowsItsHeightAfterEveryFold) {
 QuadrupedLoop standing_with_fault(const std::string& name, std::size_t joint, const std::string& kind) {
   QuadrupedLoop robot = loop_of(name);
   robot.wait(0.3);
-  robot.run(2.5, stance(kStanceStand));
+  robot.run(2.5, stance({ModeKind::kStand}));
   robot.loop.inject_fault(robot.robot().joints[joint].name + "_encoder", kind);
   return robot;
 }
@@ -114,8 +114,8 @@ TEST_P(QuadrupedOf, IsStoppedByAnEncoderWithRandomAngles) {
 TEST_P(QuadrupedOf, IsFoldedWithARearFootInTheAir) {
   QuadrupedLoop robot = loop_of(GetParam());
   robot.wait(0.3);
-  robot.run(2.5, stance(kStanceStand));
-  Request up = stance(kStanceLift + 2);
+  robot.run(2.5, stance({ModeKind::kStand}));
+  Request up = stance({ModeKind::kLift, 2});
   up.posture.height = leg_tuning(robot.robot()).lift;
   robot.run(2.0, up);
   ASSERT_EQ(robot.command().legged.lifted, 3u);
@@ -126,7 +126,7 @@ TEST_P(QuadrupedOf, IsFoldedWithARearFootInTheAir) {
 TEST_P(QuadrupedOf, StandsFirmWhileItsPoseStepsOnAllAxesAtOnce) {
   QuadrupedLoop robot(legged_robot(GetParam()), 1, ErrorLevel::kField);
   robot.wait(0.3);
-  robot.run(2.5, stance(kStanceStand));
+  robot.run(2.5, stance({ModeKind::kStand}));
   robot.run(0.5, {});
   robot.clear();
   const double length = robot.robot().leg_length();
@@ -154,11 +154,11 @@ void expect_lying_in_time(const std::string& name, std::size_t moving, const std
   std::mt19937_64 random(7);
   const auto within = [&](double size) { return std::uniform_real_distribution<double>(-size, size)(random); };
   for (std::size_t trial = 0; trial < moving + feet.size(); ++trial) {
-    robot.run(2.5, stance(kStanceStand));
+    robot.run(2.5, stance({ModeKind::kStand}));
     ASSERT_EQ(robot.command().legged.phase, LegPhase::kStanding) << trial;
     if (trial >= moving) {
       const LegTuning tuning = leg_tuning(robot.robot());
-      Request foot = stance(kStanceLift + feet[trial - moving]);
+      Request foot = stance({ModeKind::kLift, feet[trial - moving]});
       foot.posture = {
           .height = tuning.lift + tuning.foot_range, .x = within(tuning.foot_range), .y = within(tuning.foot_range)};
       robot.run(2.2, foot);
@@ -176,7 +176,7 @@ void expect_lying_in_time(const std::string& name, std::size_t moving, const std
     }
     double took = 0;
     for (; took < 5 && robot.command().legged.phase != LegPhase::kLying; took += 0.02)
-      robot.run(0.02, stance(kStanceLie));
+      robot.run(0.02, stance({ModeKind::kLie}));
     EXPECT_LE(took, lying_down_time(robot.robot())) << trial;
     ASSERT_EQ(robot.permit().causes, 0u) << trial << ": " << robot.causes();
   }
@@ -203,7 +203,7 @@ TEST_P(QuadrupedOf, MovesItsJointsAlongAPathWhileItLies) {
     way[i] = std::copysign(0.2, (range.lower + range.upper) / 2 - lying[i]);
   }
   const auto path = [&](double t) {
-    Request request = stance(kStanceJoints);
+    Request request = stance({ModeKind::kJoints});
     for (std::size_t i = 0; i < kLegsJoints; ++i) request.joints[i] = lying[i] + way[i] * (1 - std::cos(kPi * t)) / 2;
     return request;
   };
@@ -233,7 +233,7 @@ TEST_P(QuadrupedOf, MovesItsJointsAlongAPathWhileItLies) {
   EXPECT_NE(robot.command().reasons & kReasonTimedOut, 0u);
   for (std::size_t i = 0; i < kLegsJoints; ++i) EXPECT_NEAR(robot.command().joints[i].position, planned[i], 0.05) << i;
   EXPECT_EQ(robot.command().legged.phase, LegPhase::kJoints);
-  robot.run(2.5, stance(kStanceStand));
+  robot.run(2.5, stance({ModeKind::kStand}));
   EXPECT_EQ(robot.command().legged.phase, LegPhase::kStanding);
   EXPECT_EQ(robot.permit().causes, 0u) << robot.causes();
 }
@@ -246,7 +246,7 @@ class Quadbot : public testing::Test {
  protected:
   void SetUp() override {
     robot.wait(0.3);
-    robot.run(2.0, stance(kStanceStand));
+    robot.run(2.0, stance({ModeKind::kStand}));
     robot.run(0.5, {});
   }
   /// Returns the pose in the axes of the beginning: x y z roll pitch yaw.
@@ -287,7 +287,7 @@ TEST_F(Quadbot, MovesItsBodyAsRequested) {
 TEST_F(Quadbot, DrawsACircleWithEachFoot) {
   for (std::size_t leg = 0; leg < kLegs; ++leg) {
     robot.clear();
-    Request up = stance(kStanceLift + leg);
+    Request up = stance({ModeKind::kLift, leg});
     up.posture.height = 0.08;
     robot.run(2.0, up);
     const LegKinematics& kinematics = robot.robot().legs[leg].kinematics;
@@ -323,7 +323,7 @@ TEST(QuadbotJoints, AreLimitedInRangeSpeedAndAcceleration) {
   QuadrupedLoop robot = loop_of("quadbot");
   robot.wait(0.3);
   const std::array<JointBounds, kLegsJoints> bounds = joint_bounds(robot.robot());
-  Request request = stance(kStanceJoints);
+  Request request = stance({ModeKind::kJoints});
   for (std::size_t i = 0; i < kLegsJoints; ++i) request.joints[i] = robot.robot().joints[i].rest_position;
   request.joints[0] = -5;  // beyond the range
   double before = 0, speed_before = 0;
@@ -343,7 +343,7 @@ TEST(QuadbotJoints, AreLimitedInRangeSpeedAndAcceleration) {
 TEST(QuadbotJoints, AreReleasedByAStopAndStayUntilTheNextRequest) {
   QuadrupedLoop robot = loop_of("quadbot");
   robot.wait(0.3);
-  Request request = stance(kStanceJoints);
+  Request request = stance({ModeKind::kJoints});
   for (std::size_t i = 0; i < kLegsJoints; ++i) request.joints[i] = robot.robot().joints[i].rest_position;
   request.joints[2] += 0.3;
   robot.run(0.5, request);
@@ -364,7 +364,7 @@ TEST(QuadbotJoints, AreReleasedByAStopAndStayUntilTheNextRequest) {
 
 TEST_F(Quadbot, RefusesJointsWhileItStands) {
   const std::array<double, 6> stood = pose();
-  robot.run(0.5, stance(kStanceJoints));
+  robot.run(0.5, stance({ModeKind::kJoints}));
   EXPECT_NE(robot.command().reasons & kReasonNotLying, 0u);
   EXPECT_EQ(robot.command().legged.phase, LegPhase::kStanding);
   for (std::size_t axis = 0; axis < 6; ++axis) EXPECT_NEAR(pose()[axis], stood[axis], 0.001) << axis;
@@ -391,7 +391,7 @@ TEST_F(Quadbot, NamesWhatItCannotDo) {
   EXPECT_EQ(robot.command().ignored, kPartLinearZ);
   robot.run(0.1, {.twist = {}, .posture = {.height = 1}});
   EXPECT_NE(robot.command().reasons & kReasonOutOfReach, 0u);
-  robot.run(3.0, stance(kStanceLie));
+  robot.run(3.0, stance({ModeKind::kLie}));
   robot.run(0.1, {.twist = {}, .posture = {.roll = 0.1}});
   EXPECT_NE(robot.command().reasons & kReasonNotStanding, 0u);
   EXPECT_EQ(robot.command().legged.phase, LegPhase::kLying);
@@ -413,7 +413,7 @@ QuadrupedLoop with_clearance(double clearance) {
   parameters.safety.clearance = clearance;
   QuadrupedLoop robot(legged_robot("quadbot"), parameters);
   robot.wait(0.3);
-  robot.run(2.0, stance(kStanceStand));
+  robot.run(2.0, stance({ModeKind::kStand}));
   robot.run(0.5, {});
   return robot;
 }
@@ -425,11 +425,11 @@ TEST(QuadbotClearance, KeepsBodyAndFeetWhereTheyAreAndLetsItLieDown) {
   const Vector3 stood = robot.truth().pose_world.position;
   robot.run(1.0, {.twist = {}, .posture = {.height = -0.03, .roll = 0.1, .x = 0.02}});
   EXPECT_NE(robot.command().reasons & kReasonPermitSlow, 0u);
-  robot.run(1.0, stance(kStanceLift));
+  robot.run(1.0, stance({ModeKind::kLift}));
   EXPECT_GT(robot.truth().normal_force[0], 10);
   for (std::size_t axis = 0; axis < 3; ++axis) EXPECT_NEAR(robot.truth().pose_world.position[axis], stood[axis], 1e-3);
   EXPECT_LE(robot.tilt_now(), 0.01);
-  robot.run(5.0, stance(kStanceLie));
+  robot.run(5.0, stance({ModeKind::kLie}));
   EXPECT_NE(robot.command().reasons & kReasonHolding, 0u);
 }
 
@@ -450,22 +450,22 @@ TEST(QuadbotClearance, LimitsTheSpeedOfTheBody) {
 
 TEST_F(Quadbot, StandsUpOnlyAfterAResetThatFollowsZero) {
   robot.loop.e_stop();
-  robot.run(1.0, stance(kStanceStand));
+  robot.run(1.0, stance({ModeKind::kStand}));
   robot.loop.e_stop_reset();
-  robot.run(0.1, stance(kStanceStand));
+  robot.run(0.1, stance({ModeKind::kStand}));
   EXPECT_NE(robot.permit().causes, 0u);
   robot.run(2.0, {});
   robot.loop.e_stop_reset();
   robot.run(0.1, {});
   EXPECT_EQ(robot.permit().causes, 0u) << names_of(kResetRefusalNames, robot.permit().reset_refusal);
-  robot.run(2.5, stance(kStanceStand));
+  robot.run(2.5, stance({ModeKind::kStand}));
   EXPECT_GT(robot.truth().pose_world.position[2], 0.2);
 }
 
 TEST(QuadbotFeet, AreWeighedByForceSensorsWithOffsetNoiseAndThreshold) {
   QuadrupedLoop robot = loop_of("quadbot", 3, ErrorLevel::kDataSheet);
   robot.wait(0.3);
-  robot.run(2.5, stance(kStanceStand));
+  robot.run(2.5, stance({ModeKind::kStand}));
   constexpr int kCycles = 1000;
   std::array<double, kLegs> sum{}, squares{};
   for (int k = 0; k < kCycles; ++k) {
@@ -484,7 +484,7 @@ TEST(QuadbotFeet, AreWeighedByForceSensorsWithOffsetNoiseAndThreshold) {
     const double noise = robot.parameters_.plant.foot_noise / std::sqrt(0.001);
     EXPECT_NEAR(std::sqrt(squares[leg] - sum[leg] * sum[leg]), noise, 0.12 * noise) << leg;
   }
-  robot.run(2.0, stance(kStanceLift + 1));
+  robot.run(2.0, stance({ModeKind::kLift, 1}));
   EXPECT_EQ(robot.loop.row().driver->sensors.contacts[1].force, Vector3{});
   EXPECT_EQ(robot.state().contacts[1].probability, 0);
   EXPECT_EQ(robot.state().contacts[2].probability, 1);
@@ -494,11 +494,11 @@ TEST(QuadrupedReplay, IsExactOverStandingAStopAndAReset) {
   QuadrupedLoop robot = loop_of("quadbot", 1, ErrorLevel::kField);
   robot.record = true;
   robot.wait(0.3);
-  Request joints = stance(kStanceJoints);
+  Request joints = stance({ModeKind::kJoints});
   for (std::size_t i = 0; i < kLegsJoints; ++i) joints.joints[i] = robot.robot().joints[i].rest_position;
   joints.joints[1] += 0.1;
   robot.run(0.5, joints);
-  robot.run(2.5, stance(kStanceStand));
+  robot.run(2.5, stance({ModeKind::kStand}));
   robot.run(0.5, {.twist = {}, .posture = {.height = 0.02, .roll = 0.1, .x = 0.02, .y = 0.01}});
   robot.loop.e_stop();
   robot.run(2.0, {});

@@ -6,12 +6,12 @@
 namespace robot_control {
 namespace {
 
-Request walk(double linear, double lateral, double angular, std::uint64_t mode = kStanceStay) {
+Request walk(double linear, double lateral, double angular, const Mode& mode = {}) {
   return {.twist = {.linear = {linear, lateral, 0}, .angular = {0, 0, angular}}, .posture = {}, .mode = mode};
 }
 
-std::uint64_t gait(std::uint64_t index) {
-  return kStanceGait + index;
+Mode gait(std::uint64_t index) {
+  return {ModeKind::kGait, index};
 }
 
 /// Returns the mean twist of the base, by truth, while it walks so for `seconds`.
@@ -95,7 +95,7 @@ TEST(Walking, AGaitOfOnesOwnCarriesTheRobotAndIsLimitedByItsLegs) {
   QuadrupedLoop robot(model, parameters);
   robot.wait(0.3);
   const std::uint64_t amble = kGaits.size();
-  const Request slow = walk(0.3, 0, 0, kStanceGait + amble);
+  const Request slow = walk(0.3, 0, 0, gait(amble));
   robot.run(3.0, slow);
   expect_walk(robot, slow, 0.03, 0.15);
   EXPECT_EQ(robot.command().legged.gait, amble);
@@ -103,11 +103,11 @@ TEST(Walking, AGaitOfOnesOwnCarriesTheRobotAndIsLimitedByItsLegs) {
   Gaits gaits = all_gaits(parameters.leg_control.gaits);
   for (Gait& each : gaits) each = gait_of(model, stance, each);
   const double fastest = walking_speeds(model, stance, gaits)[amble][0];
-  robot.run(3.0, walk(1.5, 0, 0, kStanceGait + amble));
+  robot.run(3.0, walk(1.5, 0, 0, gait(amble)));
   EXPECT_NE(robot.command().reasons & kReasonLegSpeed, 0u);
-  EXPECT_NEAR(mean_twist(robot, 1.2, walk(1.5, 0, 0, kStanceGait + amble))[0], fastest, 0.05 * fastest);
+  EXPECT_NEAR(mean_twist(robot, 1.2, walk(1.5, 0, 0, gait(amble)))[0], fastest, 0.05 * fastest);
   EXPECT_EQ(robot.permit().causes | robot.permit().warnings, 0u) << robot.causes();
-  robot.run(0.1, walk(0.4, 0, 0, kStanceGait + amble + 1));
+  robot.run(0.1, walk(0.4, 0, 0, gait(amble + 1)));
   EXPECT_NE(robot.command().reasons & kReasonPartIgnored, 0u);
 }
 
@@ -151,9 +151,9 @@ TEST(Walking, AZeroEndsAtTheEndOfTheStepWithAllFeetDown) {
 
 TEST(Walking, LiesDownOnlyAfterTheWalkHasEnded) {
   QuadrupedLoop robot = walking();
-  robot.run(0.1, stance(kStanceLie));
+  robot.run(0.1, stance({ModeKind::kLie}));
   EXPECT_EQ(robot.command().legged.phase, LegPhase::kWalking);
-  robot.run(5.0, stance(kStanceLie));
+  robot.run(5.0, stance({ModeKind::kLie}));
   EXPECT_EQ(robot.command().legged.phase, LegPhase::kLying);
   EXPECT_EQ(robot.permit().causes, 0u) << robot.causes();
 }
@@ -164,26 +164,26 @@ TEST(Walking, WalksWithAnotherGaitFromTheEndOfTheCycleOn) {
   double phase = robot.command().legged.gait_phase;
   while (robot.command().legged.gait != crawl) {
     phase = robot.command().legged.gait_phase;
-    robot.run(0.001, walk(0.2, 0, 0, kStanceGait + crawl));
+    robot.run(0.001, walk(0.2, 0, 0, gait(crawl)));
   }
   EXPECT_GT(phase, 0.99);
-  robot.run(2.0, walk(0.2, 0, 0, kStanceGait + crawl));
+  robot.run(2.0, walk(0.2, 0, 0, gait(crawl)));
   EXPECT_EQ(robot.permit().causes, 0u) << robot.causes();
 }
 
 TEST(Walking, ChoosesTheGaitByTheSpeedWithAHysteresisUnlessOneIsRequested) {
   QuadrupedLoop robot = loop_of("quadbot");
   robot.wait(0.3);
-  const auto gait_at = [&](double speed, std::uint64_t mode) {
+  const auto gait_at = [&](double speed, const Mode& mode) {
     robot.run(2.0, walk(speed, 0, 0, mode));
     return robot.command().legged.gait;
   };
   robot.run(2.5, walk(0.2, 0, 0));
-  EXPECT_EQ(gait_at(0.2, kStanceStay), gait_named("walking_trot"));
-  EXPECT_EQ(gait_at(0.35, kStanceStay), gait_named("walking_trot"));
-  EXPECT_EQ(gait_at(0.45, kStanceStay), gait_named("trot"));
-  EXPECT_EQ(gait_at(0.35, kStanceStay), gait_named("trot"));
-  EXPECT_EQ(gait_at(0.25, kStanceStay), gait_named("walking_trot"));
+  EXPECT_EQ(gait_at(0.2, {}), gait_named("walking_trot"));
+  EXPECT_EQ(gait_at(0.35, {}), gait_named("walking_trot"));
+  EXPECT_EQ(gait_at(0.45, {}), gait_named("trot"));
+  EXPECT_EQ(gait_at(0.35, {}), gait_named("trot"));
+  EXPECT_EQ(gait_at(0.25, {}), gait_named("walking_trot"));
   EXPECT_EQ(gait_at(0.25, gait(gait_named("trot"))), gait_named("trot"));
   EXPECT_EQ(robot.permit().causes, 0u) << robot.causes();
 }
@@ -192,7 +192,7 @@ TEST(Walking, EndsWithFeetOnTheirPlacesSoThatTheRobotCanLieDown) {
   QuadrupedLoop robot = loop_of("quadbot");
   robot.wait(0.3);
   robot.run(6.0, walk(0.2, 0, 0, gait(gait_named("crawl"))));
-  robot.run(5.0, {.mode = kStanceLie});
+  robot.run(5.0, {.mode = {ModeKind::kLie}});
   EXPECT_EQ(robot.command().legged.phase, LegPhase::kLying);
   EXPECT_EQ(robot.permit().causes, 0u) << robot.causes();
 }

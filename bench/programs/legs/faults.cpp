@@ -41,7 +41,7 @@ bool names(const Permit& permit, const Fault& fault) {
 
 void faults(const LegModel& model, std::uint64_t seed, WorstValues& worst) {
   const double period = kGaits[gait_named("trot")].scaled(model.leg_length()).period;
-  Request trot = stance(kStanceGait + gait_named("trot"));
+  Request trot = stance({ModeKind::kGait, gait_named("trot")});
   trot.twist.linear[0] = 0.5;
   for (const Fault& fault : faults_of(model)) {
     QuadrupedLoop robot(model, walking_parameters(seed));

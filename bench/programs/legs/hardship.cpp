@@ -10,8 +10,9 @@ namespace {
 constexpr double kBegin = 5, kDisturbed = 5;  // s
 
 Request trot(double speed, double lateral = 0) {
-  return {
-      .twist = {.linear = {speed, lateral, 0}, .angular = {}}, .posture = {}, .mode = kStanceGait + gait_named("trot")};
+  return {.twist = {.linear = {speed, lateral, 0}, .angular = {}},
+          .posture = {},
+          .mode = {ModeKind::kGait, gait_named("trot")}};
 }
 
 double stopped(const QuadrupedLoop& robot) {
@@ -89,7 +90,7 @@ void switches(const LegModel& model, std::uint64_t seed, WorstValues& worst) {
   };
   for (int i = 0; i < kSwitches; ++i) {
     Request request = trot(between(0.1, 0.6));
-    request.mode = kStanceGait + 1 + static_cast<std::uint64_t>(between(0, kGaits.size() - 1.0));
+    request.mode = {ModeKind::kGait, 1 + static_cast<std::uint64_t>(between(0, kGaits.size() - 1.0))};
     robot.run(between(0.3, 2), request);
   }
   worst.add("tilt while gaits change", robot.tilt, "rad");
@@ -146,7 +147,7 @@ void push_limits(const LegModel& model, std::uint64_t seed, WorstValues& worst) 
                            Walk{gait_named("walking_trot"), 0.3}, Walk{gait_named("crawl"), 0.15}}) {
     const Gait gait = kGaits[each.gait].scaled(model.leg_length());
     Request walk = trot(each.speed);
-    walk.mode = kStanceGait + each.gait;
+    walk.mode = {ModeKind::kGait, each.gait};
     for (int i = 0; i < kDirections; ++i) {
       Parameters parameters = walking_parameters(seed);
       parameters.plant.push_start = kBegin + gait.period * static_cast<double>(seed % kPhases) / kPhases;

@@ -48,7 +48,7 @@ void replay(const LegModel& model, std::uint64_t seed, bool walks, WorstValues& 
   const char* const nodes[] = {"estimator", "controller", "monitor"};
   const char* const kinds[] = {"off", "stuck", "delayed", "garbage", "wrong"};
   robot.wait(0.3);
-  robot.run(2.5, stance(kStanceStand));
+  robot.run(2.5, stance({ModeKind::kStand}));
   for (double begun = robot.loop.time(); robot.loop.time() - begun < kSeconds;) {
     switch (draw.below(walks ? 7 : 5)) {
       case 0: {
@@ -65,16 +65,16 @@ void replay(const LegModel& model, std::uint64_t seed, bool walks, WorstValues& 
         robot.run(1.5, {});
         robot.loop.e_stop_reset();
         robot.run(0.1, {});
-        robot.run(2.0, stance(kStanceStand));
+        robot.run(2.0, stance({ModeKind::kStand}));
         break;
       case 3:
         robot.run(0.5, {.twist = {}, .posture = draw.pose(length)});
         break;
       case 4:
-        robot.run(0.7, stance(kStanceLift + draw.below(kLegs)));
+        robot.run(0.7, stance({ModeKind::kLift, draw.below(kLegs)}));
         break;
       default: {
-        Request walk = stance(kStanceGait + 1 + draw.below(kGaits.size() - 1));
+        Request walk = stance({ModeKind::kGait, 1 + draw.below(kGaits.size() - 1)});
         walk.twist.linear[0] = draw.within(-0.5, 0.5);
         walk.twist.angular[2] = draw.within(-0.5, 0.5);
         robot.run(draw.within(0.2, 1.0), walk);
@@ -104,10 +104,10 @@ void hour(const LegModel& model, std::uint64_t seed, WorstValues& worst) {
   };
   run(0.3, {});
   while (robot.loop.time() < kHour && robot.permit().causes == 0) {
-    run(2.5, stance(kStanceStand));
+    run(2.5, stance({ModeKind::kStand}));
     for (int act = 0; act < 10; ++act) {
       if (draw.below(3) == 0) {
-        Request foot = stance(kStanceLift + draw.below(kLegs));
+        Request foot = stance({ModeKind::kLift, draw.below(kLegs)});
         foot.posture = {.height = lift, .x = draw.within(-0.1, 0.1) * length, .y = draw.within(-0.1, 0.1) * length};
         run(draw.within(2, 5), foot);
         run(2.5, {});
@@ -116,7 +116,7 @@ void hour(const LegModel& model, std::uint64_t seed, WorstValues& worst) {
       }
     }
     run(2, {});
-    run(5, stance(kStanceLie));
+    run(5, stance({ModeKind::kLie}));
   }
   worst.add("stops in an hour", robot.permit().causes == 0 ? 0 : 1, "runs");
   worst.add("time with a warning in an hour", warned, "s");
@@ -130,14 +130,14 @@ void walking_hours(const LegModel& model, std::uint64_t seed, WorstValues& worst
   QuadrupedLoop robot(model, walking_parameters(seed));
   Draw draw(seed);
   double warned = 0, walked = 0;
-  robot.run(5, stance(kStanceStand));
+  robot.run(5, stance({ModeKind::kStand}));
   Place before = place_of(robot.truth().pose_world), truth = before, estimate = place_of(robot.state().base.pose_odom);
   double next = robot.loop.time() + kStretch;
   while (robot.loop.time() < kTime && robot.permit().causes == 0) {
     const std::uint64_t gait = draw.below(kGaits.size());
     const double duty = kGaits[gait == kStandGait ? kFastGait : gait].duty;
     const double fastest = duty >= kOfCrawl ? 0.2 : duty > 0.5 ? 0.5 : 0.6;  // m/s
-    Request walk = stance(gait == kStandGait ? std::uint64_t{kStanceStay} : kStanceGait + gait);
+    Request walk = stance(gait == kStandGait ? Mode{} : Mode{ModeKind::kGait, gait});
     walk.twist.linear[0] = draw.within(-0.5, 1) * fastest;
     walk.twist.linear[1] = draw.within(-0.1, 0.1);
     walk.twist.angular[2] = draw.within(-0.4, 0.4);

@@ -49,7 +49,7 @@ Frames record(const LegModel& model, Requests requests, std::size_t begins) {
     frames.permits.push_back(robot.permit());
   };
   for (int k = 0; k < 300; ++k) step({});
-  for (int k = 0; k < 2500; ++k) step(stance(kStanceStand));
+  for (int k = 0; k < 2500; ++k) step(stance({ModeKind::kStand}));
   for (std::size_t k = 0; k < begins; ++k) step(requests(model, k));
   frames.begin = frames.sensors.size();
   for (std::size_t k = 0; k <= kCycles; ++k) step(requests(model, begins + k));

@@ -91,7 +91,7 @@ inline Parameters walking_parameters(std::uint64_t seed) {
 /// Stands up, and stands for half a second.
 inline void stand_up(QuadrupedLoop& robot) {
   robot.wait(0.3);
-  robot.run(2.5, stance(kStanceStand));
+  robot.run(2.5, stance({ModeKind::kStand}));
   robot.run(0.5, {});
   robot.clear();
 }

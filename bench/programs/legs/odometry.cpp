@@ -39,7 +39,7 @@ std::vector<Course> courses() {
            }}};
 }
 
-Request walk(const std::array<double, 2>& speed, std::uint64_t mode = kStanceStay) {
+Request walk(const std::array<double, 2>& speed, const Mode& mode = {}) {
   Request request = stance(mode);
   request.twist.linear[0] = speed[0];
   request.twist.angular[2] = speed[1];
@@ -141,7 +141,7 @@ void contact(const LegModel& model, std::uint64_t seed, WorstValues& worst) {
     std::array<int, kLegs> air{}, since{};
     std::array<bool, kLegs> waits{};
     double touchdowns = 0, found = 0, swing = 0, wrong = 0;
-    const Request request = walk({chosen.speed, 0}, kStanceGait + chosen.gait);
+    const Request request = walk({chosen.speed, 0}, {ModeKind::kGait, chosen.gait});
     for (int k = 0; k < kSeconds * 1000; ++k) {
       if (k % 20 == 0) robot.loop.request(request);
       robot.step();

@@ -31,7 +31,7 @@ void postures(const LegModel& model, std::uint64_t seed, WorstValues& worst) {
   QuadrupedLoop robot(model, seed, ErrorLevel::kField);
   robot.wait(0.3);
   robot.clear();
-  robot.run(2.0, stance(kStanceStand));
+  robot.run(2.0, stance({ModeKind::kStand}));
   worst.add("effort of the limit", robot.effort, "");
   worst.add("height after 2 s", std::abs(height(robot) - (nominal_height(model) - model.belly)), "m");
   worst.add("tilt after 2 s", robot.tilt_now(), "rad");
@@ -40,7 +40,7 @@ void postures(const LegModel& model, std::uint64_t seed, WorstValues& worst) {
   robot.run(6.0, {});
   const Vector3& after = robot.truth().pose_world.position;
   worst.add("creep", 10 * std::hypot(after[0] - before[0], after[1] - before[1]), "m/min");
-  robot.run(4.0, stance(kStanceLie));
+  robot.run(4.0, stance({ModeKind::kLie}));
   worst.add("not lying at the end", (robot.command().reasons & kReasonHolding) != 0 ? 0 : 1, "runs");
   worst.add("stops", robot.permit().causes == 0 ? 0 : 1, "runs");
 }
@@ -74,7 +74,7 @@ void circle(const LegModel& model, std::uint64_t seed, WorstValues& worst) {
   QuadrupedLoop robot(model, seed);
   stand_up(robot);
   for (std::size_t leg = 0; leg < kLegs; ++leg) {
-    Request up = stance(kStanceLift + leg);
+    Request up = stance({ModeKind::kLift, leg});
     up.posture.height = leg_tuning(model).lift;
     robot.clear();
     robot.run(2.0, up);

@@ -46,7 +46,7 @@ void stop(const LegModel& model, std::uint64_t seed, WorstValues& worst) {
     if (situation == "swaying") {
       for (int k = 0; k < 1250; ++k) sway(robot, 0.1, k);
     } else if (situation == "one foot up") {
-      Request up = stance(kStanceLift + seed % kLegs);
+      Request up = stance({ModeKind::kLift, seed % kLegs});
       up.posture.height = leg_tuning(model).lift;
       robot.run(2.0, up);
     }

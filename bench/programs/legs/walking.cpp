@@ -17,7 +17,7 @@ struct Walk {
 Request request_of(const Walk& walk) {
   return {.twist = {.linear = {walk.twist[0], walk.twist[1], 0}, .angular = {0, 0, walk.twist[2]}},
           .posture = {},
-          .mode = kStanceGait + walk.gait};
+          .mode = {ModeKind::kGait, walk.gait}};
 }
 
 /// Stands up, walks, and measures the mean of the true twist, angles, joints and clamps.

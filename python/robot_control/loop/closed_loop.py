@@ -28,8 +28,8 @@ Twist = tuple[float, float] | tuple[float, float, float]
 Command = Callable[[float], Twist] | Twist | None
 
 FEET = ("front_left", "front_right", "rear_left", "rear_right")
-_LIE, _LIFT, _MOVE_JOINTS, _GAIT = 1, 3, 7, 8
-"""StanceMode of src/signals/legged/legged_command.h; standing up follows lying down."""
+_STAY, _LIE, _STAND, _LIFT, _MOVE_JOINTS, _GAIT = range(6)
+"""ModeKind of src/signals/velocity_command.h"""
 _POSE = (0.0,) * 6
 _JOINTS = (0.0,) * 12
 
@@ -158,7 +158,7 @@ class ClosedLoop:
             ValueError: another word, with the list of those there are.
         """
         index = _index(gait, self._loop.gaits, "gait")
-        self._loop.choose_mode(_GAIT + index if index else 0)
+        self._loop.choose_mode((_GAIT if index else _STAY, index))
 
     def set_posture(self, posture: str) -> None:
         """Acts as a call of `set_posture` of a robot on legs.
@@ -169,7 +169,8 @@ class ClosedLoop:
         Raises:
             ValueError: another word.
         """
-        self._loop.request(_POSE, _index(posture, ("lying", "standing"), "posture") + _LIE, _JOINTS)
+        kind = (_LIE, _STAND)[_index(posture, ("lying", "standing"), "posture")]
+        self._loop.request(_POSE, (kind, 0), _JOINTS)
 
     def body_pose(
         self,
@@ -182,7 +183,7 @@ class ClosedLoop:
         yaw: float = 0.0,
     ) -> None:
         """Acts as a message on body_pose of a robot on legs: m and rad from the nominal pose. It times out like one."""
-        self._loop.request((x, y, height, roll, pitch, yaw), 0, _JOINTS)
+        self._loop.request((x, y, height, roll, pitch, yaw), (_STAY, 0), _JOINTS)
 
     def foot_target(self, foot: str, *, x: float = 0.0, y: float = 0.0, z: float = 0.0) -> None:
         """Acts as a message on foot_target of a robot on legs.
@@ -196,7 +197,7 @@ class ClosedLoop:
         Raises:
             ValueError: another foot.
         """
-        self._loop.request((x, y, z, 0.0, 0.0, 0.0), _index(foot, FEET, "foot") + _LIFT, _JOINTS)
+        self._loop.request((x, y, z, 0.0, 0.0, 0.0), (_LIFT, _index(foot, FEET, "foot")), _JOINTS)
 
     def joint_targets(self, positions: ArrayLike) -> None:
         """Moves the joints of a robot on legs that lies, as `joint_trajectory` does.
@@ -213,7 +214,7 @@ class ClosedLoop:
         angles = np.asarray(positions, dtype=float)
         if angles.shape != (len(_JOINTS),):
             raise ValueError(f"positions must have the shape ({len(_JOINTS)},), not {angles.shape}")
-        self._loop.request(_POSE, _MOVE_JOINTS, angles.tolist())
+        self._loop.request(_POSE, (_MOVE_JOINTS, 0), angles.tolist())
 
     def e_stop(self) -> None:
         """Acts as a call of `e_stop_trigger`: the robot brakes, and the stop is latched."""

@@ -30,6 +30,11 @@ void approach(double& value, double target, double step) noexcept {
   value += std::clamp(target - value, -step, step);
 }
 
+/// Returns the leg whose foot is requested in the air, or kLegs.
+std::uint64_t lifted_by(const Mode& mode) noexcept {
+  return mode.kind == ModeKind::kLift ? std::min<std::uint64_t>(mode.index, kLegs) : kLegs;
+}
+
 }  // namespace
 
 LegController::LegController(const LegModel& robot, const LegControllerParameters& parameters, double period)
@@ -86,16 +91,16 @@ void LegController::step(const ControlInput& input, CommandFrame& out) noexcept 
   Request request = out.requested;
   if (input.permit->action == PermitAction::kRamp) {
     out.reasons |= kReasonPermitRamp;
-    request = {.twist = {}, .posture = {}, .mode = kStanceLie};
+    request = {.twist = {}, .posture = {}, .mode = {ModeKind::kLie}};
   }
   if (state_.phase != LegPhase::kWalking) state_.gap = 0;
   state_.pace = std::min(1.0, input.permit->speed_limit / body_motion_[kX].speed);
-  const bool of_joints = request.mode == kStanceJoints;
-  const bool lifts = request.mode >= kStanceLift && request.mode < kStanceLift + kLegs;
+  const bool of_joints = request.mode.kind == ModeKind::kJoints;
+  const bool lifts = lifted_by(request.mode) != kLegs;
   const bool of_standing = !of_joints && ((parts_of(request) & kPose) != 0 || lifts);
   const bool stands = state_.phase == LegPhase::kStanding || (state_.phase == LegPhase::kWalking && !lifts);
   if (of_standing && !stands && !walks(request)) out.reasons |= kReasonNotStanding;
-  if (request.mode >= kStanceGait + fastest_.size() || request.mode == kStanceGait) out.reasons |= kReasonPartIgnored;
+  if (!known(request.mode)) out.reasons |= kReasonPartIgnored;
   const bool lies = state_.phase == LegPhase::kLying || state_.phase == LegPhase::kJoints;
   if (of_joints && !lies) out.reasons |= kReasonNotLying;
   const std::array<double, kLegsJoints> before = state_.angles;
@@ -116,6 +121,12 @@ void LegController::step(const ControlInput& input, CommandFrame& out) noexcept 
   }
 }
 
+/// Returns true if the robot has the foot or the gait that the mode names.
+bool LegController::known(const Mode& mode) const noexcept {
+  if (mode.kind == ModeKind::kGait) return mode.index != kStandGait && mode.index < fastest_.size();
+  return mode.kind < ModeKind::kGait && (mode.kind != ModeKind::kLift || mode.index < kLegs);
+}
+
 /// All joints brake in this cycle.
 void LegController::pause() noexcept {
   if (++state_.gap > kMaxGap) state_ = State(state_.watch);
@@ -124,11 +135,12 @@ void LegController::pause() noexcept {
 /// Returns true if the joints begin to move in this cycle.
 bool LegController::advance(const Request& request, const ControlInput& input, std::uint64_t& reasons) noexcept {
   state_.elapsed += period_;
-  const bool down = request.mode == kStanceLie;
-  const bool up = request.mode == kStanceStand || walks(request);
+  const ModeKind wanted = request.mode.kind;
+  const bool down = wanted == ModeKind::kLie;
+  const bool up = wanted == ModeKind::kStand || walks(request);
   switch (state_.phase) {
     case LegPhase::kLying:
-      if (up ? state_.steep != 0 && !stands_up_here(input, reasons) : request.mode != kStanceJoints) return false;
+      if (up ? state_.steep != 0 && !stands_up_here(input, reasons) : wanted != ModeKind::kJoints) return false;
       for (std::size_t i = 0; i < kLegsJoints; ++i)
         state_.from[i] = state_.angles[i] = input.sensors->joints[i].position;
       state_.joints.begin(state_.from);
@@ -194,7 +206,7 @@ void LegController::enter(LegPhase phase, double elapsed) noexcept {
 }
 
 void LegController::move_joints(const Request& request, std::uint64_t& reasons) noexcept {
-  if (request.mode == kStanceJoints) {
+  if (request.mode.kind == ModeKind::kJoints) {
     std::array<double, kLegsJoints> target{};
     for (std::size_t i = 0; i < kLegsJoints; ++i) {
       target[i] = std::clamp(request.joints[i], joint_ranges_[i].lower, joint_ranges_[i].upper);
@@ -260,9 +272,8 @@ void LegController::rise(double elapsed, std::uint64_t& reasons) noexcept {
 }
 
 void LegController::stand(const Request& request, std::uint64_t& reasons) noexcept {
-  const bool lifts = request.mode >= kStanceLift && request.mode < kStanceLift + kLegs;
-  const std::uint64_t wanted = lifts ? request.mode - kStanceLift : kLegs;
-  if (state_.lifted == kLegs && lifts) {
+  const std::uint64_t wanted = lifted_by(request.mode);
+  if (state_.lifted == kLegs && wanted != kLegs) {
     state_.lifted = wanted;
     state_.foot = {};
     state_.foot_target = {};

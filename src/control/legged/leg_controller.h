@@ -18,8 +18,7 @@
 /// Without a permit, an angle of each joint or, while it walks, a state of this cycle, every joint brakes. The robot
 /// goes on where it was if that ends within kMaxGap; else, and after a permit to brake, it lies.
 ///
-/// Request::mode is a StanceMode. A mode that the present posture does not allow has no effect. The posture of the
-/// request is
+/// A Request::mode that the present posture does not allow has no effect. The posture of the request is
 ///
 ///   while it stands           the pose of the body from the nominal one. Where no request is in force any more
 ///                             (kNoWish), the body stops where it is
@@ -158,6 +157,7 @@ class LegController {
   static constexpr double kArrived = 0.0005;                                             ///< m and rad
 
   bool advance(const Request& request, const ControlInput& input, std::uint64_t& reasons) noexcept;
+  bool known(const Mode& mode) const noexcept;
   bool walks(const Request& request) const noexcept;
   void begin_walk(const ControlInput& input) noexcept;
   void walk(const ControlInput& input, const Request& request, CommandFrame& out) noexcept;

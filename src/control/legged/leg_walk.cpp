@@ -54,8 +54,8 @@ bool usable(const ControlInput& input) noexcept {
 
 /// Returns true if this request asks the robot to walk.
 bool LegController::walks(const Request& request) const noexcept {
-  if (request.mode > kStanceGait && request.mode < kStanceGait + fastest_.size()) return true;
-  return request.mode == kStanceStay && (parts_of(request) & kWalk) != 0;
+  if (request.mode.kind == ModeKind::kGait) return known(request.mode);
+  return request.mode.kind == ModeKind::kStay && (parts_of(request) & kWalk) != 0;
 }
 
 /// Begins to walk once the body is within its ranges, and the legs carry it on the spot. Until then it moves towards
@@ -88,8 +88,8 @@ void LegController::walk(const ControlInput& input, const Request& request, Comm
   }
   state_.gap = 0;
   const bool wanted = walks(request);
-  if (request.mode == kStanceLie) state_.lies_next = 1;
-  if (wanted || request.mode == kStanceStand) state_.lies_next = 0;
+  if (request.mode.kind == ModeKind::kLie) state_.lies_next = 1;
+  if (wanted || request.mode.kind == ModeKind::kStand) state_.lies_next = 0;
   WalkingTwist target{};
   if (wanted) target = {request.twist.linear[0], request.twist.linear[1], request.twist.angular[2]};
   const double speed = std::hypot(target[0], target[1]);
@@ -144,8 +144,8 @@ bool LegController::placed(const ControlInput& input) const noexcept {
 /// Returns the gait that is requested. Otherwise the slow gait, or the fast one from kFastFrom on until below
 /// kFastUntil.
 std::uint64_t LegController::choose_gait(const Request& request, const WalkingTwist& target) noexcept {
-  if (request.mode > kStanceGait) {
-    state_.gait = std::min<std::uint64_t>(request.mode - kStanceGait, fastest_.size() - 1);
+  if (request.mode.kind == ModeKind::kGait && known(request.mode)) {
+    state_.gait = request.mode.index;
   } else if (!rests(target)) {
     const auto& now = state_.twist.axes;
     const double fastest =

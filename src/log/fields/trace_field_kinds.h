@@ -231,7 +231,8 @@ void add_request(TraceFields& to, const std::string& name, Get) {
       to, name + "_joints", "rad or m; empty: all zero",
       [](const Part* part, std::size_t) { return part != nullptr ? logged_joints(Get{}(*part)) : 0; },
       [](auto& part, std::size_t i) -> auto& { return Get{}(part).joints[i]; });
-  field<Part, std::uint64_t>(to, name + "_mode", "0: the default of the machine", OF(mode));
+  field<Part, std::uint64_t>(to, name + "_mode", "ModeKind", OF(mode.kind));
+  field<Part, std::uint64_t>(to, name + "_mode_index", "of foot or gait", OF(mode.index));
 }
 
 /// The field holds the yaw of an orientation, computed from the recorded float32. A reader ignores it. The column is

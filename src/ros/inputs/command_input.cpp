@@ -147,7 +147,7 @@ bool CommandInput::in_time(std::int64_t since_ns, const ArrivalTime& time) const
   return timeout_ns_ <= 0 || time.loop_ns - since_ns <= timeout_ns_;
 }
 
-void CommandInput::withdraw(std::uint64_t mode, std::int64_t loop_ns) {
+void CommandInput::withdraw(const Mode& mode, std::int64_t loop_ns) {
   if (value_.content.mode == mode) end_command(loop_ns);
 }
 
@@ -161,7 +161,7 @@ bool CommandInput::update(std::int64_t loop_ns) {
 
 bool CommandInput::follow(const MotionPermission& permission, std::int64_t loop_ns) {
   if (!requests_.follow(permission, loop_ns)) return false;
-  mode_ = 0;
+  mode_ = {};
   if (parts_of(value_.content) != 0) end_command(loop_ns);
   return true;
 }

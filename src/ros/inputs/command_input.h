@@ -53,7 +53,7 @@ struct ArrivedCommand {
   Twist twist;
   std::int64_t stamp_ns = 0;                    ///< 0 if the message has none
   Posture posture{};                            ///< of robots on legs
-  std::uint64_t mode = 0;                       ///< likewise
+  Mode mode{};                                  ///< likewise
   std::array<double, kRequestJoints> joints{};  ///< likewise
   StatedPart part = StatedPart::kAll;
 };
@@ -81,12 +81,12 @@ class CommandInput final : public CommandIntake {
   /// no effect without that permission.
   void receive_once(const Request& request, const ArrivalTime& time);
 
-  /// Sets the mode of later messages that state a twist, until the permission to move ends; 0: none.
-  void choose_mode(std::uint64_t mode) { mode_ = mode; }
-  std::uint64_t chosen_mode() const { return mode_; }
+  /// Sets the mode of later messages that state a twist, until the permission to move ends.
+  void choose_mode(const Mode& mode) { mode_ = mode; }
+  const Mode& chosen_mode() const { return mode_; }
 
   /// Ends the request in force, if it has this mode.
-  void withdraw(std::uint64_t mode, std::int64_t loop_ns);
+  void withdraw(const Mode& mode, std::int64_t loop_ns);
 
   void start(const EarlierController& earlier) override {
     unread_ns_ = unread_ns(earlier.period_ns);
@@ -129,7 +129,7 @@ class CommandInput final : public CommandIntake {
   Publisher sender_;                     ///< of the command in force, without its connection; empty: it has none
   std::int64_t twist_ns_ = 0;            ///< when its twist was stamped, or arrived
   std::optional<std::int64_t> pose_ns_;  ///< the same of its posture, if that is a pose other than zero
-  std::uint64_t mode_ = 0;               ///< of later twists
+  Mode mode_;                            ///< of later twists
   std::int64_t unread_ns_ = unread_ns(0);
   std::map<std::string, StampVerdict> reported_stamps_;  ///< last reported verdict of each sender with wrong stamps
   std::map<std::string, std::int64_t>

@@ -35,8 +35,8 @@ double seconds_of(std::int64_t ns) {
 }
 
 /// Returns whether the robot already is in this posture, or on its way. It may still refuse while it gathers its legs.
-bool begun(StanceMode mode, LegPhase phase) {
-  if (mode == kStanceLie) return phase == LegPhase::kLying || phase == LegPhase::kLowering;
+bool begun(const Mode& mode, LegPhase phase) {
+  if (mode.kind == ModeKind::kLie) return phase == LegPhase::kLying || phase == LegPhase::kLowering;
   return phase == LegPhase::kRising || phase == LegPhase::kStanding || phase == LegPhase::kWalking;
 }
 
@@ -191,7 +191,7 @@ class LegControllerNode final : public CommandedNode {
     input_.receive({.sender = sender,
                     .twist = {},
                     .stamp_ns = stamp_ns,
-                    .mode = kStanceJoints,
+                    .mode = {ModeKind::kJoints},
                     .joints = execution.path.at(execution.time + JointMotion::kHorizon)},
                    arrival_of(sender.name));
     store();
@@ -241,7 +241,7 @@ class LegControllerNode final : public CommandedNode {
 
   bool set_gait(msg::SetGaitRequest& request, msg::SetGaitResponse& response) {
     const std::lock_guard lock(input_mutex_);
-    const std::optional<std::uint64_t> mode = mode_of_gait(request.gait, gaits_);
+    const std::optional<Mode> mode = mode_of_gait(request.gait, gaits_);
     const LegPhase phase = command_.legged.phase;
     std::string problem = refusal_of_permission();
     if (!mode) {
@@ -272,8 +272,8 @@ class LegControllerNode final : public CommandedNode {
 
   /// Returns "" once the robot is in the posture or on its way to it, or why it is not.
   std::string reach(const std::string& posture) {
-    const StanceMode mode = mode_of(posture);
-    if (mode == kStanceStay) return "there is no posture '" + posture + "'; name standing or lying";
+    const Mode mode = mode_of(posture);
+    if (mode == Mode{}) return "there is no posture '" + posture + "'; name standing or lying";
     for (const std::string& name : missing()) return "the loop does not run: waiting for " + name;
     SensorFrame sensors;
     if (process().sensors().newest(sensors) == Lookup::kFrame && sensors.driver_state == DriverState::kPaused)
@@ -285,7 +285,7 @@ class LegControllerNode final : public CommandedNode {
       if (process().output().newest(command) == Lookup::kFrame && process().is_current(command.head) &&
           (command.reasons & (kReasonNoPermit | kReasonPermitBrake)) == 0) {
         if (begun(mode, command.legged.phase)) return "";
-        if (mode == kStanceStand && command.legged.phase == LegPhase::kGathering) waited_ns = 0;
+        if (mode.kind == ModeKind::kStand && command.legged.phase == LegPhase::kGathering) waited_ns = 0;
       }
       {
         const std::lock_guard lock(input_mutex_);

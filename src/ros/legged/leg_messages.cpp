@@ -29,7 +29,7 @@ std::optional<Request> request_of(const msg::FootTarget& message) {
   for (std::size_t leg = 0; leg < kLegs; ++leg) {
     if (message.foot != name_of(static_cast<LegPlace>(leg))) continue;
     return Request{
-        .twist = {}, .posture = {.height = message.z, .x = message.x, .y = message.y}, .mode = kStanceLift + leg};
+        .twist = {}, .posture = {.height = message.z, .x = message.x, .y = message.y}, .mode = {ModeKind::kLift, leg}};
   }
   return std::nullopt;
 }
@@ -45,20 +45,20 @@ std::string gait_names(const Gaits& gaits) {
   return joined(gait_words(gaits));
 }
 
-StanceMode mode_of(const std::string& posture) {
-  if (posture == name_of(LegPhase::kStanding)) return kStanceStand;
-  return posture == name_of(LegPhase::kLying) ? kStanceLie : kStanceStay;
+Mode mode_of(const std::string& posture) {
+  if (posture == name_of(LegPhase::kStanding)) return {ModeKind::kStand};
+  return {posture == name_of(LegPhase::kLying) ? ModeKind::kLie : ModeKind::kStay};
 }
 
-std::optional<std::uint64_t> mode_of_gait(const std::string& gait, const Gaits& gaits) {
-  if (gait == "auto") return kStanceStay;
+std::optional<Mode> mode_of_gait(const std::string& gait, const Gaits& gaits) {
+  if (gait == "auto") return Mode{};
   for (std::size_t i = 1; i < gaits.size(); ++i)
-    if (gait == gaits[i].name.data()) return kStanceGait + i;
+    if (gait == gaits[i].name.data()) return Mode{ModeKind::kGait, i};
   return std::nullopt;
 }
 
-std::string gait_of_mode(std::uint64_t mode, const Gaits& gaits) {
-  return mode > kStanceGait && mode < kStanceGait + gaits.size() ? gaits[mode - kStanceGait].name.data() : "auto";
+std::string gait_of_mode(const Mode& mode, const Gaits& gaits) {
+  return mode.kind == ModeKind::kGait ? gaits.at(mode.index).name.data() : "auto";
 }
 
 msg::LegState leg_state(const LegReport& report, const LegModel& robot, ros::Time stamp) {

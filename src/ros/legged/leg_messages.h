@@ -63,14 +63,14 @@ std::string foot_names();
 /// Returns "auto" and the names of these gaits, which set_gait accepts.
 std::string gait_names(const Gaits& gaits);
 
-/// Returns the mode of a posture of set_posture; kStanceStay for an unknown one.
-StanceMode mode_of(const std::string& posture);
+/// Returns the mode of a posture of set_posture, the default one for an unknown posture.
+Mode mode_of(const std::string& posture);
 
 /// Returns the gait of a mode that mode_of_gait returns, as set_gait takes it.
-std::string gait_of_mode(std::uint64_t mode, const Gaits& gaits);
+std::string gait_of_mode(const Mode& mode, const Gaits& gaits);
 
-/// Returns the mode that walks with the gait of set_gait: kStanceStay for "auto". Returns none for an unknown one.
-std::optional<std::uint64_t> mode_of_gait(const std::string& gait, const Gaits& gaits);
+/// Returns the mode that walks with the gait of set_gait, the default one for "auto". Returns none for an unknown gait.
+std::optional<Mode> mode_of_gait(const std::string& gait, const Gaits& gaits);
 
 /// The inputs of a LegState. `plan` is the command two cycles before `command`; an ideal joint now has its angles.
 struct LegReport {

@@ -6,16 +6,6 @@
 
 namespace robot_control {
 
-/// The modes of Request::mode.
-enum StanceMode : std::uint64_t {
-  kStanceStay = 0,  ///< Stand with all feet, or lie, as before.
-  kStanceLie = 1,
-  kStanceStand = 2,
-  kStanceLift = 3,    ///< kStanceLift + i lifts the foot of LegPlace i.
-  kStanceJoints = 7,  ///< Move the joints to Request::joints while the robot lies.
-  kStanceGait = 8,    ///< kStanceGait + i walks with gait i. In mode 0 the speed chooses it.
-};
-
 enum class LegPhase : std::uint64_t {
   kLying = 0,
   kGathering = 1,

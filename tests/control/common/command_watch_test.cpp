@@ -56,7 +56,7 @@ TEST_F(CommandWatchTest, NamesThePartsThatTheMachineCannotExecuteAndPassesTheOth
   request.content.twist.linear[1] = 0.3;
   request.content.twist.angular[0] = -0.1;
   request.content.posture.height = 0.05;
-  request.content.mode = 2;
+  request.content.mode = {ModeKind::kStand};
   request.content.joints[11] = 0.1;
   ++request.count;
   const Request& passed = watch.step(request, 1);

@@ -14,7 +14,7 @@
 
 namespace robot_control {
 
-inline Request stance_of(std::uint64_t mode) {
+inline Request stance_of(const Mode& mode) {
   Request request;
   request.mode = mode;
   return request;
@@ -157,7 +157,7 @@ struct IdealLegs {
 /// Returns the robot after it stood up and came to rest.
 inline IdealLegs standing(const LegModel& robot = lopsided(), double cycle = kCycle) {
   IdealLegs legs(robot, cycle);
-  legs.run(3.0, stance_of(kStanceStand));
+  legs.run(3.0, stance_of({ModeKind::kStand}));
   legs.run(0.5, {});
   return legs;
 }

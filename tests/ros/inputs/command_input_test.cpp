@@ -503,18 +503,18 @@ TEST_F(RevokedSenderTest, TheSameCommandIsReportedEveryTenSecondsAtMost) {
 }
 
 TEST_F(RevokedSenderTest, ARequestOfNoSenderCanBeWithdrawnAndIsNoZeroOfASender) {
-  input_.receive_once({.twist = {}, .posture = {}, .mode = 2}, now_);
-  input_.withdraw(1, now_.loop_ns);
-  EXPECT_EQ(value().content.mode, 2u) << "another request is in force";
-  input_.withdraw(2, now_.loop_ns);
-  EXPECT_EQ(value().content.mode, 0u);
+  input_.receive_once({.twist = {}, .posture = {}, .mode = {ModeKind::kStand}}, now_);
+  input_.withdraw({ModeKind::kLie}, now_.loop_ns);
+  EXPECT_EQ(value().content.mode, Mode{ModeKind::kStand}) << "another request is in force";
+  input_.withdraw({ModeKind::kStand}, now_.loop_ns);
+  EXPECT_EQ(value().content.mode, Mode{});
   EXPECT_NE(value().contested, 0u);
 }
 
 TEST_F(CommandInputTest, ARequestOfNoSenderHasNoEffectWithoutThePermissionToMove) {
-  input_.receive_once({.twist = {}, .posture = {}, .mode = 2}, now_);
+  input_.receive_once({.twist = {}, .posture = {}, .mode = {ModeKind::kStand}}, now_);
   EXPECT_EQ(value().count, 0u);
-  EXPECT_EQ(value().content.mode, 0u);
+  EXPECT_EQ(value().content.mode, Mode{});
 }
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
@@ -571,13 +571,13 @@ TEST_F(PoseInputTest, AWalkCarriesThePoseOfItsOwnSenderAlone) {
 }
 
 TEST_F(PoseInputTest, APoseDuringTheWalkOfItsSenderKeepsTheTwistAndItsTime) {
-  input_.choose_mode(9);
+  input_.choose_mode({ModeKind::kGait, 1});
   twist("/teleop", 0.5);
   pass(kSecond);
   pose("/teleop", 0.1);
   EXPECT_EQ(speed(), 0.5);
   EXPECT_EQ(roll(), 0.1);
-  EXPECT_EQ(value().content.mode, 9u);
+  EXPECT_EQ(value().content.mode, (Mode{ModeKind::kGait, 1}));
   EXPECT_EQ(value().age_ns, kSecond) << "of the twist, which a pose does not prolong";
   pass(kSecond / 8);
   pose("/teleop", 0.1);
@@ -676,10 +676,11 @@ TEST_F(PoseInputTest, APoseOfNaNEndsThePoseAndNoWalk) {
 }
 
 TEST_F(PoseInputTest, ThePlaceOfAFootIsNoPoseOfAWalk) {
-  input_.receive({.sender = publisher("/teleop"), .twist = {}, .posture = {.height = 0.08}, .mode = 3}, now_);
+  input_.receive({.sender = publisher("/teleop"), .twist = {}, .posture = {.height = 0.08}, .mode = {ModeKind::kLift}},
+                 now_);
   twist("/teleop", 0.5);
   EXPECT_EQ(value().content.posture.height, 0);
-  EXPECT_EQ(value().content.mode, 0u);
+  EXPECT_EQ(value().content.mode, Mode{});
 }
 
 TEST_F(PoseInputTest, AZeroTwistIsNoZeroWhileThePoseOfItsSenderIsInForce) {
@@ -693,14 +694,14 @@ TEST_F(PoseInputTest, AZeroTwistIsNoZeroWhileThePoseOfItsSenderIsInForce) {
 }
 
 TEST_F(PoseInputTest, AChosenGaitEndsWithThePermissionToMove) {
-  input_.choose_mode(9);
+  input_.choose_mode({ModeKind::kGait, 1});
   twist("/teleop", 0);
-  EXPECT_EQ(value().content.mode, 0u) << "a gait moves nothing without a twist";
+  EXPECT_EQ(value().content.mode, Mode{}) << "a gait moves nothing without a twist";
   stop();
   grant();
   twist("/pad", 0.5);
-  EXPECT_EQ(value().content.mode, 0u);
-  EXPECT_EQ(input_.chosen_mode(), 0u);
+  EXPECT_EQ(value().content.mode, Mode{});
+  EXPECT_EQ(input_.chosen_mode(), Mode{});
 }
 
 }  // namespace

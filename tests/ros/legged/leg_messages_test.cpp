@@ -20,7 +20,7 @@ TEST(LegMessages, AFootTargetLiftsTheFootOfItsName) {
   message.z = 0.08;
   const auto request = request_of(message);
   ASSERT_TRUE(request.has_value());
-  EXPECT_EQ(request->mode, kStanceLift + 2);
+  EXPECT_EQ(request->mode, (Mode{ModeKind::kLift, 2}));
   EXPECT_EQ(request->posture.x, 0.01);
   EXPECT_EQ(request->posture.y, -0.02);
   EXPECT_EQ(request->posture.height, 0.08);
@@ -32,9 +32,9 @@ TEST(LegMessages, AFootTargetLiftsTheFootOfItsName) {
 }
 
 TEST(LegMessages, OnlyTwoPosturesCanBeSet) {
-  EXPECT_EQ(mode_of("standing"), kStanceStand);
-  EXPECT_EQ(mode_of("lying"), kStanceLie);
-  for (const char* other : {"", "sitting", "Standing", "rising"}) EXPECT_EQ(mode_of(other), kStanceStay) << other;
+  EXPECT_EQ(mode_of("standing").kind, ModeKind::kStand);
+  EXPECT_EQ(mode_of("lying").kind, ModeKind::kLie);
+  for (const char* other : {"", "sitting", "Standing", "rising"}) EXPECT_EQ(mode_of(other), Mode{}) << other;
 }
 
 TEST(LegMessages, AGaitAndItsModeAreOneAndTheSame) {

@@ -85,7 +85,7 @@ TEST_F(MotionReleaseTest, AMotionRequestedSinceTheStartReleasesNothing) {
 
 TEST_F(MotionReleaseTest, NoPartOfARequestInForceIsSilence) {
   for (const Request& part : {Request{.twist = {.linear = {}, .angular = {0, 0, 1}}}, Request{.posture = {.roll = 0.1}},
-                              Request{.mode = 2}, Request{.joints = {0.1}}}) {
+                              Request{.mode = {ModeKind::kStand}}, Request{.joints = {0.1}}}) {
     command_.requested = part;
     steps(10 * kSilence);
     EXPECT_FALSE(release_.released());

@@ -106,7 +106,7 @@ class QuadrupedLoop {
   std::array<double, kLegs> slipped{};  // m
 };
 
-inline Request stance(std::uint64_t mode) {
+inline Request stance(const Mode& mode) {
   return {.twist = {}, .posture = {}, .mode = mode};
 }
 

@@ -31,7 +31,7 @@ inline LeaningWalk leaning_walk(const LegModel& model, const Parameters& paramet
   QuadrupedLoop robot(model, parameters);
   LeaningWalk result;
   robot.wait(0.3);
-  robot.run(3.0, stance(kStanceStand));
+  robot.run(3.0, stance({ModeKind::kStand}));
   robot.after_step = [&] {
     for (std::size_t i = 0; i < kLegsJoints; ++i) {
       const JointModel& joint = model.joints[i];
@@ -43,7 +43,7 @@ inline LeaningWalk leaning_walk(const LegModel& model, const Parameters& paramet
     }
   };
   if (poses) {
-    Request lean = stance(kStanceStay);
+    Request lean = stance({ModeKind::kStay});
     lean.posture = {.height = within(tuning.bob), .roll = within(tuning.lean), .pitch = within(tuning.lean)};
     robot.run(1.5, lean);
   }
@@ -99,7 +99,7 @@ inline SlopeTrial stand_up_on(const LegModel& model, Parameters parameters, doub
   QuadrupedLoop robot(model, parameters);
   robot.wait(2.0);
   robot.clear();
-  robot.run(6.0, stance(kStanceStand));
+  robot.run(6.0, stance({ModeKind::kStand}));
   const LegPhase phase = robot.command().legged.phase;
   return {.stands = phase == LegPhase::kStanding && robot.tilt_now() < 0.1,
           .refuses = phase == LegPhase::kLying && robot.permit().causes == 0,

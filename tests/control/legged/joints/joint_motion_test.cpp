@@ -88,7 +88,7 @@ class LyingJoints : public testing::Test {
     for (std::size_t i = 0; i < kLegsJoints; ++i) start_[i] = legs_.sensors.joints[i].position;
   }
   Request near(double distance) const {
-    Request request = stance_of(kStanceJoints);
+    Request request = stance_of({ModeKind::kJoints});
     for (std::size_t i = 0; i < kLegsJoints; ++i) {
       const JointRange& range = *legs_.robot.joints[i].range;
       const double inside = std::clamp(start_[i], range.lower, range.upper);
@@ -159,7 +159,7 @@ TEST_F(LyingJoints, StayWhereTheyAreAfterTheRequestHasTimedOut) {
   EXPECT_LT(std::abs(rest[2] - start_[2]), 0.3);
   legs_.run(0.5, {});
   for (std::size_t i = 0; i < kLegsJoints; ++i) EXPECT_NEAR(legs_.out.joints[i].position, rest[i], 1e-6);
-  legs_.step(stance_of(kStanceLie));
+  legs_.step(stance_of({ModeKind::kLie}));
   EXPECT_EQ(legs_.out.legged.phase, LegPhase::kLying);
 }
 

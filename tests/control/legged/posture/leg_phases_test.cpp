@@ -22,20 +22,20 @@ void run_until(IdealLegs& legs, LegPhase phase) {
 
 TEST(LyingLegs, BrakeAllJointsUntilARequestToStandUp) {
   IdealLegs legs(lopsided());
-  for (const std::uint64_t mode : {std::uint64_t{kStanceStay}, std::uint64_t{kStanceLie}}) {
+  for (const Mode& mode : {Mode{ModeKind::kStay}, Mode{ModeKind::kLie}}) {
     legs.run(0.1, stance_of(mode));
     EXPECT_EQ(legs.out.legged.phase, LegPhase::kLying);
     EXPECT_EQ(legs.out.reasons, std::uint64_t{kReasonHolding});
     EXPECT_EQ(legs.out.joint_count, kLegsJoints);
     for (std::size_t i = 0; i < kLegsJoints; ++i) EXPECT_EQ(legs.out.joints[i].mode, JointMode::kBrake) << i;
   }
-  legs.step(stance_of(kStanceLift));
+  legs.step(stance_of({ModeKind::kLift}));
   EXPECT_EQ(legs.out.reasons, std::uint64_t{kReasonHolding} | kReasonNotStanding);
   Request pose;
   pose.posture.roll = 0.1;
   legs.step(pose);
   EXPECT_EQ(legs.out.reasons, std::uint64_t{kReasonHolding} | kReasonNotStanding);
-  legs.step(stance_of(kStanceStand));
+  legs.step(stance_of({ModeKind::kStand}));
   EXPECT_EQ(legs.out.legged.phase, LegPhase::kGathering);
   EXPECT_EQ(legs.out.reasons, 0u);
 }
@@ -50,17 +50,17 @@ TEST(GatheredLegs, LieWhereTheGroundSlopesTooMuch) {
   legs.has_estimate = true;
   legs.estimate.base.flags = kStateValid;
   legs.estimate.base.attitude = uphill(kMaxSlope + 0.001);
-  legs.step(stance_of(kStanceStand));
+  legs.step(stance_of({ModeKind::kStand}));
   EXPECT_EQ(legs.out.legged.phase, LegPhase::kGathering);
   run_until(legs, LegPhase::kLying);
   EXPECT_EQ(legs.out.reasons, std::uint64_t{kReasonHolding} | kReasonTooSteep);
-  legs.run(1, stance_of(kStanceStand));
+  legs.run(1, stance_of({ModeKind::kStand}));
   EXPECT_EQ(legs.out.legged.phase, LegPhase::kLying) << "it does not gather again there";
   EXPECT_EQ(legs.out.reasons, std::uint64_t{kReasonHolding} | kReasonTooSteep);
-  legs.step(stance_of(kStanceStay));
+  legs.step(stance_of({ModeKind::kStay}));
   EXPECT_EQ(legs.out.reasons, std::uint64_t{kReasonHolding});
   legs.estimate.base.attitude = uphill(kMaxSlope - 0.001);
-  legs.step(stance_of(kStanceStand));
+  legs.step(stance_of({ModeKind::kStand}));
   EXPECT_EQ(legs.out.legged.phase, LegPhase::kGathering);
   EXPECT_EQ(legs.out.reasons, 0u);
   run_until(legs, LegPhase::kRising);
@@ -73,13 +73,13 @@ TEST(GatheredLegs, MeasureTheSlopeInTheLyingPostureAlone) {
     IdealLegs legs(lopsided());
     legs.has_estimate = true;
     legs.estimate.base.flags = kStateValid;
-    Request joints = stance_of(kStanceJoints);
+    Request joints = stance_of({ModeKind::kJoints});
     for (std::size_t i = 0; i < kLegsJoints; ++i)
       joints.joints[i] = legs.sensors.joints[i].position + (i % kLegJoints == 1 ? 0.1 : 0);
     if (moved) legs.run(1, joints);
     EXPECT_EQ(legs.out.legged.phase, moved ? LegPhase::kJoints : LegPhase::kLying);
     legs.estimate.base.attitude = uphill(kMaxSlope + 0.1);
-    legs.step(stance_of(kStanceStand));
+    legs.step(stance_of({ModeKind::kStand}));
     EXPECT_EQ(legs.out.legged.phase, LegPhase::kGathering);
     legs.estimate.base.attitude = uphill(kSlope);
     run_until(legs, LegPhase::kStanding);
@@ -96,7 +96,7 @@ TEST(RisingLegs, PutTheCentreOfGravityAmidTheFeetAlongTheVertical) {
   legs.has_estimate = true;
   legs.estimate.base.flags = kStateValid;
   legs.estimate.base.attitude = uphill(kSlope);
-  legs.run(4.0, stance_of(kStanceStand));
+  legs.run(4.0, stance_of({ModeKind::kStand}));
   ASSERT_EQ(legs.out.legged.phase, LegPhase::kStanding);
   const IdealLegs level = standing();
   const double height = -level.foot_in_base(0).z() + level.at_rest().centre_of_gravity.z();
@@ -132,7 +132,7 @@ TEST(GatheringLegs, GoSmoothlyToTheLyingPostureWithinTheGatherSpeed) {
   }
   const double speed = leg_tuning(legs.robot).joint.speed, time = 1.5 * farthest / speed;
   double fastest = 0;
-  legs.step(stance_of(kStanceStand));
+  legs.step(stance_of({ModeKind::kStand}));
   for (std::size_t i = 0; i < kLegsJoints; ++i) {
     EXPECT_EQ(legs.out.joints[i].position, from[i]);
     EXPECT_EQ(legs.out.joints[i].velocity, 0);
@@ -155,7 +155,7 @@ TEST(GatheringLegs, GoSmoothlyToTheLyingPostureWithinTheGatherSpeed) {
 
 TEST(GatheringLegs, TakeATenthOfASecondAtLeastAndEndWithARequestToLie) {
   IdealLegs legs(lopsided());
-  legs.step(stance_of(kStanceStand));
+  legs.step(stance_of({ModeKind::kStand}));
   for (int k = 1; k < 20; ++k) {
     legs.step();
     EXPECT_EQ(legs.out.legged.phase, LegPhase::kGathering) << k;
@@ -164,13 +164,13 @@ TEST(GatheringLegs, TakeATenthOfASecondAtLeastAndEndWithARequestToLie) {
   legs.step();
   legs.step();
   EXPECT_EQ(legs.out.legged.phase, LegPhase::kRising);
-  down.step(stance_of(kStanceLie));
+  down.step(stance_of({ModeKind::kLie}));
   EXPECT_EQ(down.out.legged.phase, LegPhase::kLying);
 }
 
 TEST(RisingLegs, LiftTheBodySmoothlyWithItsCentreOfGravityAmidTheFeet) {
   IdealLegs legs(lopsided());
-  legs.request(stance_of(kStanceStand));
+  legs.request(stance_of({ModeKind::kStand}));
   run_until(legs, LegPhase::kRising);
   const double time = leg_tuning(legs.robot).rise_time, height = nominal_height(legs.robot);
   std::array<Eigen::Vector3d, kLegs> began{};
@@ -214,12 +214,12 @@ TEST(RisingLegs, StandSevenTenthsOfALegBelowTheirSecondJoints) {
 /// Half of the rise takes as long as half of the way down.
 TEST(RisingLegs, GoDownAgainFromWhereTheyAre) {
   IdealLegs legs(lopsided());
-  legs.request(stance_of(kStanceStand));
+  legs.request(stance_of({ModeKind::kStand}));
   run_until(legs, LegPhase::kRising);
   const double time = leg_tuning(legs.robot).rise_time;
   for (double elapsed = 0; elapsed < 0.6 * time; elapsed += kCycle) legs.step();
   const double up = legs.pose()[2];
-  legs.step(stance_of(kStanceLie));
+  legs.step(stance_of({ModeKind::kLie}));
   EXPECT_EQ(legs.out.legged.phase, LegPhase::kLowering);
   double left = 0;
   for (; legs.out.legged.phase == LegPhase::kLowering && left < 3; left += kCycle) {
@@ -240,7 +240,7 @@ TEST(LoweringLegs, SinkWithinTheRiseTime) {
   IdealLegs legs = standing();
   const double time = leg_tuning(legs.robot).rise_time, height = legs.pose()[2];
   const std::array<Eigen::Vector3d, kLegs> feet = legs.feet();
-  legs.step(stance_of(kStanceLie));
+  legs.step(stance_of({ModeKind::kLie}));
   legs.step();
   ASSERT_EQ(legs.out.legged.phase, LegPhase::kLowering);
   for (double elapsed = kCycle; elapsed < time - kCycle / 2; elapsed += kCycle) {
@@ -264,7 +264,7 @@ TEST(LoweringLegs, ReturnToTheNominalPoseFirst) {
   pose.posture = {.height = -0.02, .roll = 0.1, .pitch = -0.05, .x = 0.02, .y = 0.03, .yaw = 0.1};
   const LegController::Pose nominal = legs.pose();
   legs.run(1.5, pose);
-  legs.step(stance_of(kStanceLie));
+  legs.step(stance_of({ModeKind::kLie}));
   for (int k = 0; k < 400 && legs.state().sinks == 0; ++k) {
     EXPECT_GT(legs.pose()[2], nominal[2] - 0.03);
     legs.step();
@@ -277,10 +277,10 @@ TEST(LoweringLegs, ReturnToTheNominalPoseFirst) {
 TEST(LoweringLegs, StandUpAgainFromWhereTheyAre) {
   IdealLegs legs = standing();
   const double time = leg_tuning(legs.robot).rise_time, height = legs.pose()[2];
-  legs.run(0.3 * time, stance_of(kStanceLie));
+  legs.run(0.3 * time, stance_of({ModeKind::kLie}));
   const double down = legs.pose()[2];
   ASSERT_LT(down, 0.9 * height);
-  legs.step(stance_of(kStanceStand));
+  legs.step(stance_of({ModeKind::kStand}));
   EXPECT_EQ(legs.out.legged.phase, LegPhase::kRising);
   legs.step();
   EXPECT_NEAR(legs.pose()[2], down, 0.01);
@@ -295,9 +295,9 @@ TEST(LoweringLegs, StandAgainAtOnceWhereTheBodyHasNotSunk) {
   Request pose;
   pose.posture.height = 0.04;
   legs.run(1.0, pose);
-  legs.run(0.02, stance_of(kStanceLie));
+  legs.run(0.02, stance_of({ModeKind::kLie}));
   ASSERT_EQ(legs.out.legged.phase, LegPhase::kLowering);
-  legs.step(stance_of(kStanceStand));
+  legs.step(stance_of({ModeKind::kStand}));
   EXPECT_EQ(legs.out.legged.phase, LegPhase::kStanding);
 }
 
@@ -347,7 +347,7 @@ TEST(StandingLegs, AreReleasedByAJointThatIsNotMeasured) {
 TEST(StandingLegs, LieDownWhileThePermitRamps) {
   IdealLegs legs = standing();
   legs.permit.action = PermitAction::kRamp;
-  legs.step(stance_of(kStanceStand));
+  legs.step(stance_of({ModeKind::kStand}));
   EXPECT_EQ(legs.out.reasons, std::uint64_t{kReasonPermitRamp});
   EXPECT_EQ(legs.out.legged.phase, LegPhase::kLowering);
   run_until(legs, LegPhase::kLying);
@@ -364,12 +364,12 @@ TEST(StandingLegs, ForgetEverythingInANewRun) {
 
 TEST(StandingLegs, NameARequestOfJoints) {
   IdealLegs legs = standing();
-  legs.step(stance_of(kStanceJoints));
+  legs.step(stance_of({ModeKind::kJoints}));
   EXPECT_EQ(legs.out.reasons, std::uint64_t{kReasonNotLying});
   EXPECT_EQ(legs.out.legged.phase, LegPhase::kStanding);
-  legs.step(stance_of(kStanceJoints + 1));
+  legs.step(stance_of({ModeKind::kGait, kStandGait}));
   EXPECT_EQ(legs.out.reasons, std::uint64_t{kReasonPartIgnored});
-  legs.step(stance_of(kStanceStand));
+  legs.step(stance_of({ModeKind::kStand}));
   EXPECT_EQ(legs.out.reasons, 0u);
 }
 

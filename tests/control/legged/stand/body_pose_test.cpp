@@ -68,7 +68,7 @@ TEST(BodyPose, LeansNoFartherInRollAndPitchTogether) {
 
 TEST(BodyPose, HoldsTheStoppingPlaceOfAMotionThatIsInterrupted) {
   IdealLegs legs(lopsided(), kCycle, 0.1);
-  for (int k = 0; k < 700; ++k) legs.step(stance_of(kStanceStand));
+  for (int k = 0; k < 700; ++k) legs.step(stance_of({ModeKind::kStand}));
   const std::array<AxisBounds, 6> bounds = body_bounds(legs.robot);
   legs.step(pose_of({0.05, 0.05, -0.05, 0.2, 0.1, 0.2}));
   for (int k = 0; k < 100 && (legs.out.reasons & kReasonTimedOut) == 0; ++k) {

@@ -82,7 +82,7 @@ TEST(LegEfforts, CarryTheWeightInAnyPose) {
 TEST(LegEfforts, CarryTheWeightWithThreeFeetWhileOneIsInTheAir) {
   for (std::size_t leg = 0; leg < kLegs; ++leg) {
     IdealLegs legs = standing();
-    Request request = stance_of(kStanceLift + leg);
+    Request request = stance_of({ModeKind::kLift, leg});
     request.posture.height = 0.08;
     legs.run(2.5, request);
     std::array<double, kLegs> share{1, 1, 1, 1};
@@ -94,7 +94,7 @@ TEST(LegEfforts, CarryTheWeightWithThreeFeetWhileOneIsInTheAir) {
 /// Σ shares/3 of the weight, at most all of it.
 TEST(LegEfforts, TakeTheWeightWithTheShares) {
   IdealLegs legs(lopsided());
-  legs.request(stance_of(kStanceStand));
+  legs.request(stance_of({ModeKind::kStand}));
   for (int k = 0; k < 200 && legs.out.legged.phase != LegPhase::kRising; ++k) legs.step();
   Vector velocity = velocity_of(legs);
   for (int k = 1; k <= 45; ++k) {

@@ -6,7 +6,7 @@ namespace robot_control {
 namespace {
 
 Request lift_of(std::size_t leg, double x, double y, double height) {
-  Request request = stance_of(kStanceLift + leg);
+  Request request = stance_of({ModeKind::kLift, leg});
   request.posture = {.height = height, .x = x, .y = y};
   return request;
 }
@@ -142,7 +142,7 @@ TEST_P(LiftedFoot, ComesDownBeforeAnotherGoesUp) {
 TEST_P(LiftedFoot, ComesDownBeforeTheRobotLies) {
   const double height = legs_.pose()[2];
   legs_.run(2.0, lift_of(leg_, 0.04, 0, 0.08));
-  legs_.step(stance_of(kStanceLie));
+  legs_.step(stance_of({ModeKind::kLie}));
   int cycles = 1;
   for (; cycles < 1000 && legs_.out.legged.phase != LegPhase::kLying; ++cycles) {
     if (legs_.state().share[leg_] < 1 && legs_.state().sinks == 0) {

@@ -8,14 +8,14 @@
 namespace robot_control {
 namespace {
 
-Request twist_of(double ahead, double left = 0, double turning = 0, std::uint64_t mode = kStanceStay) {
+Request twist_of(double ahead, double left = 0, double turning = 0, const Mode& mode = {}) {
   Request request = stance_of(mode);
   request.twist = {.linear = {ahead, left, 0}, .angular = {0, 0, turning}};
   return request;
 }
 
-constexpr std::uint64_t mode_of(std::uint64_t gait) {
-  return kStanceGait + gait;
+constexpr Mode mode_of(std::uint64_t gait) {
+  return {ModeKind::kGait, gait};
 }
 
 /// A robot on level ground whose body has the twist and the pose of the last command. A foot that bears stays where it
@@ -167,10 +167,10 @@ TEST(LegWalk, BeginsWithTheRequestedGait) {
     EXPECT_EQ(legs.gait(), gait);
     EXPECT_TRUE(legs.walks());
   }
-  for (const std::uint64_t mode : {std::uint64_t{kStanceGait}, kStanceGait + kGaits.size()}) {
+  for (const Mode& mode : {mode_of(kStandGait), mode_of(kGaits.size())}) {
     WalkingLegs legs = ready();
     legs.step(stance_of(mode));
-    EXPECT_FALSE(legs.walks()) << mode;
+    EXPECT_FALSE(legs.walks()) << mode.index;
     EXPECT_EQ(legs.legs.out.reasons, std::uint64_t{kReasonPartIgnored});
   }
 }
@@ -269,18 +269,18 @@ TEST(LegWalk, LiesDownAfterItsEndIfThatIsTheLastRequest) {
   WalkingLegs legs = ready();
   legs.run(1, twist_of(0.3));
   WalkingLegs stays = legs, walks = legs;
-  legs.step(stance_of(kStanceLie));
+  legs.step(stance_of({ModeKind::kLie}));
   EXPECT_LT(legs.end(), 2);
   legs.step();
   legs.step();
   EXPECT_EQ(legs.legs.out.legged.phase, LegPhase::kLowering);
 
-  stays.step(stance_of(kStanceLie));
-  EXPECT_LT(stays.end(stance_of(kStanceStand)), 2);
+  stays.step(stance_of({ModeKind::kLie}));
+  EXPECT_LT(stays.end(stance_of({ModeKind::kStand})), 2);
   stays.run(0.1, {});
   EXPECT_EQ(stays.legs.out.legged.phase, LegPhase::kStanding);
 
-  walks.step(stance_of(kStanceLie));
+  walks.step(stance_of({ModeKind::kLie}));
   walks.run(0.3, twist_of(0.3));
   EXPECT_LT(walks.end(), 2);
   walks.run(0.1, {});
@@ -292,7 +292,7 @@ TEST(LegWalk, LiesDownAmidItsFeet) {
   legs.run(0.5, twist_of(0.05));
   legs.feet[1] += Eigen::Vector3d(0.02, -0.06, 0);
   legs.caught = 1;
-  legs.step(stance_of(kStanceLie));
+  legs.step(stance_of({ModeKind::kLie}));
   EXPECT_LT(legs.end(), 3.7);
   Eigen::Vector2d beside;
   while (legs.legs.out.legged.phase != LegPhase::kLying) {
@@ -500,7 +500,7 @@ TEST(LegWalk, StandsWhereItIsAfterFourPlansThatFail) {
 
 TEST(LegWalk, SetsAFootDownFirst) {
   WalkingLegs legs = ready();
-  legs.run(2, stance_of(kStanceLift + 1));
+  legs.run(2, stance_of({ModeKind::kLift, 1}));
   ASSERT_NE(legs.legs.out.legged.lifted, 0u);
   legs.step(twist_of(0.2));
   int cycles = 0;
