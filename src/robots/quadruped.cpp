@@ -7,6 +7,7 @@
 #include "control/legged/leg_controller.h"
 #include "control/legged/leg_tuning.h"
 #include "control/legged/stand/body_bounds.h"
+#include "control/legged/stand/nominal_stance.h"
 #include "control/legged/walk/gait.h"
 #include "control/legged/walk/walking_speed.h"
 #include "estimation/legged/legged_estimator.h"
@@ -45,7 +46,7 @@ void Quadruped::require_drivable() const {
                          " Hz, because the forces of its feet change too late. Set at least that");
   }
   const auto rounded = [](double value) { return shortest(std::round(100 * value) / 100); };
-  if (const std::optional<LegPlace> leg = short_leg(machine_)) {
+  if (const std::optional<LegPlace> leg = nominal_stance(machine_).short_leg) {
     throw ParameterError(machine_.source + ": the leg " + name_of(*leg) +
                          " does not reach the ground while the robot stands " + rounded(leg_tuning(machine_).height) +
                          " m above it. Give its joints ranges that allow this");

@@ -81,7 +81,7 @@ struct Statement {
   std::string process, topic;
   Request request;
   std::int64_t cycle = 0;  // of all driver cycles
-  Mode gait{};               // that was chosen then, since the last withdrawal
+  Mode gait{};             // that was chosen then, since the last withdrawal
 };
 
 /// A publisher of e_stop in the judge's model.

@@ -322,7 +322,7 @@ TEST_F(Quadbot, DrawsACircleWithEachFoot) {
 TEST(QuadbotJoints, AreLimitedInRangeSpeedAndAcceleration) {
   QuadrupedLoop robot = loop_of("quadbot");
   robot.wait(0.3);
-  const std::array<JointBounds, kLegsJoints> bounds = joint_bounds(robot.robot());
+  const AllJointBounds bounds = joint_bounds(robot.robot());
   Request request = stance({ModeKind::kJoints});
   for (std::size_t i = 0; i < kLegsJoints; ++i) request.joints[i] = robot.robot().joints[i].rest_position;
   request.joints[0] = -5;  // beyond the range

@@ -135,8 +135,8 @@ void walking_hours(const LegModel& model, std::uint64_t seed, WorstValues& worst
   double next = robot.loop.time() + kStretch;
   while (robot.loop.time() < kTime && robot.permit().causes == 0) {
     const std::uint64_t gait = draw.below(kGaits.size());
-    const double duty = kGaits[gait == kStandGait ? kFastGait : gait].duty;
-    const double fastest = duty >= kOfCrawl ? 0.2 : duty > 0.5 ? 0.5 : 0.6;  // m/s
+    const Gait& row = kGaits[gait == kStandGait ? kFastGait : gait];
+    const double fastest = row.crawls() ? 0.2 : row.duty > 0.5 ? 0.5 : 0.6;  // m/s
     Request walk = stance(gait == kStandGait ? Mode{} : Mode{ModeKind::kGait, gait});
     walk.twist.linear[0] = draw.within(-0.5, 1) * fastest;
     walk.twist.linear[1] = draw.within(-0.1, 0.1);

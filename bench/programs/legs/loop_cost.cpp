@@ -240,7 +240,7 @@ void walking_cost(const LegModel& model, std::uint64_t /*seed*/, WorstValues& wo
   controller.set_state(begin);
   for (std::size_t k = 0; k < kCycles; ++k) {
     step(frames.begin + k);
-    if (controller.state().walk.planned == 0) planned.push_back(fastest[k]);
+    if (controller.state().walk.walker.planned == 0) planned.push_back(fastest[k]);
   }
   worst.add("allocations", static_cast<double>(allocations), "calls");
   worst.add("controller that does not walk", command.legged.phase == LegPhase::kWalking ? 0 : 1, "runs");

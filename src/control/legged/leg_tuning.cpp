@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "machine/gravity.h"
+#include "signals/legged/legged_command.h"
 
 namespace robot_control {
 namespace {
@@ -41,8 +42,7 @@ double needed_speed(const LegModel& robot, std::size_t leg, const Eigen::Vector3
   const Eigen::Vector3d rates = kinematics.jacobian(*angles, foot).inverse().col(2) * upward;
   double part = 0;
   for (std::size_t i = 0; i < kLegJoints; ++i)
-    part = std::max(part,
-                    std::abs(rates[static_cast<Eigen::Index>(i)]) / robot.joints[kLegJoints * leg + i].velocity_limit);
+    part = std::max(part, std::abs(rates[i]) / robot.joints[kLegJoints * leg + i].velocity_limit);
   return part;
 }
 
@@ -89,10 +89,15 @@ LegTuning leg_tuning(const LegModel& robot) noexcept {
   return tuning;
 }
 
-std::array<JointBounds, kLegsJoints> joint_bounds(const LegModel& robot) noexcept {
+double within(double value, double range, std::uint64_t& reasons) noexcept {
+  if (std::abs(value) > range) reasons |= kReasonOutOfReach;
+  return std::clamp(value, -range, range);
+}
+
+AllJointBounds joint_bounds(const LegModel& robot) noexcept {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   const AxisBounds motion = leg_tuning(robot).joint;
-  std::array<JointBounds, kLegsJoints> bounds;
+  AllJointBounds bounds;
   for (std::size_t i = 0; i < kLegsJoints; ++i) {
     const JointModel& joint = robot.joints[i];
     bounds[i].range = joint.range.value_or(JointRange{-kInfinity, kInfinity});

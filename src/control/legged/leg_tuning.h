@@ -10,6 +10,7 @@
 
 #include "control/legged/tracked_axis.h"
 #include "machine/legs/leg_model.h"
+#include "signals/joint.h"
 
 namespace robot_control {
 
@@ -27,6 +28,10 @@ struct LegTuning {
   double foot_range = 0;  ///< m, of a foot in the air, from above its place
   AxisBounds foot;        ///< m
   AxisBounds joint;       ///< rad, of a joint while the robot lies
+
+  JointCommand impedance(double position, double velocity, double effort) const noexcept {
+    return {JointMode::kImpedance, position, velocity, stiffness, damping, effort};
+  }
 };
 
 LegTuning leg_tuning(const LegModel& robot) noexcept;
@@ -41,11 +46,15 @@ LoadedKnee loaded_knee(const LegModel& robot) noexcept;
 
 inline constexpr double kMaxKneePart = 0.65;  ///< of its effort limit, with which a robot walks
 
+/// Returns `value` within ± `range`, and notes if it was beyond.
+double within(double value, double range, std::uint64_t& reasons) noexcept;
+
 /// The bounds of a joint while the robot lies.
 struct JointBounds {
   JointRange range;   ///< rad; ±∞ where it turns without end
   AxisBounds motion;  ///< rad
 };
-std::array<JointBounds, kLegsJoints> joint_bounds(const LegModel& robot) noexcept;
+using AllJointBounds = std::array<JointBounds, kLegsJoints>;
+AllJointBounds joint_bounds(const LegModel& robot) noexcept;
 
 }  // namespace robot_control

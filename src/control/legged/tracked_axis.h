@@ -35,6 +35,12 @@ struct TrackedAxis {
   double speed = 0;
 };
 
+/// Returns s²(3 − 2s), s = `part` within 0 … 1: a way from 0 to 1 that begins and ends at rest.
+inline double smooth_step(double part) noexcept {
+  const double s = std::clamp(part, 0.0, 1.0);
+  return s * s * (3 - 2 * s);
+}
+
 /// Returns |x|.
 template <std::size_t N>
 double norm(const std::array<double, N>& x, const std::array<AxisBounds, N>& bounds) noexcept {

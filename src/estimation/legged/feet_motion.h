@@ -13,11 +13,11 @@
 namespace robot_control {
 
 struct FeetMotion {
-  std::array<Eigen::Vector3d, kLegs> place;           ///< m, of the foot's centre
-  std::array<Eigen::Matrix3d, kLegs> jacobian;        ///< m/rad
-  std::array<Eigen::Vector3d, kLegs> rolling;         ///< m/s, of the foot's centre over the ground while it stands
-  std::array<Eigen::Vector3d, kLegs> base_velocity;   ///< m/s, of the base's origin if this foot stands
-  std::array<double, kLegsJoints> angles{}, rates{};  ///< rad, rad/s; 0 where they are not valid
+  std::array<Eigen::Vector3d, kLegs> place;          ///< m, of the foot's centre
+  std::array<Eigen::Matrix3d, kLegs> jacobian;       ///< m/rad
+  std::array<Eigen::Vector3d, kLegs> rolling;        ///< m/s, of the foot's centre over the ground while it stands
+  std::array<Eigen::Vector3d, kLegs> base_velocity;  ///< m/s, of the base's origin if this foot stands
+  LegsValues angles{}, rates{};                      ///< rad, rad/s; 0 where they are not valid
 };
 
 /// `rate` is that of the base in rad/s.

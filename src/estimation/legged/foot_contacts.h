@@ -41,9 +41,9 @@ class FootContacts {
   static constexpr double kBlur = 0.2;
 
   struct State {
-    std::array<double, kLegsJoints> rates{}, efforts{};  ///< rad/s, N·m: low passes
-    Vector3 angular{}, force{};                          ///< rad/s, m/s²: low passes of gyro and accelerometer
-    std::array<double, kLegs> loads{};                   ///< N
+    LegsValues rates{}, efforts{};      ///< rad/s, N·m: low passes
+    Vector3 angular{}, force{};         ///< rad/s, m/s²: low passes of gyro and accelerometer
+    std::array<double, kLegs> loads{};  ///< N
     std::array<double, kLegs> probability{};
     std::array<double, kLegs> lifted{};  ///< s for which others, and not this foot, are asked to bear
     std::uint64_t begun = 0;             ///< 1: the low passes have begun

@@ -56,18 +56,18 @@ class LeggedEstimator {
     LegFilter::State filter;
     PlainLegs::State plain;
     FootContacts::State contacts;
-    std::array<std::uint64_t, kLegs> bears{};      ///< 1: the foot is a landmark
-    Vector3 rate{}, force{};                       ///< rad/s, m/s², base axes: the newest sample
-    Vector3 mean_rate{};                           ///< rad/s, base axes
-    std::array<double, kLegsJoints> mean_rates{};  ///< rad/s, of the joints
-    double ground = 0;                             ///< m, odom axes: height of the centres of feet on the ground
-    std::uint64_t grounded = 0;                    ///< 1: `ground` is known
-    std::uint64_t lay = 1;                         ///< 1: no foot has borne since the robot lay
-    double still = 0;                              ///< s since anything moved
-    double apart = 0;                              ///< s for which filter and plain estimate differ
-    double degraded = 0;                           ///< s left
-    double distance = 0;                           ///< m
-    std::uint64_t begun = 0;                       ///< 1: the attitude was set by an accelerometer
+    std::array<std::uint64_t, kLegs> bears{};  ///< 1: the foot is a landmark
+    Vector3 rate{}, force{};                   ///< rad/s, m/s², base axes: the newest sample
+    Vector3 mean_rate{};                       ///< rad/s, base axes
+    LegsValues mean_rates{};                   ///< rad/s, of the joints
+    double ground = 0;                         ///< m, odom axes: height of the centres of feet on the ground
+    std::uint64_t grounded = 0;                ///< 1: `ground` is known
+    std::uint64_t lay = 1;                     ///< 1: no foot has borne since the robot lay
+    double still = 0;                          ///< s since anything moved
+    double apart = 0;                          ///< s for which filter and plain estimate differ
+    double degraded = 0;                       ///< s left
+    double distance = 0;                       ///< m
+    std::uint64_t begun = 0;                   ///< 1: the attitude was set by an accelerometer
     std::uint64_t last_cycle = 0;
     std::uint64_t stepped = 0;  ///< 1: last_cycle is that of a step
   };

@@ -134,11 +134,11 @@ constexpr std::array<double, kLegJoints> kNoAcceleration{};
 void gather(MovedLeg& leg, Eigen::Index first, double rotor_inertia, Inertia& whole, Spatial& total,
             LeggedEquations& out) noexcept {
   for (std::size_t i = kLegJoints; i-- > 0;) {
-    const Eigen::Index row = first + static_cast<Eigen::Index>(i);
+    const Eigen::Index row = first + i;
     out.bias[row] = leg.screw[i].dot(leg.force[i]);
     const Spatial column = leg.inertia[i] * leg.screw[i];
     for (std::size_t j = 0; j <= i; ++j) {
-      const Eigen::Index other = first + static_cast<Eigen::Index>(j);
+      const Eigen::Index other = first + j;
       out.mass(other, row) = out.mass(row, other) = leg.screw[j].dot(column);
     }
     out.mass(row, row) += rotor_inertia;
@@ -165,7 +165,7 @@ void LegDynamics::step(const LeggedMotion& motion, LeggedEquations& out) const n
     const std::size_t first = kLegJoints * leg;
     MovedLeg of_base = moved(geometry_[leg], bodies_[leg], &motion.angles[first], &motion.rates[first],
                              kNoAcceleration.data(), speed, change);
-    gather(of_base, static_cast<Eigen::Index>(6 + first), rotor_inertia_, whole, total, out);
+    gather(of_base, 6 + first, rotor_inertia_, whole, total, out);
   }
   out.bias.head<3>() = total.linear;
   out.bias.segment<3>(3) = total.angular;
@@ -189,7 +189,7 @@ Vector LegDynamics::efforts(std::size_t leg, const LeggedMotion& motion,
   Spatial sum;
   for (std::size_t i = kLegJoints; i-- > 0;) {
     sum = sum + moving.force[i];
-    result[static_cast<Eigen::Index>(i)] = moving.screw[i].dot(sum) + rotor_inertia_ * change.joints[first + i];
+    result[i] = moving.screw[i].dot(sum) + rotor_inertia_ * change.joints[first + i];
   }
   return result;
 }

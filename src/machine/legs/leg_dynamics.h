@@ -23,15 +23,15 @@ namespace robot_control {
 inline constexpr int kLeggedDofs = 6 + static_cast<int>(kLegsJoints);
 
 struct LeggedMotion {
-  std::array<double, kLegsJoints> angles{};                ///< rad
-  std::array<double, kLegsJoints> rates{};                 ///< rad/s
+  LegsValues angles{};                                     ///< rad
+  LegsValues rates{};                                      ///< rad/s
   Eigen::Vector3d linear = Eigen::Vector3d::Zero();        ///< m/s, v
   Eigen::Vector3d angular = Eigen::Vector3d::Zero();       ///< rad/s, ω
   Eigen::Vector3d gravity = Eigen::Vector3d(0, 0, -9.81);  ///< m/s², base axes
 };
 
 struct LeggedAcceleration {
-  std::array<double, kLegsJoints> joints{};           ///< rad/s²
+  LegsValues joints{};                                ///< rad/s²
   Eigen::Vector3d angular = Eigen::Vector3d::Zero();  ///< rad/s², ω̇
 };
 

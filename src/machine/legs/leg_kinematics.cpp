@@ -136,10 +136,9 @@ LegKinematics::Branch LegKinematics::branch(const Eigen::Vector3d& from_hip, dou
                             bend + upper_angle_ - lower_angle_);
   result.in_range = true;
   for (std::size_t i = 0; i < kLegJoints; ++i) {
-    const auto joint = static_cast<Eigen::Index>(i);
-    const double angle = into(geometry_.sign[i] * turned_by[joint], range_[i]);
+    const double angle = into(geometry_.sign[i] * turned_by[i], range_[i]);
     result.in_range = result.in_range && within(angle, range_[i]);
-    result.angles[joint] = std::clamp(angle, range_[i].lower, range_[i].upper);
+    result.angles[i] = std::clamp(angle, range_[i].lower, range_[i].upper);
   }
   return result;
 }

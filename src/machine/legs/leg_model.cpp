@@ -246,7 +246,7 @@ LegModel read_legs(const RobotDescription& description, const MachineParameters&
     model.legs[i].lying = lying_posture(*bodies, model.legs[i].kinematics, places[i], belly);
     for (std::size_t j = 0; j < kLegJoints; ++j) {
       JointModel& joint = model.joints[kLegJoints * i + j];
-      joint.rest_position = model.legs[i].lying[static_cast<Eigen::Index>(j)];
+      joint.rest_position = model.legs[i].lying[j];
     }
     model.contacts.push_back(last.name);
   }

@@ -18,6 +18,7 @@ namespace robot_control {
 
 inline constexpr std::size_t kLegs = 4;
 inline constexpr std::size_t kLegsJoints = kLegs * kLegJoints;
+using LegsValues = std::array<double, kLegsJoints>;  ///< by the joints of a LegModel
 
 enum class LegPlace { kFrontLeft, kFrontRight, kRearLeft, kRearRight };
 
@@ -39,7 +40,7 @@ struct LegModel : MachineModel {
   double lying_pitch = 0;       ///< rad, of the body on level ground: it rests on its lowest point (lying_posture.h)
 
   /// Returns the angles of leg `leg` among those of all joints.
-  static LegAngles angles_of(const std::array<double, kLegsJoints>& all, std::size_t leg) noexcept {
+  static LegAngles angles_of(const LegsValues& all, std::size_t leg) noexcept {
     return {all[3 * leg], all[3 * leg + 1], all[3 * leg + 2]};
   }
 

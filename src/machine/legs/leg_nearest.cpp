@@ -21,10 +21,7 @@ constexpr double kConverged = 1e-10;  // rad
 
 LegAngles clamped(const LegAngles& angles, const std::array<JointRange, kLegJoints>& range) noexcept {
   LegAngles result;
-  for (std::size_t i = 0; i < kLegJoints; ++i) {
-    const auto joint = static_cast<Eigen::Index>(i);
-    result[joint] = std::clamp(angles[joint], range[i].lower, range[i].upper);
-  }
+  for (std::size_t i = 0; i < kLegJoints; ++i) result[i] = std::clamp(angles[i], range[i].lower, range[i].upper);
   return result;
 }
 
@@ -49,15 +46,13 @@ Slope slope(const LegGeometry& geometry, const std::array<JointRange, kLegJoints
     }
   }
   for (std::size_t i = 0; i < kLegJoints; ++i) {
-    const auto joint = static_cast<Eigen::Index>(i);
-    const double step_down = result.downhill[joint];
-    const bool held =
-        (angles[joint] <= range[i].lower && step_down < 0) || (angles[joint] >= range[i].upper && step_down > 0);
+    const double step_down = result.downhill[i];
+    const bool held = (angles[i] <= range[i].lower && step_down < 0) || (angles[i] >= range[i].upper && step_down > 0);
     if (!held) continue;
-    result.downhill[joint] = 0;
-    result.hessian.row(joint).setZero();
-    result.hessian.col(joint).setZero();
-    result.hessian(joint, joint) = 1;
+    result.downhill[i] = 0;
+    result.hessian.row(i).setZero();
+    result.hessian.col(i).setZero();
+    result.hessian(i, i) = 1;
   }
   return result;
 }

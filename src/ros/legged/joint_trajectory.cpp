@@ -88,7 +88,7 @@ std::string check_numbers(const msg::JointTrajectoryPoint& point, std::size_t jo
 std::string JointTrajectory::read(const msg::JointTrajectory& message, const LegModel& robot, const Positions& start) {
   std::vector<std::size_t> joints;
   if (std::string problem = find_joints(message, robot, joints); !problem.empty()) return problem;
-  const std::array<JointBounds, kLegsJoints> bounds = joint_bounds(robot);
+  const AllJointBounds bounds = joint_bounds(robot);
   std::vector<Point> points{{.time = 0, .positions = start}};
   for (std::size_t number = 1; number <= message.points.size(); ++number) {
     const msg::JointTrajectoryPoint& given = message.points[number - 1];

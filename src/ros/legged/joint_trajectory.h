@@ -40,7 +40,7 @@ using BoundedJointTrajectory = Bounded<msg::JointTrajectory, 24, kMaxMessage>;
 
 class JointTrajectory {
  public:
-  using Positions = std::array<double, kLegsJoints>;  ///< rad, in the order of MachineModel::joints
+  using Positions = LegsValues;  ///< rad, in the order of MachineModel::joints
 
   /// Reads a message with at least one point. Returns "", or why it is refused; then the path is as before.
   std::string read(const msg::JointTrajectory& message, const LegModel& robot, const Positions& start);

@@ -17,6 +17,7 @@
 #include "ros/messages/motion_messages.h"
 #include "ros/nodes/commanded_node.h"
 #include "ros/reports/diagnostics.h"
+#include "ros/reports/name_list.h"
 #include "ros/reports/pacer.h"
 #include "rt/futex.h"
 #include "signals/names.h"
@@ -173,7 +174,7 @@ class LegControllerNode final : public CommandedNode {
       return "that of " + execution_->sender.name + " is being executed for another " +
              shortest(std::max(0.1, std::round(10 * left) / 10)) + " s; an empty one ends it";
     }
-    const std::array<JointBounds, kLegsJoints> bounds = joint_bounds(leg_model_of(robot()));
+    const AllJointBounds bounds = joint_bounds(leg_model_of(robot()));
     JointTrajectory::Positions start{};
     for (std::size_t i = 0; i < kLegsJoints; ++i) {
       const bool moves = phase == LegPhase::kJoints && command.joints[i].mode == JointMode::kImpedance;
@@ -245,7 +246,7 @@ class LegControllerNode final : public CommandedNode {
     const LegPhase phase = command_.legged.phase;
     std::string problem = refusal_of_permission();
     if (!mode) {
-      problem = "there is no gait '" + request.gait + "'; name one of " + gait_names(gaits_);
+      problem = "there is no gait '" + request.gait + "'; name one of " + joined(gait_words(gaits_));
     } else if (problem.empty() && phase != LegPhase::kStanding && phase != LegPhase::kWalking) {
       problem = "the robot does not stand or walk, it is " + std::string(name_of(phase)) +
                 ": call set_posture with 'standing'";

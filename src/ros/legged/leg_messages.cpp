@@ -41,10 +41,6 @@ std::string foot_names() {
   return names;
 }
 
-std::string gait_names(const Gaits& gaits) {
-  return joined(gait_words(gaits));
-}
-
 Mode mode_of(const std::string& posture) {
   if (posture == name_of(LegPhase::kStanding)) return {ModeKind::kStand};
   return {posture == name_of(LegPhase::kLying) ? ModeKind::kLie : ModeKind::kStay};

@@ -60,9 +60,6 @@ std::optional<Request> request_of(const msg::FootTarget& message);
 /// Returns "front_left, front_right, rear_left, rear_right".
 std::string foot_names();
 
-/// Returns "auto" and the names of these gaits, which set_gait accepts.
-std::string gait_names(const Gaits& gaits);
-
 /// Returns the mode of a posture of set_posture, the default one for an unknown posture.
 Mode mode_of(const std::string& posture);
 

@@ -103,13 +103,13 @@ struct IdealLegs {
   }
 
   const LegController::State& state() const { return controller.state(); }
-  LegController::Pose pose() const {
-    LegController::Pose result{};
-    for (std::size_t i = 0; i < result.size(); ++i) result[i] = state().body[i].value;
+  Stance::Pose pose() const {
+    Stance::Pose result{};
+    for (std::size_t i = 0; i < result.size(); ++i) result[i] = state().stand.body[i].value;
     return result;
   }
-  static Eigen::Vector3d position(const LegController::Pose& pose) { return {pose[0], pose[1], pose[2]}; }
-  static Eigen::Matrix3d attitude(const LegController::Pose& pose) {
+  static Eigen::Vector3d position(const Stance::Pose& pose) { return {pose[0], pose[1], pose[2]}; }
+  static Eigen::Matrix3d attitude(const Stance::Pose& pose) {
     const double r = pose[3], p = pose[4], y = pose[5];
     Eigen::Matrix3d yaw, pitch, roll;
     yaw << std::cos(y), -std::sin(y), 0, std::sin(y), std::cos(y), 0, 0, 0, 1;
@@ -151,7 +151,7 @@ struct IdealLegs {
   bool has_estimate = false;
   VelocityCommand inbox;
   CommandFrame out, before;
-  LegController::Pose pose_before{};
+  Stance::Pose pose_before{};
 };
 
 /// Returns the robot after it stood up and came to rest.

@@ -87,7 +87,7 @@ TEST(JointBounds, AreTheRangesAndNineTenthsOfTheSpeedsThatTheGateAllows) {
     robot.joints[i].velocity_limit = 1 + static_cast<double>(i);
     if (i != 4) robot.joints[i].range = JointRange{-1 - static_cast<double>(i), 2};
   }
-  const std::array<JointBounds, kLegsJoints> bounds = joint_bounds(robot);
+  const AllJointBounds bounds = joint_bounds(robot);
   for (std::size_t i = 0; i < kLegsJoints; ++i) {
     const auto number = static_cast<double>(i);
     EXPECT_DOUBLE_EQ(bounds[i].motion.speed, i < 3 ? 0.9 * (1 + number) : 3) << i;

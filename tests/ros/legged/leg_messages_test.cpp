@@ -5,6 +5,8 @@
 
 #include <cmath>
 
+#include "control/legged/walk/own_gaits.h"
+
 namespace robot_control {
 namespace {
 
@@ -47,7 +49,7 @@ TEST(LegMessages, AGaitAndItsModeAreOneAndTheSame) {
   }
   EXPECT_FALSE(mode_of_gait("stand", gaits).has_value());
   EXPECT_FALSE(mode_of_gait("amble", all_gaits({})).has_value());
-  EXPECT_EQ(gait_names(gaits), "auto, trot, walking_trot, crawl, amble");
+  EXPECT_THAT(gait_words(gaits), ElementsAre("auto", "trot", "walking_trot", "crawl", "amble"));
 }
 
 TEST(LegMessages, TheStateNamesPostureFootAndReasons) {

@@ -32,7 +32,7 @@ Feet forces(const LegModel& robot, const NominalStance& stance, const Axes& acce
     const Eigen::Matrix3d jacobian =
         robot.legs[leg].kinematics.jacobian(LegModel::angles_of(stance.motion.angles, leg), foot);
     const Eigen::Vector3d moved = acceleration.head<3>() + acceleration.tail<3>().cross(foot);
-    all.segment<3>(static_cast<Eigen::Index>(6 + kLegJoints * leg)) = -jacobian.inverse() * moved;
+    all.segment<3>(6 + kLegJoints * leg) = -jacobian.inverse() * moved;
   }
   const Eigen::Matrix<double, kLeggedDofs, 1> efforts = stance.equations.mass * all + stance.equations.bias;
   FootForcesInput load{.feet = stance.feet, .force = efforts.head<3>(), .moment = efforts.segment<3>(3)};
@@ -48,7 +48,7 @@ std::array<AxisBounds, 6> body_bounds(const LegModel& robot) {
   const double time = std::sqrt(robot.leg_length() / kReferenceLeg);
   std::array<AxisBounds, 6> bounds;
   for (std::size_t axis = 0; axis < bounds.size(); ++axis) {
-    const Feet moved = forces(robot, stance, kSmall * Axes::Unit(static_cast<Eigen::Index>(axis)));
+    const Feet moved = forces(robot, stance, kSmall * Axes::Unit(axis));
     double least = std::numeric_limits<double>::infinity();
     for (std::size_t leg = 0; leg < kLegs; ++leg) {
       const Eigen::Vector3d change = (moved[leg] - weight[leg]) / kSmall;

@@ -22,8 +22,7 @@ NominalStance nominal_stance(const LegModel& robot) noexcept {
       if (pass > 0) stance.feet[leg].head<2>() += off.head<2>();
       const LegSolution solution = robot.legs[leg].kinematics.inverse(stance.feet[leg]);
       if (pass > 0 && solution.reach != FootReach::kReached) stance.short_leg = static_cast<LegPlace>(leg);
-      for (std::size_t i = 0; i < kLegJoints; ++i)
-        stance.motion.angles[kLegJoints * leg + i] = solution.angles[static_cast<Eigen::Index>(i)];
+      for (std::size_t i = 0; i < kLegJoints; ++i) stance.motion.angles[kLegJoints * leg + i] = solution.angles[i];
     }
     dynamics.step(stance.motion, stance.equations);
   }
@@ -38,10 +37,6 @@ Eigen::Matrix3d NominalStance::inertia() const noexcept {
 double nominal_height(const LegModel& robot) noexcept {
   const LegGeometry& first = robot.legs[0].kinematics.geometry();
   return leg_tuning(robot).height - first.hip.z() - first.upper.z() + robot.belly + robot.legs[0].foot_radius;
-}
-
-std::optional<LegPlace> short_leg(const LegModel& robot) {
-  return nominal_stance(robot).short_leg;
 }
 
 }  // namespace robot_control

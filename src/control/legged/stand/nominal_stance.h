@@ -27,7 +27,4 @@ NominalStance nominal_stance(const LegModel& robot) noexcept;
 /// Returns the height of the body above the one that lies level, in m.
 double nominal_height(const LegModel& robot) noexcept;
 
-/// Returns a leg that does not reach the ground in the nominal pose.
-std::optional<LegPlace> short_leg(const LegModel& robot);
-
 }  // namespace robot_control

@@ -61,12 +61,10 @@ double LegUse::needed_at(std::size_t leg, const Place& body, const Eigen::Vector
   const Eigen::Vector3d efforts = jacobian.transpose() * (body.back * force);
   double part = 0;
   for (std::size_t i = 0; i < kLegJoints; ++i) {
-    const auto axis = static_cast<Eigen::Index>(i);
     const std::size_t joint = kLegJoints * leg + i;
     const JointRange& range = kinematics.range(i);
-    if ((*angles)[axis] < range.lower + body.from_end || (*angles)[axis] > range.upper - body.from_end)
-      return kOutOfReach;
-    part = std::max({part, std::abs(rates[axis]) / speeds_[joint], std::abs(efforts[axis]) / efforts_[joint]});
+    if ((*angles)[i] < range.lower + body.from_end || (*angles)[i] > range.upper - body.from_end) return kOutOfReach;
+    part = std::max({part, std::abs(rates[i]) / speeds_[joint], std::abs(efforts[i]) / efforts_[joint]});
   }
   return part;
 }

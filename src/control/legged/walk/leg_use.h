@@ -66,8 +66,8 @@ class LegUse {
                    const Eigen::Vector3d& force) const noexcept;
 
   std::array<LegKinematics, kLegs> legs_;
-  std::array<double, kLegsJoints> speeds_{};   ///< rad/s, limits
-  std::array<double, kLegsJoints> efforts_{};  ///< N·m, of torques that count as the speed limit
+  LegsValues speeds_{};                        ///< rad/s, limits
+  LegsValues efforts_{};                       ///< N·m, of torques that count as the speed limit
   std::array<Eigen::Vector3d, kLegs> feet_{};  ///< m, nominal
   Eigen::Vector3d centre_;                     ///< m, of gravity
   double weight_;                              ///< N

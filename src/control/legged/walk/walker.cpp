@@ -41,7 +41,7 @@ double within(const JointRange& range, double angle) noexcept {
 }
 
 Eigen::Index joint_row(std::size_t leg) noexcept {
-  return static_cast<Eigen::Index>(6 + kLegJoints * leg);
+  return 6 + kLegJoints * leg;
 }
 
 }  // namespace
@@ -243,7 +243,7 @@ Eigen::Vector3d Walker::landing(const State& state, const WalkInput& input, cons
                    .yaw_rate = input.twist[2],
                    .until_landing = (1 - gait.swung(leg, state.phase)) * gait.swing_time(),
                    .stance_time = gait.stance_time(),
-                   .height = height_ + input.height,
+                   .height = height_ + input.body[0],
                    .leg_length = length_};
   Eigen::Vector3d place = Eigen::Vector3d::Zero();
   place.head<2>() = body.centre.head<2>() + foothold(at);
@@ -256,8 +256,8 @@ void Walker::plan(State& state, const WalkInput& input, const WalkingBody& body)
   ForcePlanInput to;
   to.place << body.roll, body.pitch, 0, 0, 0, body.centre.z() - ground_below(state, body.centre);
   to.speed << body.rate, body.moves;
-  to.target << input.roll + state.ground[2], input.pitch - state.ground[1], state.ahead[2], state.ahead[0],
-      state.ahead[1], height_ + input.height;
+  to.target << input.body[1] + state.ground[2], input.body[2] - state.ground[1], state.ahead[2], state.ahead[0],
+      state.ahead[1], height_ + input.body[0];
   to.target_speed << input.rates[1], input.rates[2], input.twist[2], input.twist[0], input.twist[1], input.rates[0];
   to.steps = std::min(kPlanSteps, static_cast<std::size_t>(5 / gait.duty));
   const double step = plan_parameters_.horizon / static_cast<double>(to.steps);
@@ -302,15 +302,14 @@ double Walker::bears_for(const State& state, std::uint64_t wanted, std::size_t l
 double Walker::part_in_reach(const State& state, const WalkInput& input) const noexcept {
   double part = 1;
   if (gait(state).duty >= 1) return part;
-  const Eigen::Matrix3d leaning = (Eigen::AngleAxisd(input.pitch, Eigen::Vector3d::UnitY()) *
-                                   Eigen::AngleAxisd(input.roll, Eigen::Vector3d::UnitX()))
+  const Eigen::Matrix3d leaning = (Eigen::AngleAxisd(input.body[2], Eigen::Vector3d::UnitY()) *
+                                   Eigen::AngleAxisd(input.body[1], Eigen::Vector3d::UnitX()))
                                       .toRotationMatrix();  // base axes → those of the ground
   for (std::size_t leg = 0; leg < kLegs; ++leg) {
     if (state.bears[leg] == 0) continue;
     const LegKinematics& kinematics = legs_[leg].kinematics;
     LegAngles now;
-    for (std::size_t i = 0; i < kLegJoints; ++i)
-      now[static_cast<Eigen::Index>(i)] = input.sensors->joints[kLegJoints * leg + i].position;
+    for (std::size_t i = 0; i < kLegJoints; ++i) now[i] = input.sensors->joints[kLegJoints * leg + i].position;
     const Eigen::Vector3d foot = kinematics.position(now);
     const Eigen::Vector3d way =
         bears_for(state, input.gait, leg) * (leaning.transpose() * velocity_below(leaning * foot, input.twist));
@@ -343,22 +342,17 @@ void Walker::bear(const State& state, const WalkingBody& body, std::size_t leg, 
       -body.jacobians[leg].transpose() * (body.turned.transpose() * ConstMap(state.forces[leg].data()));
   double part = 1;
   for (std::size_t i = 0; i < kLegJoints; ++i) {
-    const auto axis = static_cast<Eigen::Index>(i);
-    const double room = effort_limits_[kLegJoints * leg + i] - std::copysign(own[axis], own[axis] * load[axis]);
-    if (std::abs(load[axis]) > room) part = std::min(part, std::max(0.0, room) / std::abs(load[axis]));
+    const double room = effort_limits_[kLegJoints * leg + i] - std::copysign(own[i], own[i] * load[i]);
+    if (std::abs(load[i]) > room) part = std::min(part, std::max(0.0, room) / std::abs(load[i]));
   }
   for (std::size_t i = 0; i < kLegJoints; ++i) {
     const std::size_t joint = kLegJoints * leg + i;
-    const auto axis = static_cast<Eigen::Index>(i);
     const double ahead = body.angles[joint] + tuning_.damping / tuning_.stiffness * body.rates[joint];
     const double stop = tuning_.stiffness * (within(legs_[leg].kinematics.range(i), ahead) - ahead);
     const double limit = effort_limits_[joint];
     out.joints[joint] = {.mode = JointMode::kImpedance,
                          .position = body.angles[joint],
-                         .velocity = 0,
-                         .stiffness = 0,
-                         .damping = 0,
-                         .effort = std::clamp(own[axis] + part * load[axis] + stop, -limit, limit)};
+                         .effort = std::clamp(own[i] + part * load[i] + stop, -limit, limit)};
   }
 }
 
@@ -382,15 +376,10 @@ void Walker::swing(const State& state, const WalkInput& input, const WalkingBody
       body.equations.mass.block<3, 3>(row, row) * accelerations + body.equations.bias.segment<3>(row);
   for (std::size_t i = 0; i < kLegJoints; ++i) {
     const std::size_t joint = kLegJoints * leg + i;
-    const auto axis = static_cast<Eigen::Index>(i);
     const double limit = effort_limits_[joint];
-    const double angle = within(kinematics.range(i), solution.angles[axis]);
-    out.joints[joint] = {.mode = JointMode::kImpedance,
-                         .position = angle,
-                         .velocity = angle == solution.angles[axis] ? rates[axis] : 0,
-                         .stiffness = tuning_.stiffness,
-                         .damping = tuning_.damping,
-                         .effort = std::clamp(efforts[axis], -limit, limit)};
+    const double angle = within(kinematics.range(i), solution.angles[i]);
+    const double rate = angle == solution.angles[i] ? rates[i] : 0;
+    out.joints[joint] = tuning_.impedance(angle, rate, std::clamp(efforts[i], -limit, limit));
   }
 }
 

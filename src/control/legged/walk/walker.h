@@ -36,6 +36,7 @@
 #include "control/legged/tracked_axis.h"
 #include "control/legged/walk/force_plan.h"
 #include "control/legged/walk/gait_table.h"
+#include "control/legged/walk/leg_use.h"
 #include "control/legged/walk/twist_limiter.h"
 #include "machine/legs/leg_dynamics.h"
 #include "machine/legs/leg_model.h"
@@ -49,10 +50,9 @@ struct WalkInput {
   const SensorFrame* sensors = nullptr;  ///< all joints are measured
   const StateFrame* state = nullptr;     ///< valid
   WalkingTwist twist{};                  ///< limited
-  double height = 0;                     ///< m, of the body from the nominal one
-  double roll = 0, pitch = 0;            ///< rad
-  std::array<double, 3> rates{};         ///< m/s, rad/s, of height, roll and pitch
-  std::uint64_t gait = kStandGait;       ///< wanted; kStandGait ends the walk
+  CarriedBody body{};
+  CarriedBody rates{};              ///< m/s, rad/s
+  std::uint64_t gait = kStandGait;  ///< wanted; kStandGait ends the walk
 };
 
 /// The body as it is.
@@ -63,8 +63,8 @@ struct WalkingBody {
   Eigen::Vector3d centre = Eigen::Vector3d::Zero();      ///< m, centre of gravity, level axes
   Eigen::Vector3d moves = Eigen::Vector3d::Zero();       ///< m/s, of the centre of gravity, level axes
   double roll = 0, pitch = 0;                            ///< rad
-  std::array<double, kLegsJoints> angles{};              ///< rad
-  std::array<double, kLegsJoints> rates{};               ///< rad/s
+  LegsValues angles{};                                   ///< rad
+  LegsValues rates{};                                    ///< rad/s
   std::array<Eigen::Vector3d, kLegs> feet{};             ///< m, level axes
   std::array<Eigen::Matrix3d, kLegs> jacobians{};        ///< base axes
   LeggedEquations equations;
@@ -143,7 +143,7 @@ class Walker {
   std::array<Leg, kLegs> legs_;
   LegDynamics dynamics_;
   LegTuning tuning_;
-  std::array<double, kLegsJoints> effort_limits_{};  ///< N·m
+  LegsValues effort_limits_{};  ///< N·m
   Gaits gaits_;
   double length_;                                 ///< m, of a leg
   std::array<Eigen::Vector2d, kLegs> nominal_{};  ///< m, feet from the centre of gravity

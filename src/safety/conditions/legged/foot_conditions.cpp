@@ -119,7 +119,7 @@ void FootConditions::step(const MonitorInput& input, const Eigen::Vector3d& up, 
 
 void FootConditions::sample(const SensorFrame& sensors, const LeggedCommand& asked, const Eigen::Vector3d& up,
                             const Feet& judged) noexcept {
-  std::array<double, kLegsJoints> angles{};
+  LegsValues angles{};
   for (std::size_t i = 0; i < kLegsJoints; ++i) {
     if (!has_position(sensors.joints[i])) return;
     angles[i] = sensors.joints[i].position;

@@ -175,7 +175,7 @@ class JointConditions {
 
   double period_;
   std::array<Limits, kLegsJoints> limits_{};
-  std::array<double, kLegsJoints> behind_{};  ///< rad, of joints of feet in the air, the mean
+  LegsValues behind_{};  ///< rad, of joints of feet in the air, the mean
   std::array<MotorTorque, kLegsJoints> torques_{};
   std::array<Way, kLegsJoints> ways_{};
   Watches speed_, effort_, range_, following_;

@@ -101,7 +101,7 @@ class LeggedConditions {
   JointConditions joint_conditions_;
   EncoderConditions encoder_conditions_;
   FootConditions foot_conditions_;
-  std::array<double, kLegsJoints> anchor_{};  ///< rad
+  LegsValues anchor_{};  ///< rad
   bool anchored_ = false;
   bool moving_ = false;
   double inside_ = 0;  ///< s

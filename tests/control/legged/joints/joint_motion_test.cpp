@@ -14,12 +14,12 @@ class JointMotionOf : public testing::Test {
     for (std::size_t i = 0; i < kLegsJoints; ++i) {
       start_[i] = 0.1 * static_cast<double>(i);
       target_[i] = start_[i] + 0.05 + 0.01 * static_cast<double>(i);
-      bounds_[i] = {.speed = 3, .acceleration = 15};
+      bounds_[i].motion = {.speed = 3, .acceleration = 15};
     }
     motion_.begin(start_);
   }
   Positions start_{}, target_{};
-  std::array<AxisBounds, kLegsJoints> bounds_{};
+  AllJointBounds bounds_{};
   JointMotion motion_;
 };
 
@@ -50,14 +50,14 @@ TEST_F(JointMotionOf, BeginsTheHorizonAgainWithEachRequest) {
 }
 
 TEST_F(JointMotionOf, LetsEachJointFollowItsReferenceWithinItsOwnBounds) {
-  bounds_[3].speed = 0.2;
-  bounds_[4].acceleration = 1;
+  bounds_[3].motion.speed = 0.2;
+  bounds_[4].motion.acceleration = 1;
   for (int k = 0; k < 60; ++k) {
     const JointMotion before = motion_;
     motion_.follow(target_, k == 0, bounds_, kStep);
     for (std::size_t i = 0; i < kLegsJoints; ++i) {
-      EXPECT_LE(std::abs(motion_.axes[i].speed), bounds_[i].speed + 1e-9);
-      EXPECT_LE(std::abs(motion_.axes[i].speed - before.axes[i].speed), bounds_[i].acceleration * kStep + 1e-9);
+      EXPECT_LE(std::abs(motion_.axes[i].speed), bounds_[i].motion.speed + 1e-9);
+      EXPECT_LE(std::abs(motion_.axes[i].speed - before.axes[i].speed), bounds_[i].motion.acceleration * kStep + 1e-9);
     }
     if (k == 12) {
       EXPECT_NEAR(motion_.axes[2].value, target_[2], 0.02);
@@ -102,7 +102,7 @@ class LyingJoints : public testing::Test {
 
 TEST_F(LyingJoints, GoToTheRequestWithinTheirBounds) {
   const Request wanted = near(0.2);
-  const std::array<JointBounds, kLegsJoints> bounds = joint_bounds(legs_.robot);
+  const AllJointBounds bounds = joint_bounds(legs_.robot);
   legs_.step(wanted);
   EXPECT_EQ(legs_.out.legged.phase, LegPhase::kJoints);
   for (std::size_t i = 0; i < kLegsJoints; ++i) {
@@ -155,7 +155,7 @@ TEST_F(LyingJoints, StayWhereTheyAreAfterTheRequestHasTimedOut) {
   ASSERT_GT(distance, 0.001);
   legs_.run(0.3, {});
   EXPECT_EQ(legs_.out.legged.phase, LegPhase::kJoints);
-  const Positions rest = legs_.state().angles;
+  const Positions rest = legs_.state().stand.angles;
   EXPECT_LT(std::abs(rest[2] - start_[2]), 0.3);
   legs_.run(0.5, {});
   for (std::size_t i = 0; i < kLegsJoints; ++i) EXPECT_NEAR(legs_.out.joints[i].position, rest[i], 1e-6);

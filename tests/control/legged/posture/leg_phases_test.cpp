@@ -83,7 +83,7 @@ TEST(GatheredLegs, MeasureTheSlopeInTheLyingPostureAlone) {
     EXPECT_EQ(legs.out.legged.phase, LegPhase::kGathering);
     legs.estimate.base.attitude = uphill(kSlope);
     run_until(legs, LegPhase::kStanding);
-    const Vector3& up = legs.state().up;
+    const Vector3& up = legs.state().stand.up;
     EXPECT_NEAR(std::atan2(std::hypot(up[0], up[1]), up[2]), kSlope + std::abs(legs.robot.lying_pitch),
                 0.01 + std::abs(legs.robot.lying_pitch));
   }
@@ -192,7 +192,7 @@ TEST(RisingLegs, LiftTheBodySmoothlyWithItsCentreOfGravityAmidTheFeet) {
       const double down = std::max(ground, z - 0.1 * elapsed), up = std::min(ground, z + 0.1 * elapsed);
       const Eigen::Vector3d place(began[leg].x(), began[leg].y(), z > ground ? down : up);
       EXPECT_LE((legs.foot(leg) - place).norm(), 1e-6) << leg << " at " << elapsed;
-      EXPECT_NEAR(legs.state().share[leg], std::min(1.0, elapsed / kLoadTime), 1e-9);
+      EXPECT_NEAR(legs.state().stand.share[leg], std::min(1.0, elapsed / kLoadTime), 1e-9);
     }
   }
   legs.step();
@@ -249,7 +249,7 @@ TEST(LoweringLegs, SinkWithinTheRiseTime) {
     EXPECT_NEAR(legs.pose()[2], smooth(1 - elapsed / time) * height, 1e-9);
     for (std::size_t leg = 0; leg < kLegs; ++leg) {
       EXPECT_LE((legs.foot(leg) - feet[leg]).norm(), 1e-6) << leg;
-      EXPECT_NEAR(legs.state().share[leg], std::min(1.0, (time - elapsed) / kLoadTime), 1e-9);
+      EXPECT_NEAR(legs.state().stand.share[leg], std::min(1.0, (time - elapsed) / kLoadTime), 1e-9);
     }
     EXPECT_EQ(legs.out.legged.body, (std::array<double, 6>{})) << "only a standing body has a pose";
   }
@@ -262,7 +262,7 @@ TEST(LoweringLegs, ReturnToTheNominalPoseFirst) {
   IdealLegs legs = standing();
   Request pose;
   pose.posture = {.height = -0.02, .roll = 0.1, .pitch = -0.05, .x = 0.02, .y = 0.03, .yaw = 0.1};
-  const LegController::Pose nominal = legs.pose();
+  const Stance::Pose nominal = legs.pose();
   legs.run(1.5, pose);
   legs.step(stance_of({ModeKind::kLie}));
   for (int k = 0; k < 400 && legs.state().sinks == 0; ++k) {
@@ -288,6 +288,17 @@ TEST(LoweringLegs, StandUpAgainFromWhereTheyAre) {
   for (; cycles < 400 && legs.out.legged.phase == LegPhase::kRising; ++cycles) legs.step();
   EXPECT_NEAR(cycles * kCycle, 0.3 * time, 4 * kCycle);
   EXPECT_EQ(legs.out.legged.phase, LegPhase::kStanding);
+}
+
+TEST(RisingLegs, SinkWithinTheRiseTimeIfALieIsRequestedInTheirLastCycle) {
+  IdealLegs legs(lopsided()), next = legs;
+  legs.request(stance_of({ModeKind::kStand}));
+  for (next = legs; next.out.legged.phase != LegPhase::kStanding; next.step()) legs = next;
+  const double height = legs.pose()[2];
+  legs.step(stance_of({ModeKind::kLie}));
+  legs.step();
+  EXPECT_EQ(legs.out.legged.phase, LegPhase::kLowering);
+  EXPECT_NEAR(legs.pose()[2], height, 0.01);
 }
 
 TEST(LoweringLegs, StandAgainAtOnceWhereTheBodyHasNotSunk) {

@@ -27,10 +27,10 @@ TEST_P(BodyBoundsOf, AreThoseOfFeetThatNeitherSlipNorLift) {
 
 TEST_P(BodyBoundsOf, AreFiniteAndPositiveForLegsThatDoNotReachTheGround) {
   LegModel robot = legged_robot(GetParam());
-  EXPECT_FALSE(short_leg(robot).has_value());
+  EXPECT_FALSE(nominal_stance(robot).short_leg.has_value());
   robot.belly += 10;  // m, and the ground with it
   robot.legs[0].foot_radius = -10;
-  EXPECT_EQ(short_leg(robot), LegPlace::kRearRight);
+  EXPECT_EQ(nominal_stance(robot).short_leg, LegPlace::kRearRight);
   for (const AxisBounds& bounds : body_bounds(robot)) {
     EXPECT_GE(bounds.acceleration, 0.1);
     EXPECT_LE(bounds.acceleration, 1000);
@@ -114,9 +114,9 @@ TEST(BodyBounds, FindALegThatIsTooShortAtEachCorner) {
     LegGeometry geometry = robot.legs[leg].kinematics.geometry();
     geometry.hip.z() += 0.3;
     robot.legs[leg].kinematics = LegKinematics(geometry);
-    EXPECT_EQ(short_leg(robot), static_cast<LegPlace>(leg));
+    EXPECT_EQ(nominal_stance(robot).short_leg, static_cast<LegPlace>(leg));
   }
-  EXPECT_EQ(short_leg(lopsided()), std::nullopt);
+  EXPECT_EQ(nominal_stance(lopsided()).short_leg, std::nullopt);
 }
 
 /// Terms of the header: n/w + 2w of the body, the foot's way, its load, the rise.

@@ -18,7 +18,7 @@ TEST(BodyPose, IsReachedWithAllFeetWhereTheyStood) {
                                               std::array<double, 6>{-0.02, 0.02, 0.02, -0.1, 0.05, -0.12}}) {
     IdealLegs legs = standing();
     const std::array<Eigen::Vector3d, kLegs> feet = legs.feet();
-    const LegController::Pose from = legs.pose();
+    const Stance::Pose from = legs.pose();
     legs.request(pose_of(wanted));
     for (int k = 0; k < 300; ++k) {
       legs.step();
@@ -47,11 +47,11 @@ TEST(BodyPose, StaysWithinItsRanges) {
       wanted[i] = 1.01 * side * ranges[i];
       legs.step(pose_of(wanted));
       EXPECT_EQ(legs.out.reasons, std::uint64_t{kReasonOutOfReach}) << i;
-      EXPECT_NEAR(legs.state().held[i], side * ranges[i], 1e-12) << i;
+      EXPECT_NEAR(legs.state().stand.held[i], side * ranges[i], 1e-12) << i;
       wanted[i] = 0.99 * side * ranges[i];
       legs.step(pose_of(wanted));
       EXPECT_EQ(legs.out.reasons, 0u) << i;
-      EXPECT_NEAR(legs.state().held[i], wanted[i], 1e-12) << i;
+      EXPECT_NEAR(legs.state().stand.held[i], wanted[i], 1e-12) << i;
     }
   }
 }
@@ -60,8 +60,8 @@ TEST(BodyPose, LeansNoFartherInRollAndPitchTogether) {
   IdealLegs legs = standing();
   legs.step(pose_of({0, 0, 0, 0.3, -0.4, 0}));
   EXPECT_NE(legs.out.reasons & kReasonOutOfReach, 0u);
-  EXPECT_NEAR(legs.state().held[3], 0.18, 1e-12);
-  EXPECT_NEAR(legs.state().held[4], -0.24, 1e-12);
+  EXPECT_NEAR(legs.state().stand.held[3], 0.18, 1e-12);
+  EXPECT_NEAR(legs.state().stand.held[4], -0.24, 1e-12);
   legs.step(pose_of({0, 0, 0, 0.3, 0, 0}));
   EXPECT_EQ(legs.out.reasons, 0u);
 }
@@ -72,11 +72,11 @@ TEST(BodyPose, HoldsTheStoppingPlaceOfAMotionThatIsInterrupted) {
   const std::array<AxisBounds, 6> bounds = body_bounds(legs.robot);
   legs.step(pose_of({0.05, 0.05, -0.05, 0.2, 0.1, 0.2}));
   for (int k = 0; k < 100 && (legs.out.reasons & kReasonTimedOut) == 0; ++k) {
-    legs.pose_before = stopping_place(legs.state().body, bounds);
-    const LegController::Pose place = legs.pose_before;
+    legs.pose_before = stopping_place(legs.state().stand.body, bounds);
+    const Stance::Pose place = legs.pose_before;
     legs.step();
     if ((legs.out.reasons & kReasonTimedOut) == 0) continue;
-    ASSERT_GT(stopping_time(legs.state().body, bounds), 0.01);
+    ASSERT_GT(stopping_time(legs.state().stand.body, bounds), 0.01);
     for (int wait = 0; wait < 200; ++wait) legs.step();
     for (std::size_t i = 0; i < 6; ++i) EXPECT_NEAR(legs.pose()[i], place[i], 1e-3) << i;
   }
@@ -141,9 +141,10 @@ TEST(BodyPose, StopsBeforeAKneeIsStraight) {
     // This foot stands in a hole.
     const LegKinematics& kinematics = nominal.robot.legs[leg].kinematics;
     for (int k = 0; k < 100; ++k) {
-      state.places[leg][2] -= 0.001;
-      const Eigen::Vector3d foot(state.places[leg][0] - nominal.pose()[0], state.places[leg][1] - nominal.pose()[1],
-                                 state.places[leg][2] - nominal.pose()[2]);
+      state.stand.places[leg][2] -= 0.001;
+      const Eigen::Vector3d foot(state.stand.places[leg][0] - nominal.pose()[0],
+                                 state.stand.places[leg][1] - nominal.pose()[1],
+                                 state.stand.places[leg][2] - nominal.pose()[2]);
       if (std::abs(kinematics.bend(kinematics.inverse(foot).angles)) < 0.5) break;
     }
     nominal.controller.set_state(state);
@@ -190,19 +191,19 @@ TEST(BodyPose, MovesAtThePartOfItsSpeedThatThePermitAllows) {
     double fastest = 0;
     for (int k = 0; k < 300; ++k) {
       slow.step();
-      fastest = std::max(fastest, std::abs(slow.state().body[axis].speed));
+      fastest = std::max(fastest, std::abs(slow.state().stand.body[axis].speed));
       const bool arrived = std::abs(slow.out.legged.body[axis] - ways[axis][axis]) < 4e-4;
       if (k < 5) {
         EXPECT_EQ(slow.out.reasons, std::uint64_t{kReasonPermitSlow});
       }
-      if (arrived && std::abs(slow.state().body[axis].speed) < 0.01) {
+      if (arrived && std::abs(slow.state().stand.body[axis].speed) < 0.01) {
         EXPECT_EQ(slow.out.reasons, 0u);
       }
     }
     EXPECT_NEAR(fastest, pace * bounds[axis].speed, 1e-3) << axis;
   }
   legs.permit.speed_limit = 0;
-  const LegController::Pose stood = legs.pose();
+  const Stance::Pose stood = legs.pose();
   legs.run(0.5, pose_of(ways[0]));
   for (std::size_t i = 0; i < 6; ++i) EXPECT_NEAR(legs.pose()[i], stood[i], 1e-9);
   EXPECT_EQ(legs.out.reasons, std::uint64_t{kReasonPermitSlow});
@@ -246,7 +247,7 @@ TEST(BodyPose, RollsOnTheBallsOfItsFeet) {
 TEST(BodyPose, AFootThatComesOutOfReachMovesItsJointsNoFasterThanTheyMay) {
   IdealLegs legs = standing(legged_robot("quadbot"), 0.001);
   LegController::State state = legs.state();
-  state.places[0] = {-0.6, -0.3, 0.1};
+  state.stand.places[0] = {-0.6, -0.3, 0.1};
   legs.controller.set_state(state);
   for (int k = 0; k < 200; ++k) {
     legs.step(Request{});

@@ -145,10 +145,10 @@ TEST(LegEfforts, SmoothTheAcceleration) {
   double expected = 0, last = 0;
   for (int k = 0; k < 30; ++k) {
     legs.step();
-    const double speed = legs.state().body[0].speed;
+    const double speed = legs.state().stand.body[0].speed;
     expected += 0.2 * ((speed - last) / 0.001 - expected);
     last = speed;
-    EXPECT_NEAR(legs.state().acceleration[0], expected, 1e-6) << k;
+    EXPECT_NEAR(legs.state().stand.acceleration[0], expected, 1e-6) << k;
   }
   EXPECT_GT(expected, 0.5);
 }

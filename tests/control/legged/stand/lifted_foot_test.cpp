@@ -32,15 +32,15 @@ TEST_P(LiftedFoot, GoesUpAfterItsLoadAndAfterTheBodyIsAboveTheOthers) {
   const Eigen::Vector2d place = middle + 0.6 * (three - middle);
   legs_.request(lift_of(leg_, 0, 0, 0.08));
   double unloading = 0;
-  while (legs_.state().share[leg_] > 0 && unloading < 3) {
-    const double before = legs_.state().share[leg_];
+  while (legs_.state().stand.share[leg_] > 0 && unloading < 3) {
+    const double before = legs_.state().stand.share[leg_];
     legs_.step();
     EXPECT_EQ(legs_.out.legged.lifted, leg_ + 1);
-    if (legs_.state().share[leg_] < before) {
+    if (legs_.state().stand.share[leg_] < before) {
       EXPECT_LE((legs_.centre() - place).norm(), 0.002);
       unloading += kCycle;
     }
-    if (legs_.state().share[leg_] == 0) break;
+    if (legs_.state().stand.share[leg_] == 0) break;
     EXPECT_LE((legs_.foot(leg_) - feet_[leg_]).norm(), 1e-6) << "it stands until it carries nothing";
   }
   EXPECT_NEAR(unloading, kLoadTime, kCycle);
@@ -68,7 +68,7 @@ TEST_P(LiftedFoot, GoesWhereItIsRequestedOnceItIsClearOfTheGround) {
     if (way.head<2>().norm() > 1e-5) {
       EXPECT_GT(way.z(), 0.8 * 0.25 * tuning_.lift - 1e-4) << k;
     }
-    for (const TrackedAxis& axis : legs_.state().foot) EXPECT_LE(std::abs(axis.speed), tuning_.foot.speed + 1e-9);
+    for (const TrackedAxis& axis : legs_.state().stand.foot) EXPECT_LE(std::abs(axis.speed), tuning_.foot.speed + 1e-9);
   }
   EXPECT_LE((legs_.foot(leg_) - feet_[leg_] - Eigen::Vector3d(0.05, -0.04, 0.06)).norm(), 2e-4);
 }
@@ -81,22 +81,22 @@ TEST_P(LiftedFoot, StaysWithinItsRange) {
     IdealLegs legs = legs_;
     legs.step(lift_of(leg_, beyond, 0, 0.08));
     EXPECT_NE(legs.out.reasons & kReasonOutOfReach, 0u);
-    EXPECT_NEAR(legs.state().foot_target[0], side * tuning_.foot_range, 1e-12);
+    EXPECT_NEAR(legs.state().stand.foot_target[0], side * tuning_.foot_range, 1e-12);
     legs.step(lift_of(leg_, 0, beyond, 0.08));
     EXPECT_NE(legs.out.reasons & kReasonOutOfReach, 0u);
-    EXPECT_NEAR(legs.state().foot_target[1], side * tuning_.foot_range, 1e-12);
+    EXPECT_NEAR(legs.state().stand.foot_target[1], side * tuning_.foot_range, 1e-12);
     legs.step(lift_of(leg_, within, within, 0.08));
     EXPECT_EQ(legs.out.reasons, 0u);
-    EXPECT_NEAR(legs.state().foot_target[0], within, 1e-12);
-    EXPECT_NEAR(legs.state().foot_target[1], within, 1e-12);
+    EXPECT_NEAR(legs.state().stand.foot_target[0], within, 1e-12);
+    EXPECT_NEAR(legs.state().stand.foot_target[1], within, 1e-12);
   }
   const double highest = tuning_.lift + tuning_.foot_range, lowest = 0.25 * tuning_.lift;
   legs_.step(lift_of(leg_, 0, 0, highest + 0.01));
   EXPECT_NE(legs_.out.reasons & kReasonOutOfReach, 0u);
-  EXPECT_NEAR(legs_.state().foot_target[2], highest, 1e-12);
+  EXPECT_NEAR(legs_.state().stand.foot_target[2], highest, 1e-12);
   legs_.step(lift_of(leg_, 0, 0, lowest - 0.01));
   EXPECT_NE(legs_.out.reasons & kReasonOutOfReach, 0u);
-  EXPECT_NEAR(legs_.state().foot_target[2], lowest, 1e-12);
+  EXPECT_NEAR(legs_.state().stand.foot_target[2], lowest, 1e-12);
 }
 
 TEST_P(LiftedFoot, ComesDownWhereItStoodAndCarriesAgain) {
@@ -106,7 +106,7 @@ TEST_P(LiftedFoot, ComesDownWhereItStoodAndCarriesAgain) {
   double loading = 0;
   for (int k = 0; k < 600; ++k) {
     const Eigen::Vector3d way = legs_.foot(leg_) - feet_[leg_];
-    const double share = legs_.state().share[leg_];
+    const double share = legs_.state().stand.share[leg_];
     if (legs_.out.legged.lifted != 0) {
       EXPECT_LE((legs_.centre() - centre).norm(), 0.003) << "the body waits";
     }
@@ -114,7 +114,7 @@ TEST_P(LiftedFoot, ComesDownWhereItStoodAndCarriesAgain) {
       EXPECT_GE(way.z(), 0.079) << "it goes above its place first";
     }
     legs_.step();
-    if (legs_.state().share[leg_] > share) {
+    if (legs_.state().stand.share[leg_] > share) {
       EXPECT_LE(way.norm(), 0.0015);
       loading += kCycle;
     }
@@ -129,9 +129,9 @@ TEST_P(LiftedFoot, ComesDownBeforeAnotherGoesUp) {
   legs_.run(2.0, lift_of(leg_, 0, 0, 0.08));
   const std::size_t other = (leg_ + 1) % kLegs;
   legs_.request(lift_of(other, 0, 0, 0.05));
-  while (legs_.state().share[leg_] < 1) {
+  while (legs_.state().stand.share[leg_] < 1) {
     ASSERT_EQ(legs_.out.legged.lifted, leg_ + 1);
-    EXPECT_EQ(legs_.state().share[other], 1);
+    EXPECT_EQ(legs_.state().stand.share[other], 1);
     legs_.step();
   }
   for (int k = 0; k < 500; ++k) legs_.step();
@@ -145,7 +145,7 @@ TEST_P(LiftedFoot, ComesDownBeforeTheRobotLies) {
   legs_.step(stance_of({ModeKind::kLie}));
   int cycles = 1;
   for (; cycles < 1000 && legs_.out.legged.phase != LegPhase::kLying; ++cycles) {
-    if (legs_.state().share[leg_] < 1 && legs_.state().sinks == 0) {
+    if (legs_.state().stand.share[leg_] < 1 && legs_.state().sinks == 0) {
       EXPECT_NEAR(legs_.pose()[2], height, 1e-3);
     }
     legs_.step();
@@ -162,7 +162,7 @@ TEST_P(LiftedFoot, IsAsSlowAsThePermitSaysAndComesDownAtItsOwnSpeed) {
     legs_.request(request);
     for (int k = 0; k < 120; ++k) {
       legs_.step();
-      for (const TrackedAxis& axis : legs_.state().foot) speed = std::max(speed, std::abs(axis.speed));
+      for (const TrackedAxis& axis : legs_.state().stand.foot) speed = std::max(speed, std::abs(axis.speed));
     }
     return speed;
   };
@@ -177,7 +177,7 @@ TEST_P(LiftedFoot, LeavesTheBodyItsNominalAttitude) {
   legs_.run(2.0, lift_of(leg_, 0, 0, 0.08));
   for (const std::size_t level : {3, 4, 5}) EXPECT_NEAR(legs_.pose()[level], 0, 6e-4);
   legs_.run(2.0, {});
-  EXPECT_EQ(legs_.state().lifted, kLegs);
+  EXPECT_EQ(legs_.state().stand.lifted, kLegs);
   for (std::size_t i = 0; i < 6; ++i) EXPECT_NEAR(legs_.out.legged.body[i], 0, 1e-3);
 }
 

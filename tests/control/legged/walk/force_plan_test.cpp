@@ -299,12 +299,12 @@ class RigidWalker {
   int cycle_ = 0, failures_ = 0;
 };
 
-struct Walk {
+struct PlannedWalk {
   std::uint64_t gait;
   Eigen::Vector3d request;  ///< m/s, m/s, rad/s
 };
 
-class RigidWalk : public testing::TestWithParam<Walk> {};
+class RigidWalk : public testing::TestWithParam<PlannedWalk> {};
 
 TEST_P(RigidWalk, FollowsTheRequestUpright) {
   const Eigen::Vector3d request = GetParam().request;
@@ -322,11 +322,13 @@ TEST_P(RigidWalk, FollowsTheRequestUpright) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Walks, RigidWalk,
-                         testing::Values(Walk{gait_named("trot"), {0.5, 0, 0}}, Walk{gait_named("trot"), {1.5, 0, 0}},
-                                         Walk{gait_named("trot"), {0, 0.3, 0}}, Walk{gait_named("trot"), {0, 0, 1.5}},
-                                         Walk{gait_named("trot"), {0.5, 0.2, 0.5}},
-                                         Walk{gait_named("walking_trot"), {0.5, 0, 0}},
-                                         Walk{gait_named("crawl"), {0.2, 0, 0}}));
+                         testing::Values(PlannedWalk{gait_named("trot"), {0.5, 0, 0}},
+                                         PlannedWalk{gait_named("trot"), {1.5, 0, 0}},
+                                         PlannedWalk{gait_named("trot"), {0, 0.3, 0}},
+                                         PlannedWalk{gait_named("trot"), {0, 0, 1.5}},
+                                         PlannedWalk{gait_named("trot"), {0.5, 0.2, 0.5}},
+                                         PlannedWalk{gait_named("walking_trot"), {0.5, 0, 0}},
+                                         PlannedWalk{gait_named("crawl"), {0.2, 0, 0}}));
 
 }  // namespace
 }  // namespace robot_control

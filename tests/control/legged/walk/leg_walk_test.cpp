@@ -145,14 +145,14 @@ TEST(LegWalk, ChoosesATrotForFastFeetAndKeepsItUntilTheyAreSlow) {
       const auto walk = [&](double fast) {
         const double speed = fast * std::sqrt(size * 0.426 / kReferenceLeg);
         legs.run(1.2, twist_of(speed * way[0], speed * way[1], speed * way[2]));
-        return legs.legs.state().gait;
+        return legs.legs.state().walk.gait;
       };
       EXPECT_EQ(walk(0.25), gait_named("walking_trot"));
       EXPECT_EQ(walk(0.39), gait_named("walking_trot"));
       EXPECT_EQ(walk(0.41), gait_named("trot"));
       EXPECT_EQ(walk(0.31), gait_named("trot"));
       legs.step(twist_of(0.1 * way[0], 0.1 * way[1], 0.1 * way[2]));
-      EXPECT_EQ(legs.legs.state().gait, gait_named("trot")) << "the body is still fast";
+      EXPECT_EQ(legs.legs.state().walk.gait, gait_named("trot")) << "the body is still fast";
       EXPECT_EQ(walk(0.29), gait_named("walking_trot"));
     }
   }
@@ -465,7 +465,7 @@ TEST(LegWalk, TakesOfAPoseWhatTheLegsCarryInTheGaitOfNow) {
   EXPECT_EQ(legs.legs.out.reasons, std::uint64_t{kReasonOutOfReach});
   WalkingLegs trots(weak);
   trots.run(1, request);
-  EXPECT_EQ(legs.legs.state().lean_target, trots.legs.state().lean_target) << "as without the crawl";
+  EXPECT_EQ(legs.legs.state().walk.lean_target, trots.legs.state().walk.lean_target) << "as without the crawl";
 }
 
 TEST(LegWalk, BeginsWithThePoseInWhichItStands) {
@@ -491,7 +491,7 @@ TEST(LegWalk, StandsWhereItIsAfterFourPlansThatFail) {
   std::uint64_t failures = 0;
   for (int i = 0; i < 60 && legs.legs.state().phase == LegPhase::kWalking; ++i) {
     legs.step();
-    failures = std::max(failures, legs.legs.state().walk.failures);
+    failures = std::max(failures, legs.legs.state().walk.walker.failures);
   }
   EXPECT_EQ(legs.legs.state().phase, LegPhase::kStanding);
   EXPECT_EQ(failures, Walker::kFailures + 1);

@@ -108,9 +108,9 @@ struct WalkerLaws : testing::Test {
     for (double& axis : state.follows) axis = uniform(0.4);
     state.ground = {stance.feet[0].z() + uniform(0.01), uniform(0.1), uniform(0.1)};
     input.twist = {uniform(0.5), uniform(0.3), uniform(0.5)};
-    input.height = uniform(0.02);
-    input.roll = uniform(0.1);
-    input.pitch = uniform(0.1);
+    input.body[0] = uniform(0.02);
+    input.body[1] = uniform(0.1);
+    input.body[2] = uniform(0.1);
     input.gait = state.gait;
     before = state;
   }
@@ -189,7 +189,7 @@ struct WalkerLaws : testing::Test {
                            .yaw_rate = input.twist[2],
                            .until_landing = gait().period * (1 - gait().leg_phase(leg, state.phase)),
                            .stance_time = gait().stance_time(),
-                           .height = nominal_centre() + input.height,
+                           .height = nominal_centre() + input.body[0],
                            .leg_length = robot.leg_length()};
     Eigen::Vector3d place(0, 0, 0);
     place.head<2>() = centre.head<2>() + foothold(at);
@@ -313,8 +313,8 @@ TEST_F(WalkerLaws, PlansTheForcesOfItsFeetFromWhereItIsToItsTarget) {
     ForcePlanInput to;
     to.place << now.roll, now.pitch, 0, 0, 0, now.centre.z() - ground_below(now.centre);
     to.speed << now.rate, now.moves;
-    to.target << input.roll + state.ground[2], input.pitch - state.ground[1], state.ahead[2], state.ahead[0],
-        state.ahead[1], nominal_centre() + input.height;
+    to.target << input.body[1] + state.ground[2], input.body[2] - state.ground[1], state.ahead[2], state.ahead[0],
+        state.ahead[1], nominal_centre() + input.body[0];
     to.target_speed << 0, 0, input.twist[2], input.twist[0], input.twist[1], 0;
     to.steps = gait().duty > 0.7 ? 6 : gait().duty > 0.55 ? 8 : 10;
     const double part = parameters.horizon / static_cast<double>(to.steps);
@@ -609,10 +609,10 @@ TEST_F(WalkerLaws, KnowsThePartOfATwistThatKeepsEachFootInReachUntilItsSwing) {
         if (state.bears[leg] == 0) continue;
         const LegKinematics& kinematics = robot.legs[leg].kinematics;
         const double time = gait().period * (gait().duty - gait().leg_phase(leg, state.phase));
-        const Eigen::Vector3d place = tilt(input.roll, input.pitch) * kinematics.position(angles(leg));
+        const Eigen::Vector3d place = tilt(input.body[1], input.body[2]) * kinematics.position(angles(leg));
         const Eigen::Vector3d moves(twist[0] - twist[2] * place.y(), twist[1] + twist[2] * place.x(), 0);
         const Eigen::Vector3d ends = place - of_twist * time * moves;
-        const LegSolution end = kinematics.inverse(tilt(input.roll, input.pitch).transpose() * ends);
+        const LegSolution end = kinematics.inverse(tilt(input.body[1], input.body[2]).transpose() * ends);
         const double longest = std::max(0.95 * kinematics.length(), kinematics.stretch(angles(leg)));
         farthest = std::max(farthest, end.reach == FootReach::kReached ? kinematics.stretch(end.angles) - longest : 1);
       }
