@@ -26,9 +26,9 @@ LoadedKnee loaded_knee_at(const LegModel& robot, double height) noexcept {
 
 double standing_height(const LegModel& robot) noexcept {
   constexpr double kLowest = 0.7, kHighest = 0.85, kStep = 0.01;  // of the leg length
-  constexpr double kOfKnee = 0.6;
+  constexpr double kKneeShare = 0.6;
   double height = kLowest;
-  while (height < kHighest && loaded_knee_at(robot, height * robot.leg_length()).part > kOfKnee) height += kStep;
+  while (height < kHighest && loaded_knee_at(robot, height * robot.leg_length()).part > kKneeShare) height += kStep;
   return height * robot.leg_length();
 }
 
@@ -46,7 +46,7 @@ double needed_speed(const LegModel& robot, std::size_t leg, const Eigen::Vector3
   return part;
 }
 
-/// Returns the time in s in which the body rises above its feet, and no joint is faster than kOfLimit of its limit.
+/// Returns the time in s in which the body rises above its feet, and no joint is faster than kLimitShare of its limit.
 double fastest_rise(const LegModel& robot) noexcept {
   constexpr int kParts = 20;
   double time = 0;
@@ -58,7 +58,7 @@ double fastest_rise(const LegModel& robot) noexcept {
     for (int i = 1; i < kParts; ++i) {
       const double s = static_cast<double>(i) / kParts;
       foot.z() = lies - s * s * (3 - 2 * s) * rise;
-      time = std::max(time, needed_speed(robot, leg, foot, -6 * s * (1 - s) * rise) / kOfLimit);
+      time = std::max(time, needed_speed(robot, leg, foot, -6 * s * (1 - s) * rise) / kLimitShare);
     }
   }
   return time;
@@ -102,7 +102,7 @@ AllJointBounds joint_bounds(const LegModel& robot) noexcept {
     const JointModel& joint = robot.joints[i];
     bounds[i].range = joint.range.value_or(JointRange{-kInfinity, kInfinity});
     bounds[i].motion = motion;
-    bounds[i].motion.speed = std::min(motion.speed, kOfLimit * joint.velocity_limit);
+    bounds[i].motion.speed = std::min(motion.speed, kLimitShare * joint.velocity_limit);
   }
   return bounds;
 }

@@ -14,12 +14,12 @@
 
 namespace robot_control {
 
-inline constexpr double kOfLimit = 0.9;  ///< of a joint's speed limit; the gate clamps above it
+inline constexpr double kLimitShare = 0.9;  ///< of a joint's speed limit; the gate clamps above it
 
 struct LegTuning {
   double stiffness = 0;   ///< N·m/rad, of each joint
   double damping = 0;     ///< N·m·s/rad
-  double rise_time = 0;   ///< s, also of lowering; longer where a joint would exceed kOfLimit of its speed limit
+  double rise_time = 0;   ///< s, also of lowering; longer where a joint would exceed kLimitShare of its speed limit
   double height = 0;      ///< m, from the feet to the second joints, while standing
   double lift = 0;        ///< m, of a foot in the air
   double sway = 0;        ///< m, range of the body in x and y

@@ -8,7 +8,7 @@
 /// J. Zool. 201 (1983) 135: legged machines of equal Froude number move alike).
 ///
 /// Offsets are in the order of LegPlace. A gait begins where the phase of the last one wraps: with its `begin` if it
-/// follows or is a crawl, else with 0. A crawl keeps three feet on the ground, with a duty of kOfCrawl or more. It
+/// follows or is a crawl, else with 0. A crawl keeps three feet on the ground, with a duty of kMinCrawlDuty or more. It
 /// begins with the feet at which a trot ends its stance: they are behind, and the body lies over the others. It ends
 /// while the body crosses the line between two feet, at twice its mean speed. These feet alone would let it fall on, so
 /// a trot after a crawl begins with all feet on the ground, for 0.1 s.
@@ -24,7 +24,7 @@
 namespace robot_control {
 
 inline constexpr std::size_t kMaxGaitName = 16;  ///< bytes
-inline constexpr double kOfCrawl = 0.75;         ///< duty of a gait in which three feet bear
+inline constexpr double kMinCrawlDuty = 0.75;    ///< duty of a gait in which three feet bear
 
 struct Gait {
   std::array<char, kMaxGaitName + 1> name;  ///< ends with 0
@@ -62,7 +62,7 @@ struct Gait {
     return !bears(leg, gait_phase) && swung(leg, gait_phase) * swing_time() <= lasted;
   }
 
-  bool crawls() const noexcept { return duty >= kOfCrawl && duty < 1; }
+  bool crawls() const noexcept { return duty >= kMinCrawlDuty && duty < 1; }
 
   /// Returns the phase with which this gait begins after `last`.
   double begins_after(const Gait& last) const noexcept { return crawls() || last.crawls() ? begin : 0; }

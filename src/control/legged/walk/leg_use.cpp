@@ -27,7 +27,7 @@ LegUse::LegUse(const LegModel& robot, const NominalStance& stance) noexcept
   for (std::size_t leg = 0; leg < kLegs; ++leg) legs_[leg] = robot.legs[leg].kinematics;
   for (std::size_t i = 0; i < kLegsJoints; ++i) {
     speeds_[i] = robot.joints[i].velocity_limit;
-    efforts_[i] = kOfEffort / kOfJointSpeed * robot.joints[i].effort_limit;
+    efforts_[i] = kEffortShare / kSpeedShare * robot.joints[i].effort_limit;
   }
 }
 
@@ -52,7 +52,7 @@ double LegUse::needed_at(std::size_t leg, const Place& body, const Eigen::Vector
   const LegKinematics& kinematics = legs_[leg];
   const Eigen::Vector3d turned = (body.back - Eigen::Matrix3d::Identity()) * (place - centre_);
   const std::optional<LegAngles> angles = kinematics.reached(place + turned - body.height * body.back.col(2));
-  if (!angles || kinematics.stretch(*angles) > kOfLength * kinematics.length()) return kOutOfReach;
+  if (!angles || kinematics.stretch(*angles) > kLengthShare * kinematics.length()) return kOutOfReach;
   Eigen::Vector3d foot;
   const Eigen::Matrix3d jacobian = kinematics.jacobian(*angles, foot);
   const Eigen::Vector3d up = Eigen::Vector3d::UnitZ();

@@ -2,14 +2,14 @@
 /// How much of what they can the legs of a robot need to walk, in a pose of its body.
 ///
 ///   speed   |q̇| of a joint, of its velocity limit, during stance and swing (swing.h)
-///   torque  |Jᵀ f| of a joint, of kOfEffort/kOfJointSpeed of its effort limit. f is the weight, on as many feet as
+///   torque  |Jᵀ f| of a joint, of kEffortShare/kSpeedShare of its effort limit. f is the weight, on as many feet as
 ///           the gait leaves on the ground at least, at the ends and in the middle of a stance. It is parallel to the
 ///           line through the centre of gravity and the middle of the feet that bear: these turn no body, so the load
 ///           of a joint hardly grows where its foot moves away with those of the other legs
-///   reach   infinite where a leg stretches beyond kOfLength of its length, or a joint leaves its range, in other poses
+///   reach   infinite where a leg stretches beyond kLengthShare of its length, or a joint leaves its range, in other poses
 ///           than the nominal one less kFromEnd
 ///
-/// The largest of these is at most kOfJointSpeed where the legs carry the body. The centre of gravity stays above the
+/// The largest of these is at most kSpeedShare where the legs carry the body. The centre of gravity stays above the
 /// middle of the nominal feet.
 
 #include <Eigen/Core>
@@ -22,10 +22,10 @@
 
 namespace robot_control {
 
-inline constexpr double kOfJointSpeed = 0.85;
-inline constexpr double kOfLength = 0.95;
-inline constexpr double kOfEffort = 0.97;  ///< the rest bears the leg itself (docs/evidence/legs.md, weak_hips)
-inline constexpr double kFromEnd = 0.03;   ///< rad
+inline constexpr double kSpeedShare = 0.85;
+inline constexpr double kLengthShare = 0.95;
+inline constexpr double kEffortShare = 0.97;  ///< the rest bears the leg itself (docs/evidence/legs.md, weak_hips)
+inline constexpr double kFromEnd = 0.03;      ///< rad
 
 /// Height in m, roll and pitch in rad of a body that walks, from the nominal pose.
 using CarriedBody = std::array<double, 3>;

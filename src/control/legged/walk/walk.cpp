@@ -96,7 +96,7 @@ bool Walk::step(State& state, const ControlInput& input, const Request& request,
   for (double& axis : to.twist) axis /= std::max(1.0, used_part(target, speeds));
   const double carried = carried_part(state, to.twist, gait);
   for (double& axis : to.twist) axis *= carried;
-  const double part = walker_.part_in_reach(state.walker, to);
+  const double part = walker_.reachable_part(state.walker, to);
   if (carried * part < 1) {
     for (std::size_t i = 0; i < target.size(); ++i) target[i] = part * to.twist[i];
     out.reasons |= kReasonLegSpeed;
@@ -172,7 +172,7 @@ double Walk::used(const State& state, const WalkingTwist& twist, const CarriedBo
   double used = 0;
   for (const std::uint64_t gait : {wanted, state.walker.gait}) {
     if (walker_.gaits()[gait].duty >= 1 || (used > 0 && gait == wanted)) continue;
-    used = std::max(used, leg_use_.steady(walker_.gaits()[gait], twist, body, kUseSamples, rates) / kOfJointSpeed);
+    used = std::max(used, leg_use_.steady(walker_.gaits()[gait], twist, body, kUseSamples, rates) / kSpeedShare);
   }
   return used;
 }

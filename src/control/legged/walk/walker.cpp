@@ -15,15 +15,15 @@
 namespace robot_control {
 namespace {
 
-constexpr double kFarthest = 0.2;     // m, the target from the robot, of a leg of kReferenceLeg
-constexpr double kFarthestYaw = 0.3;  // rad
-constexpr double kGroundTime = 0.05;  // s, in which the ground follows the feet
-constexpr double kLevel = 0.1;        // of a leg length, by how much the feet have to be apart to show a slope
-constexpr double kEarly = 0.5;        // of the swing, from which on a foot may touch down
-constexpr double kTouches = 0.5;      // probability of a contact
-constexpr int kReachHalvings = 6;     // down to this part of a twist, 2⁻⁶
-constexpr double kTouchTime = 0.005;  // s, for which an early foot touches: the observed load is noisy in the air
-constexpr double kMetWithin = 0.003;  // m, in which it stays meanwhile: a wrong angle of a joint looks like a load
+constexpr double kFarthest = 0.2;       // m, the target from the robot, of a leg of kReferenceLeg
+constexpr double kFarthestYaw = 0.3;    // rad
+constexpr double kGroundTime = 0.05;    // s, in which the ground follows the feet
+constexpr double kLevel = 0.1;          // of a leg length, by how much the feet have to be apart to show a slope
+constexpr double kEarly = 0.5;          // of the swing, from which on a foot may touch down
+constexpr double kTouches = 0.5;        // probability of a contact
+constexpr int kReachHalvings = 6;       // down to this part of a twist, 2⁻⁶
+constexpr double kTouchTime = 0.005;    // s, for which an early foot touches: the observed load is noisy in the air
+constexpr double kTouchRadius = 0.003;  // m, in which it stays meanwhile: a wrong angle of a joint looks like a load
 
 using Map = Eigen::Map<Eigen::Vector3d>;
 using ConstMap = Eigen::Map<const Eigen::Vector3d>;
@@ -59,7 +59,7 @@ Walker::Walker(const LegModel& robot, const Gaits& gaits, double friction, doubl
         return parameters;
       }()),
       plan_(plan_parameters_) {
-  for (std::size_t i = 0; i < kLegsJoints; ++i) effort_limits_[i] = kOfEffort * robot.joints[i].effort_limit;
+  for (std::size_t i = 0; i < kLegsJoints; ++i) effort_limits_[i] = kEffortShare * robot.joints[i].effort_limit;
   const NominalStance stance = nominal_stance(robot);
   for (const Gait& gait : gaits) gaits_.push_back(gait_of(robot, stance, gait));
   const Eigen::Vector3d& centre = stance.equations.centre_of_gravity;
@@ -106,7 +106,7 @@ void Walker::begin(State& state, const SensorFrame& sensors, const StateFrame& e
   const WalkingBody body = measure(sensors, estimate);
   for (std::size_t leg = 0; leg < kLegs; ++leg) {
     state.bears[leg] = 1;
-    state.bore[leg] = plain(body.feet[leg]);
+    state.footprints[leg] = plain(body.feet[leg]);
   }
   state.ground = plain(fit_ground(state));
   state.planned = plan_cycles(period_);
@@ -141,22 +141,22 @@ bool Walker::step(State& state, const WalkInput& input, CommandFrame& out) noexc
 void Walker::move(State& state, const WalkInput& input, const WalkingBody& body) const noexcept {
   const Eigen::Vector3d turning(0, 0, body.rate.z());
   for (std::size_t leg = 0; leg < kLegs; ++leg) {
-    for (Vector3* kept : {&state.bore[leg], &state.met[leg]}) {
+    for (Vector3* kept : {&state.footprints[leg], &state.touch_places[leg]}) {
       Map place(kept->data());
       place -= period_ * (body.velocity + turning.cross(place));
     }
     const bool stands = state.bears[leg] != 0 && input.state->contacts[leg].probability >= kTouches;
-    if (stands) state.bore[leg] = plain(body.feet[leg]);
+    if (stands) state.footprints[leg] = plain(body.feet[leg]);
   }
   const double farthest = kFarthest * length_ / kReferenceLeg;
-  std::array<double, 3>& ahead = state.ahead;
+  std::array<double, 3>& target = state.target;
   const double half = gait(state).period / 2;
   const std::array<double, 3> moves{body.velocity.x(), body.velocity.y(), body.rate.z()};
   for (std::size_t i = 0; i < 2; ++i) state.follows[i] += period_ / half * (input.twist[i] - state.follows[i]);
   state.follows[2] = input.twist[2];
-  for (std::size_t i = 0; i < moves.size(); ++i) ahead[i] += period_ * (state.follows[i] - moves[i]);
-  for (std::size_t i = 0; i < 2; ++i) ahead[i] = std::clamp(ahead[i], -farthest, farthest);
-  ahead[2] = std::clamp(ahead[2], -kFarthestYaw, kFarthestYaw);
+  for (std::size_t i = 0; i < moves.size(); ++i) target[i] += period_ * (state.follows[i] - moves[i]);
+  for (std::size_t i = 0; i < 2; ++i) target[i] = std::clamp(target[i], -farthest, farthest);
+  target[2] = std::clamp(target[2], -kFarthestYaw, kFarthestYaw);
   state.ground[0] -= period_ * body.velocity.z();
   Map(state.ground.data()) += period_ / kGroundTime * (fit_ground(state) - Map(state.ground.data()));
 }
@@ -168,10 +168,10 @@ Eigen::Vector3d Walker::fit_ground(const State& state) const noexcept {
   Eigen::Matrix3d squares = Eigen::Vector3d(0, level * level, level * level).asDiagonal();
   Eigen::Vector3d heights = Eigen::Vector3d::Zero();
   for (std::size_t leg = 0; leg < kLegs; ++leg) {
-    const ConstMap bore(state.bore[leg].data());
-    const Eigen::Vector3d place(1, bore.x(), bore.y());
+    const ConstMap foot(state.footprints[leg].data());
+    const Eigen::Vector3d place(1, foot.x(), foot.y());
     squares += place * place.transpose();
-    heights += (bore.z() - legs_[leg].foot_radius) * place;
+    heights += (foot.z() - legs_[leg].foot_radius) * place;
   }
   return squares.inverse() * heights;
 }
@@ -206,7 +206,7 @@ void Walker::turn_clock(State& state, std::uint64_t wanted) const noexcept {
   if (!ends && !changes) return;
   state.swings = {};  // a foot that then swings begins where it is, in the air or not
   begin_gait(state, wanted);
-  if (ends) state.ahead = {};
+  if (ends) state.target = {};
 }
 
 /// Returns true if other feet bear than before.
@@ -217,15 +217,15 @@ bool Walker::choose_feet(State& state, const WalkInput& input, const WalkingBody
     const bool swings = state.swings[leg] != 0 ? !gait.bears(leg, state.phase)
                                                : gait.swings_since(leg, state.phase, state.lasted + period_);
     const bool touches = input.state->contacts[leg].probability >= kTouches &&
-                         (body.feet[leg] - ConstMap(state.met[leg].data())).norm() <= kMetWithin;
-    state.touched[leg] = touches ? state.touched[leg] + period_ : 0;
-    if (!touches) state.met[leg] = plain(body.feet[leg]);
+                         (body.feet[leg] - ConstMap(state.touch_places[leg].data())).norm() <= kTouchRadius;
+    state.touch_times[leg] = touches ? state.touch_times[leg] + period_ : 0;
+    if (!touches) state.touch_places[leg] = plain(body.feet[leg]);
     if (!swings) {
       state.bears[leg] = 1;
     } else if (state.swings[leg] == 0) {
       state.bears[leg] = 0;
-      state.bore[leg] = plain(body.feet[leg]);
-    } else if (gait.swung(leg, state.phase) > kEarly && state.touched[leg] >= kTouchTime) {
+      state.footprints[leg] = plain(body.feet[leg]);
+    } else if (gait.swung(leg, state.phase) > kEarly && state.touch_times[leg] >= kTouchTime) {
       state.bears[leg] = 1;
     }
     state.swings[leg] = swings ? 1 : 0;
@@ -256,8 +256,8 @@ void Walker::plan(State& state, const WalkInput& input, const WalkingBody& body)
   ForcePlanInput to;
   to.place << body.roll, body.pitch, 0, 0, 0, body.centre.z() - ground_below(state, body.centre);
   to.speed << body.rate, body.moves;
-  to.target << input.body[1] + state.ground[2], input.body[2] - state.ground[1], state.ahead[2], state.ahead[0],
-      state.ahead[1], height_ + input.body[0];
+  to.target << input.body[1] + state.ground[2], input.body[2] - state.ground[1], state.target[2], state.target[0],
+      state.target[1], height_ + input.body[0];
   to.target_speed << input.rates[1], input.rates[2], input.twist[2], input.twist[0], input.twist[1], input.rates[0];
   to.steps = std::min(kPlanSteps, static_cast<std::size_t>(5 / gait.duty));
   const double step = plan_parameters_.horizon / static_cast<double>(to.steps);
@@ -299,7 +299,7 @@ double Walker::bears_for(const State& state, std::uint64_t wanted, std::size_t l
   return left + next.bears_for(leg, next.begins_after(gait));
 }
 
-double Walker::part_in_reach(const State& state, const WalkInput& input) const noexcept {
+double Walker::reachable_part(const State& state, const WalkInput& input) const noexcept {
   double part = 1;
   if (gait(state).duty >= 1) return part;
   const Eigen::Matrix3d leaning = (Eigen::AngleAxisd(input.body[2], Eigen::Vector3d::UnitY()) *
@@ -313,7 +313,7 @@ double Walker::part_in_reach(const State& state, const WalkInput& input) const n
     const Eigen::Vector3d foot = kinematics.position(now);
     const Eigen::Vector3d way =
         bears_for(state, input.gait, leg) * (leaning.transpose() * velocity_below(leaning * foot, input.twist));
-    const double longest = std::max(kOfLength * kinematics.length(), kinematics.stretch(now));
+    const double longest = std::max(kLengthShare * kinematics.length(), kinematics.stretch(now));
     const auto reaches = [&](double of_twist) {
       const std::optional<LegAngles> end = kinematics.reached(foot + of_twist * way);
       return end && kinematics.stretch(*end) <= longest;
@@ -359,7 +359,7 @@ void Walker::bear(const State& state, const WalkingBody& body, std::size_t leg, 
 void Walker::swing(const State& state, const WalkInput& input, const WalkingBody& body, std::size_t leg,
                    CommandFrame& out) const noexcept {
   const Gait& gait = this->gait(state);
-  const Eigen::Vector3d from = ConstMap(state.bore[leg].data());
+  const Eigen::Vector3d from = ConstMap(state.footprints[leg].data());
   const Eigen::Vector3d to = landing(state, input, body, leg);
   const double top = std::max(from.z(), to.z()) + gait.lift;
   const SwingPoint point = swing_point(from, to, top, gait.swung(leg, state.phase), gait.swing_time());

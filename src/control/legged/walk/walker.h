@@ -7,7 +7,7 @@
 ///             period of this one: until then, its feet stand where the last gait put them. A foot that then swings
 ///             begins its swing where it is. One whose swing would have begun before the gait stands until its next
 ///             one. A walk ends in a cycle in which no foot is far from where it left the ground
-///   contact   a foot that touches the ground in the second half of its swing, for kTouchTime within kMetWithin, bears
+///   contact   a foot that touches the ground in the second half of its swing, for kTouchTime within kTouchRadius, bears
 ///             from then on. A foot that is late is pushed down by the force that it is to bear
 ///   ground    is the plane through the places where the feet bore last. So a foot lands where the others stand,
 ///             whatever the error of the estimated tilt
@@ -19,7 +19,7 @@
 ///             within the joint's limit, so that f stays within friction. The torque of a swing's impedance is added
 ///             where it turns a joint back from kFromEnd before an end of its range
 ///   reach     the twist that is requested keeps each foot that bears in reach until its next swing, within the ranges
-///             of its joints and kOfLength of its leg's length (walking_speed.h), or no farther than it is. A foot that
+///             of its joints and kLengthShare of its leg's length (walking_speed.h), or no farther than it is. A foot that
 ///             landed for another twist bounds it by that
 ///   swing     the foot follows swing.h to its foothold (foothold.h) with the impedance of standing, and the efforts M
 ///             q̈ + h of its own leg. Each joint stays kFromEnd away from the ends of its range
@@ -82,12 +82,12 @@ class Walker {
     double lasted = 0;                          ///< s since this gait began
     std::array<std::uint64_t, kLegs> bears{};   ///< 1: its force is planned
     std::array<std::uint64_t, kLegs> swings{};  ///< 1: by the clock
-    std::array<double, kLegs> touched{};        ///< s for which a contact is probable and it stays at `met`
-    std::array<Vector3, kLegs> met{};           ///< m, level axes: where that began
-    std::array<Vector3, kLegs> bore{};          ///< m, level axes: where it bore last
+    std::array<double, kLegs> touch_times{};    ///< s for which a contact is probable and it stays at its touch place
+    std::array<Vector3, kLegs> touch_places{};  ///< m, level axes: where that began
+    std::array<Vector3, kLegs> footprints{};    ///< m, level axes: where it bore last
     std::array<Vector3, kLegs> forces{};        ///< N, level axes
     WalkingTwist follows{};                     ///< the twist with which the target moves
-    std::array<double, 3> ahead{};              ///< m, m, rad: the target from the robot
+    std::array<double, 3> target{};             ///< m, m, rad, from the robot
     Vector3 ground{};                           ///< m: height of the ground below the base; its slopes
     std::uint64_t planned = 0;                  ///< cycles since the last plan
     std::uint64_t failures = 0;                 ///< plans without a solution, one after the other
@@ -109,7 +109,7 @@ class Walker {
 
   /// Returns the largest part 0 … 1 of the input's twist that keeps the feet in reach. The wanted gait may begin
   /// meanwhile.
-  double part_in_reach(const State& state, const WalkInput& input) const noexcept;
+  double reachable_part(const State& state, const WalkInput& input) const noexcept;
 
   /// The gaits of this robot.
   const Gaits& gaits() const noexcept { return gaits_; }

@@ -10,7 +10,7 @@ constexpr double kFastest = 10;      // m/s, rad/s
 constexpr double kFastestLeg = 1.7;  // m/s, ahead, of legs of kReferenceLeg
 constexpr int kHalvings = 12;
 
-/// Returns the largest speed on this axis, either way, for which `part_of` returns at most kOfJointSpeed.
+/// Returns the largest speed on this axis, either way, for which `part_of` returns at most kSpeedShare.
 template <class Part>
 double largest(std::size_t axis, const Part& part_of) noexcept {
   double low = 0, high = kFastest;
@@ -19,7 +19,7 @@ double largest(std::size_t axis, const Part& part_of) noexcept {
     WalkingTwist ahead{}, back{};
     ahead[axis] = speed;
     back[axis] = -speed;
-    (std::max(part_of(ahead), part_of(back)) <= kOfJointSpeed ? low : high) = speed;
+    (std::max(part_of(ahead), part_of(back)) <= kSpeedShare ? low : high) = speed;
   }
   return std::max(kMinSpeed, low);
 }
@@ -28,7 +28,7 @@ double largest(std::size_t axis, const Part& part_of) noexcept {
 
 Gait gait_of(const LegModel& robot, const NominalStance& stance, const Gait& reference) noexcept {
   Gait gait = reference.scaled(robot.leg_length());
-  if (gait.duty < 1) gait.lift *= std::min(1.0, kOfLift / LegUse(robot, stance).swinging(gait, {}));
+  if (gait.duty < 1) gait.lift *= std::min(1.0, kLiftSpeedShare / LegUse(robot, stance).swinging(gait, {}));
   return gait;
 }
 

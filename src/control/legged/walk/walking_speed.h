@@ -1,9 +1,9 @@
 #pragma once
 /// The gaits of a robot, and how fast its legs carry it in each of them.
 ///
-///   gait   that of gait.h, scaled. Its lift is lower where a step in place would need more than kOfLift of the speed
+///   gait   that of gait.h, scaled. Its lift is lower where a step in place would need more than kLiftSpeedShare of the speed
 ///          limit of a joint
-///   speed  the largest one of the body at which the legs need at most kOfJointSpeed of what they can (leg_use.h). A
+///   speed  the largest one of the body at which the legs need at most kSpeedShare of what they can (leg_use.h). A
 ///          leg that is nearly straight does not push the body on. That holds either way, for a steady walk and for the
 ///          first stance after a change of gaits: a foot that ended a stance may have to bear for a whole one. The
 ///          slower gait of a change bounds its speed until the other one has lasted for a period. To the front and back
@@ -20,7 +20,7 @@
 
 namespace robot_control {
 
-inline constexpr double kOfLift = 0.35;
+inline constexpr double kLiftSpeedShare = 0.35;
 
 Gait gait_of(const LegModel& robot, const NominalStance& stance, const Gait& reference) noexcept;
 

@@ -26,7 +26,7 @@ TEST_F(LegUseTest, IsThatOfTheSameStanceInAnotherPose) {
 }
 
 TEST_F(LegUseTest, IsInfiniteWhereALegReachesItsFootNoMore) {
-  EXPECT_LT(steady({0.5, 0, 0}), kOfJointSpeed);
+  EXPECT_LT(steady({0.5, 0, 0}), kSpeedShare);
   EXPECT_EQ(steady({0.5, 0, 0}, {0.12, 0, 0}), std::numeric_limits<double>::infinity());
   EXPECT_EQ(steady({0.5, 0, 0}, {0.05, 0.15, 0.15}), std::numeric_limits<double>::infinity());
 }
@@ -34,8 +34,8 @@ TEST_F(LegUseTest, IsInfiniteWhereALegReachesItsFootNoMore) {
 /// The hip bears half of the weight beside its axis, in a trot on the spot.
 TEST_F(LegUseTest, CountsTheTorqueOfHalfOfTheWeight) {
   const double lever = std::abs(stance.feet[0].y() - robot.legs[0].kinematics.geometry().hip.y());
-  robot.joints[0].effort_limit = robot.mass * kGravity / 2 * lever / (2 * kOfEffort);
-  EXPECT_NEAR(steady({}), 2 * kOfJointSpeed, 1e-6);
+  robot.joints[0].effort_limit = robot.mass * kGravity / 2 * lever / (2 * kEffortShare);
+  EXPECT_NEAR(steady({}), 2 * kSpeedShare, 1e-6);
 }
 
 /// Forces through the centre of gravity load a hip alike wherever the feet of a walk to the side are.

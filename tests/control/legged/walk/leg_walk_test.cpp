@@ -433,8 +433,8 @@ TEST(LegWalk, AsksForNoMoreSpeedThanTheLegsCarryInThePoseInForce) {
   EXPECT_LT(legs.speed(0), 1.45);
   EXPECT_GT(legs.speed(0), 0.3);
   const CarriedBody body{request.posture.height, 0, request.posture.pitch};
-  EXPECT_LE(use.steady(trot, {legs.speed(0), 0, 0}, body, 8), kOfJointSpeed + 1e-9);
-  EXPECT_GT(use.steady(trot, {1.06 * legs.speed(0), 0, 0}, body, 8), kOfJointSpeed);
+  EXPECT_LE(use.steady(trot, {legs.speed(0), 0, 0}, body, 8), kSpeedShare + 1e-9);
+  EXPECT_GT(use.steady(trot, {1.06 * legs.speed(0), 0, 0}, body, 8), kSpeedShare);
   EXPECT_EQ(legs.legs.out.reasons & ~std::uint64_t{kReasonAccelerationLimited}, std::uint64_t{kReasonLegSpeed});
   EXPECT_NEAR(legs.legs.out.legged.body[2], body[0], 1e-3);
   EXPECT_NEAR(legs.legs.out.legged.body[4], body[2], 1e-3);
@@ -448,7 +448,7 @@ TEST(LegWalk, TakesOfAPoseWhatTheLegsCarryInTheGaitOfNow) {
   const NominalStance stance = nominal_stance(weak);
   const LegUse use(weak, stance);
   const auto used = [&](std::uint64_t gait, const WalkingTwist& twist, const CarriedBody& body) {
-    return use.steady(gait_of(weak, stance, kGaits[gait]), twist, body, 8) / kOfJointSpeed;
+    return use.steady(gait_of(weak, stance, kGaits[gait]), twist, body, 8) / kSpeedShare;
   };
   const LegTuning tuning = leg_tuning(weak);
   const CarriedBody whole{0.5 * tuning.bob, 0, 0.5 * tuning.lean};

@@ -22,7 +22,7 @@ namespace {
 constexpr double kMillisecond = 0.001;  // s
 constexpr double kMu = 0.3;             // other than the default
 constexpr double kExact = 1e-9;         // of m, rad and their rates
-constexpr double kOfLimit = 0.97;       // of the effort limits
+constexpr double kLimitShare = 0.97;    // of the effort limits
 constexpr double kTargetAway = 0.2;     // m, of a leg of kReferenceLeg
 constexpr unsigned kRandomStates = 40;
 
@@ -98,13 +98,13 @@ struct WalkerLaws : testing::Test {
     for (std::size_t leg = 0; leg < kLegs; ++leg) {
       state.swings[leg] = gait().bears(leg, state.phase) ? 0 : 1;
       state.bears[leg] = 1 - state.swings[leg];
-      state.bore[leg] = array(feet[leg] + around(0.02));
+      state.footprints[leg] = array(feet[leg] + around(0.02));
       estimate.contacts[leg].probability = uniform(1) > 0 ? 0.5 : 0.49;
       if (state.swings[leg] != 0) estimate.contacts[leg].probability = 0;
-      state.met[leg] = array(feet[leg] + around(0.001));
+      state.touch_places[leg] = array(feet[leg] + around(0.001));
       state.forces[leg] = {uniform(10), uniform(10), 40 + uniform(30)};
     }
-    for (double& axis : state.ahead) axis = uniform(0.05);
+    for (double& axis : state.target) axis = uniform(0.05);
     for (double& axis : state.follows) axis = uniform(0.4);
     state.ground = {stance.feet[0].z() + uniform(0.01), uniform(0.1), uniform(0.1)};
     input.twist = {uniform(0.5), uniform(0.3), uniform(0.5)};
@@ -245,13 +245,13 @@ TEST_F(WalkerLaws, BeginsOnAllFeetAndOnThePlaneThroughThem) {
   for (std::size_t leg = 0; leg < kLegs; ++leg) {
     EXPECT_EQ(state.bears[leg], 1u);
     EXPECT_EQ(state.swings[leg], 0u);
-    EXPECT_LE((vector(state.bore[leg]) - foot(leg)).norm(), kExact);
+    EXPECT_LE((vector(state.footprints[leg]) - foot(leg)).norm(), kExact);
   }
-  EXPECT_LE((vector(state.ground) - ground_of(state.bore)).norm(), kExact);
+  EXPECT_LE((vector(state.ground) - ground_of(state.footprints)).norm(), kExact);
   EXPECT_EQ(state.gait, kStandGait);
   EXPECT_EQ(state.phase, 0);
   EXPECT_EQ(state.failures, 0u);
-  EXPECT_EQ(state.ahead, (std::array<double, 3>{}));
+  EXPECT_EQ(state.target, (std::array<double, 3>{}));
   step();
   EXPECT_EQ(state.planned, 0u) << "the first cycle plans";
 }
@@ -267,20 +267,20 @@ TEST_F(WalkerLaws, WhatIsKeptInLevelAxesMovesAgainstTheBody) {
         return vector(place) - kMillisecond * (now.velocity + turns);
       };
       const bool touches = estimate.contacts[leg].probability >= 0.5, stands = before.bears[leg] != 0 && touches;
-      const Eigen::Vector3d bore = stands ? foot(leg) : moved(before.bore[leg]);
-      const Eigen::Vector3d met = touches ? moved(before.met[leg]) : foot(leg);
-      EXPECT_LE((vector(state.bore[leg]) - bore).norm(), kExact) << leg;
-      EXPECT_LE((vector(state.met[leg]) - met).norm(), kExact) << leg;
+      const Eigen::Vector3d bore = stands ? foot(leg) : moved(before.footprints[leg]);
+      const Eigen::Vector3d met = touches ? moved(before.touch_places[leg]) : foot(leg);
+      EXPECT_LE((vector(state.footprints[leg]) - bore).norm(), kExact) << leg;
+      EXPECT_LE((vector(state.touch_places[leg]) - met).norm(), kExact) << leg;
     }
     const double part = kMillisecond / (gait().period / 2);
     const std::array<double, 3> moves{now.velocity.x(), now.velocity.y(), now.rate.z()};
     for (std::size_t i = 0; i < 3; ++i) {
       const double follows = i < 2 ? before.follows[i] + part * (input.twist[i] - before.follows[i]) : input.twist[i];
       EXPECT_NEAR(state.follows[i], follows, kExact) << i;
-      EXPECT_NEAR(state.ahead[i], before.ahead[i] + kMillisecond * (follows - moves[i]), kExact) << i;
+      EXPECT_NEAR(state.target[i], before.target[i] + kMillisecond * (follows - moves[i]), kExact) << i;
     }
     Eigen::Vector3d ground = vector(before.ground) - Eigen::Vector3d(kMillisecond * now.velocity.z(), 0, 0);
-    ground += kMillisecond / 0.05 * (ground_of(state.bore) - ground);
+    ground += kMillisecond / 0.05 * (ground_of(state.footprints) - ground);
     EXPECT_LE((vector(state.ground) - ground).norm(), kExact);
   }
 }
@@ -292,7 +292,7 @@ TEST_F(WalkerLaws, TheTargetStaysNearTheRobot) {
     estimate.base.twist_base = {};
     input.twist = {5 * sense, -5 * sense, 5 * sense};
     for (int i = 0; i < 300; ++i) step();
-    EXPECT_EQ(state.ahead, (std::array<double, 3>{farthest * sense, -farthest * sense, 0.3 * sense}));
+    EXPECT_EQ(state.target, (std::array<double, 3>{farthest * sense, -farthest * sense, 0.3 * sense}));
   }
 }
 
@@ -313,8 +313,8 @@ TEST_F(WalkerLaws, PlansTheForcesOfItsFeetFromWhereItIsToItsTarget) {
     ForcePlanInput to;
     to.place << now.roll, now.pitch, 0, 0, 0, now.centre.z() - ground_below(now.centre);
     to.speed << now.rate, now.moves;
-    to.target << input.body[1] + state.ground[2], input.body[2] - state.ground[1], state.ahead[2], state.ahead[0],
-        state.ahead[1], nominal_centre() + input.body[0];
+    to.target << input.body[1] + state.ground[2], input.body[2] - state.ground[1], state.target[2], state.target[0],
+        state.target[1], nominal_centre() + input.body[0];
     to.target_speed << 0, 0, input.twist[2], input.twist[0], input.twist[1], 0;
     to.steps = gait().duty > 0.7 ? 6 : gait().duty > 0.55 ? 8 : 10;
     const double part = parameters.horizon / static_cast<double>(to.steps);
@@ -421,7 +421,7 @@ TEST_F(WalkerLaws, EndsInTheFirstCycleInWhichNoFootIsFarFromWhereItLeftTheGround
     EXPECT_EQ(state.gait, kStandGait) << cycles;
     EXPECT_EQ(state.phase, 0);
     EXPECT_EQ(state.lasted, 0);
-    EXPECT_EQ(state.ahead, (std::array<double, 3>{}));
+    EXPECT_EQ(state.target, (std::array<double, 3>{}));
     for (const std::uint64_t bears : state.bears) EXPECT_EQ(bears, 1u);
   }
 }
@@ -436,7 +436,7 @@ TEST_F(WalkerLaws, AFootSwingsFromWhereItIsWhenItsSwingBeginsUntilItsStance) {
   step();
   EXPECT_EQ(state.bears[1], 0u);
   EXPECT_EQ(out.legged.stance[1], 0);
-  EXPECT_LE((vector(state.bore[1]) - foot(1)).norm(), kExact);
+  EXPECT_LE((vector(state.footprints[1]) - foot(1)).norm(), kExact);
   state.phase = 1 - gait().phase[1] - 1.5 * cycle;
   step();
   EXPECT_EQ(state.bears[1], 0u);
@@ -523,7 +523,7 @@ TEST_F(WalkerLaws, AFootThatStandsBearsItsForceUnlessAJointIsTooWeak) {
         const Eigen::Vector3d load = -now.jacobians[leg].transpose() * force;
         double part = 1;
         for (Eigen::Index i = 0; i < 3; ++i) {
-          const double end = load[i] > 0 ? kOfLimit * limit : -kOfLimit * limit;
+          const double end = load[i] > 0 ? kLimitShare * limit : -kLimitShare * limit;
           part = std::min(part, std::max(0.0, (end - own[i]) / load[i]));
         }
         (part == 1 ? strong : part == 0 ? overloaded : weak)++;
@@ -539,7 +539,7 @@ TEST_F(WalkerLaws, AFootThatStandsBearsItsForceUnlessAJointIsTooWeak) {
           const double ahead = angles(leg)[axis] + tuning.damping / tuning.stiffness * now.rates[kLegJoints * leg + i];
           const double stop = tuning.stiffness * (std::clamp(ahead, range.lower + 0.03, range.upper - 0.03) - ahead);
           turned_back += stop != 0 ? 1 : 0;
-          const double largest = kOfLimit * limit;
+          const double largest = kLimitShare * limit;
           EXPECT_NEAR(joint.effort, std::clamp(own[axis] + part * load[axis] + stop, -largest, largest), kExact)
               << seed << " leg " << leg << " of " << limit;
         }
@@ -566,7 +566,7 @@ TEST_F(WalkerLaws, AFootInTheAirFollowsItsPathToTheFoothold) {
       const Eigen::Matrix3d back = turned.transpose();
       for (std::size_t leg = 0; leg < kLegs; ++leg) {
         if (state.bears[leg] != 0) continue;
-        const Eigen::Vector3d from = vector(state.bore[leg]), to = landing(leg);
+        const Eigen::Vector3d from = vector(state.footprints[leg]), to = landing(leg);
         const double top = std::max(from.z(), to.z()) + gait().lift;
         const double part = (gait().leg_phase(leg, state.phase) - gait().duty) / (1 - gait().duty);
         const SwingPoint point = swing_point(from, to, top, part, gait().swing_time());
@@ -588,7 +588,7 @@ TEST_F(WalkerLaws, AFootInTheAirFollowsItsPathToTheFoothold) {
           EXPECT_EQ(joint[i].mode, JointMode::kImpedance);
           EXPECT_EQ(joint[i].stiffness, tuning.stiffness);
           EXPECT_EQ(joint[i].damping, tuning.damping);
-          EXPECT_NEAR(joint[i].effort, std::clamp(effort, -kOfLimit * limit, kOfLimit * limit), 1e-7);
+          EXPECT_NEAR(joint[i].effort, std::clamp(effort, -kLimitShare * limit, kLimitShare * limit), 1e-7);
         }
       }
     }
@@ -602,7 +602,7 @@ TEST_F(WalkerLaws, KnowsThePartOfATwistThatKeepsEachFootInReachUntilItsSwing) {
     choose(seed);
     input.sensors = &sensors;
     const WalkingTwist& twist = input.twist = {uniform(2), uniform(1), uniform(3)};
-    const double part = walker.part_in_reach(state, input);
+    const double part = walker.reachable_part(state, input);
     const auto too_long = [&](double of_twist) {
       double farthest = -1;
       for (std::size_t leg = 0; leg < kLegs; ++leg) {
@@ -627,7 +627,7 @@ TEST_F(WalkerLaws, KnowsThePartOfATwistThatKeepsEachFootInReachUntilItsSwing) {
   EXPECT_LT(shortened, kRandomStates);
   state = {};
   input.twist = {9, 9, 9};
-  EXPECT_EQ(walker.part_in_reach(state, input), 1) << "before the first swing";
+  EXPECT_EQ(walker.reachable_part(state, input), 1) << "before the first swing";
 }
 
 TEST_F(WalkerLaws, KnowsTheFootThatIsFarthestFromItsPlace) {

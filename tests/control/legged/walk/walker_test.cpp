@@ -64,7 +64,7 @@ TEST_F(WalkerTest, AFootThatIsInTheAirWhenTheGaitChangesSwingsOnFromWhereItIs) {
   state.lasted = walker.gaits()[gait_named("crawl")].period;
   state.swings[0] = 1;
   state.bears[0] = 0;
-  state.bore[0] = {-0.3, 0, 0};
+  state.footprints[0] = {-0.3, 0, 0};
   estimate.contacts[0].probability = 0;
   walker.step(state, {.sensors = &sensors, .state = &estimate, .twist = {}, .gait = gait_named("trot")}, out);
   ASSERT_EQ(state.gait, gait_named("trot"));

@@ -24,7 +24,7 @@ double fastest_joint(const LegModel& robot, std::size_t leg, double time, const 
   for (int k = 0; k <= kSteps; ++k) {
     const LegSolution solution = robot.legs[leg].kinematics.inverse(path(static_cast<double>(k) / kSteps));
     const LegKinematics& leg_at = robot.legs[leg].kinematics;
-    if (solution.reach != FootReach::kReached || leg_at.stretch(solution.angles) > kOfLength * leg_at.length())
+    if (solution.reach != FootReach::kReached || leg_at.stretch(solution.angles) > kLengthShare * leg_at.length())
       return std::numeric_limits<double>::infinity();
     for (std::size_t i = 0; k > 0 && i < kLegJoints; ++i) {
       const auto axis = static_cast<Eigen::Index>(i);
@@ -110,19 +110,19 @@ TEST_F(WalkingSpeedTest, NoJointNeedsMoreThanItsPartAtTheSpeedsOfAGaitAndItsChan
     for (std::size_t gait = 1; gait < gaits.size(); ++gait) {
       const double low = (1 - kFound) * speeds[gait][axis], high = (1 + kFound) * speeds[gait][axis];
       EXPECT_GT(low, 0.1) << gaits[gait].name.data() << axis;
-      EXPECT_LE(steady(gaits[gait], axis, low), kOfJointSpeed) << gaits[gait].name.data() << axis;
+      EXPECT_LE(steady(gaits[gait], axis, low), kSpeedShare) << gaits[gait].name.data() << axis;
       double beyond = steady(gaits[gait], axis, high);
       for (std::size_t other = 1; other < gaits.size(); ++other) {
         if (speeds[other][axis] < speeds[gait][axis]) continue;  // that one bounds the change
-        EXPECT_LE(changed(gaits[other], gaits[gait], axis, low), kOfJointSpeed)
+        EXPECT_LE(changed(gaits[other], gaits[gait], axis, low), kSpeedShare)
             << gaits[gait].name.data() << axis << other;
-        EXPECT_LE(changed(gaits[gait], gaits[other], axis, low), kOfJointSpeed)
+        EXPECT_LE(changed(gaits[gait], gaits[other], axis, low), kSpeedShare)
             << gaits[gait].name.data() << axis << other;
         beyond = std::max(
             {beyond, changed(gaits[other], gaits[gait], axis, high), changed(gaits[gait], gaits[other], axis, high)});
       }
       if (axis == 0 && speeds[gait][axis] == fastest(robot)) continue;
-      EXPECT_GT(beyond, kOfJointSpeed) << gaits[gait].name.data() << axis;
+      EXPECT_GT(beyond, kSpeedShare) << gaits[gait].name.data() << axis;
     }
     EXPECT_EQ(speeds[kStandGait][axis], kMinSpeed);
   }
@@ -144,7 +144,7 @@ TEST_F(WalkingSpeedTest, AStepInPlaceIsLowerWhereItsJointsAreSlow) {
   for (JointModel& joint : robot.joints) joint.velocity_limit = 1000;
   EXPECT_EQ(gait_of(robot, stance, trot).lift, trot.lift);
   const double needs = steady(trot, 0, 0);
-  for (JointModel& joint : robot.joints) joint.velocity_limit *= needs / kOfLift / 0.8;
+  for (JointModel& joint : robot.joints) joint.velocity_limit *= needs / kLiftSpeedShare / 0.8;
   EXPECT_EQ(gait_of(robot, stance, trot).lift, trot.lift) << "0.8 of what is allowed";
   for (JointModel& joint : robot.joints) joint.velocity_limit *= 0.8 / 1.25;
   EXPECT_NEAR(gait_of(robot, stance, trot).lift, 0.8 * trot.lift, 0.01 * trot.lift);
