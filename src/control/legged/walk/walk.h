@@ -2,8 +2,8 @@
 /// A robot walks: the gait and the pose that its legs carry, and how the walk begins and ends.
 ///
 /// A twist other than zero, or a requested gait, begins the walk. Before that the body comes within its ranges, so that
-/// the legs carry it on the spot. A zero ends the walk: steps in place set the feet on their places, then all feet stand
-/// for kAllDown.
+/// the legs carry it on the spot. A zero ends the walk: steps in place set the feet on their places, then all feet
+/// stand for kAllDown.
 ///
 /// Another gait begins when its legs carry the body at the twist of then. Until then the twist is limited by both gaits
 /// (walking_speed.h). Meanwhile the body takes height, roll and pitch of the request within half of their ranges. It
