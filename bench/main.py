@@ -61,6 +61,7 @@ JUDGED = (
 )
 REALTIME_PARTS = ("jitter", "chain", "cost", "scale")
 PARTS = {
+    "devices": ("losses", "answers", "slope", "disturbed"),
     "realtime": REALTIME_PARTS,
     "legs": legs.PARTS,
     "fleet": ("sequences", "orders", "losses", "cost"),
@@ -144,7 +145,9 @@ TRIALS: dict[str, tuple[str, Callable[[Any, argparse.Namespace, Runner], Result]
     ),
     "devices": (
         "devices.bench",
-        lambda m, g, runner: m.bench(g.first, g.runs or m.ALL_RUNS, say, runner, programs_of(g)),
+        lambda m, g, runner: m.bench(
+            _parts_of("devices", g), g.first, g.runs or m.ALL_RUNS, say, runner, program=programs_of(g)
+        ),
     ),
     "driving": ("drives.normal_driving", lambda m, g, runner: m.bench(g.share, say, runner, g.errors, g.wheel_command)),
     "odometry": ("odometry.bench", _odometry),

@@ -6,7 +6,7 @@ scripts/bench devices --first 40 --runs 1
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any
 
 from bench.devices.answer_trial import KINDS, STATED, AnswerTrial, time_to_rest
@@ -35,21 +35,29 @@ ODOMETRY, RIPPLE = 1.2, 2.0
 """Bounds of a drive with lost frames, and with late frames as well, by the undisturbed one."""
 
 
-def bench(first: int, runs: int, say: Say, runner: Runner, program: Callable[..., dict[str, Any]]) -> Result:
+def bench(
+    parts: Sequence[str], first: int, runs: int, say: Say, runner: Runner, *, program: Callable[..., dict[str, Any]]
+) -> Result:
     """The table, and whether every figure keeps its bound.
 
     Args:
+        parts: what is measured, of losses, answers, slope and disturbed.
         first: the first seed.
         runs: seeds of each kind of loss; the drives last `runs`/`ALL_RUNS` of `DRIVE_TIME`, but at least a minute.
         say: receives progress and every broken rule.
         runner: where the trials run.
         program: runs one of bench/programs.
     """
-    rows: list[Row] = list(program("bench_board_losses", first, runs)["rows"])
-    rows += loss_rows(first, runs, say, runner)
-    rows += answer_rows(first, runs, say, runner)
-    rows += slope_rows(first, runs, say, runner)
-    rows += drive_rows(first, max(60.0, DRIVE_TIME * min(runs, ALL_RUNS) / ALL_RUNS), say, runner)
+    rows: list[Row] = []
+    if "losses" in parts:
+        rows += program("bench_board_losses", first, runs)["rows"]
+        rows += loss_rows(first, runs, say, runner)
+    if "answers" in parts:
+        rows += answer_rows(first, runs, say, runner)
+    if "slope" in parts:
+        rows += slope_rows(first, runs, say, runner)
+    if "disturbed" in parts:
+        rows += drive_rows(first, max(60.0, DRIVE_TIME * min(runs, ALL_RUNS) / ALL_RUNS), say, runner)
     return judged("devices", rows)
 
 
