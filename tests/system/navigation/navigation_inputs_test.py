@@ -17,8 +17,8 @@ from nav_msgs.msg import OccupancyGrid, Odometry
 from robot_control.msg import FollowPathActionGoal, NavigateToAction, NavigateToGoal
 from sensor_msgs.msg import LaserScan
 from std_msgs.msg import Float64
-from system.navigation.navigation_support import Latest, Localised, message_of, missing, share, transform
-from system.system_support import Process, Program, init_test_node, refusal, truncated_messages, wait_for
+from system.navigation.navigation_support import Localised, message_of, missing, share, transform
+from system.system_support import Latest, Process, Program, init_test_node, refusal, truncated_messages, wait_for
 from tf2_msgs.msg import TFMessage
 
 HALL = np.zeros((80, 120), dtype=np.int8)
