@@ -413,7 +413,7 @@ MAX_NAMING_A_CAUSE = 4
 
 
 def test_few_files_name_a_safety_cause():
-    """In C++ by its bit or by its parameter, in other files by its name as a string or as a key; comments do not count.
+    """A file names it in C++ by its bit or its parameter, else by its name as a string or a key. Comments do not count.
 
     Its row in stop_causes.def and the list of its set count, too. Its own file, in which it is measured, is one header
     of safety/conditions with its source, but no such list; a second one counts. A word with another meaning counts if

@@ -27,7 +27,7 @@
 
 namespace robot_control {
 
-/// What is measured of any kind in one cycle.
+/// The measurements of one cycle that every kind has.
 struct BodyMeasurements {
   const MonitorInput& input;  ///< with sensors
   std::uint64_t elapsed;      ///< cycles since the last step, ≥ 1

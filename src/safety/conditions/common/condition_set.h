@@ -1,8 +1,8 @@
 #pragma once
-/// The conditions of one robot kind: what is measured in a cycle, by the Observer of the kind, and the conditions that
-/// are compared with it. It is the KindConditions of monitor.h.
+/// The conditions of one robot kind: the Observer of the kind measures, and each condition judges these measurements.
+/// The set is the KindConditions of monitor.h.
 ///
-/// The Observer has these members. What its `step` returns refers to it, and has a member `elapsed`.
+/// The Observer has these members. The result of its `step` refers to it, and has a member `elapsed`.
 ///
 ///   Observer(const SafetyParameters&, const Machine&, double period)
 ///   driven_joints(const Machine&), moving(), standing(), sliding()    those of KindConditions

@@ -1,6 +1,6 @@
 #pragma once
-/// What is measured of a robot on legs in one cycle: its body, its feet, what it is commanded to do, and whether its
-/// joints stand. Joints stand while every one stays within kWindow of its angle for kStandingTime.
+/// The measurements of a robot on legs in one cycle: its body, its feet, its command, and whether its joints stand.
+/// Joints stand while every one stays within kWindow of its angle for kStandingTime.
 ///
 /// A robot that lies on its body falls from no slope on which it rests. Its limit of tilt is then at least kLyingTilt,
 /// half way to its side. A robot on its side or back is still named.

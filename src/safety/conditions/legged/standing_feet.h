@@ -17,8 +17,8 @@
 /// foot load: F is the measured force of a foot, w an equal share of the weight. While it walks, the load of a foot is
 /// the largest of its present or last step. Without contact sensors it is not evaluated.
 ///
-/// sinking, while it walks: h is the mean height of the body above its feet by the measured angles, c the commanded
-/// height, l the leg length. h₀ and c₀ are those of the robot that stood.
+/// sinking, while it walks: h is the mean height of the body above its feet by the measured angles. The commanded
+/// height is c, and the leg length l. h₀ and c₀ are those of the robot that stood.
 ///
 /// Slip and load name the knee of the worst foot. The reasons: docs/evidence/derivations.md.
 

@@ -58,7 +58,7 @@ class Stall {
     double fastest = kInfinity;  ///< rad/s, velocity limit
   };
 
-  /// What happened since the wheel last turned.
+  /// The sums since the wheel last turned.
   struct Standing {
     double missed = 0;         ///< rad
     double target_travel = 0;  ///< rad, ∫|q̇*|dt

@@ -1,5 +1,5 @@
 #pragma once
-/// What is measured of a robot on wheels in one cycle: how its wheels and its body move, and their targets.
+/// The measurements of a robot on wheels in one cycle: the motion of its wheels and its body, and their targets.
 
 #include <algorithm>
 #include <array>
