@@ -17,6 +17,8 @@ from support.virtual_robot import Run, VirtualRobot, ordered
 from bench.fleet import sequences
 from bench.fleet.messages import action, header, order
 
+pytest.importorskip("jsonschema", reason="needs Debian's python3-jsonschema: scripts/setup --fleet")
+
 ROOT = Path(__file__).parents[2]
 LINE = [(0.0, 0.0), (1.0, 0.0), (2.0, 0.0), (3.0, 0.0)]
 

@@ -167,8 +167,10 @@ void fill_setup(const std::string& node, bool in_loop, Setup& setup) {
   } catch (const ParameterError& error) {
     throw SetupError(error.what());  // without parameters nothing else can be checked
   }
-  add(problems, clock_problem(setup.parameters.loop.clock, use_sim_time));
-  if (in_loop) read_machine(node, overlays, setup, problems);
+  if (in_loop) {
+    add(problems, clock_problem(setup.parameters.loop.clock, use_sim_time));
+    read_machine(node, overlays, setup, problems);
+  }
   if (!problems.empty()) throw SetupError(problems);
   // Each namespace has a folder of its own, so that two robots never write to one file.
   std::string& directory = setup.parameters.telemetry.directory;

@@ -136,7 +136,10 @@ def left_over(known: Graph) -> Finding:
     if {name.rsplit("/", 1)[-1] for name in known.nodes} & NODES:
         return ok("the robot runs; its nodes log the overrides in force")
     left = [
-        f"/{name}/{key}" for name in BLOCKS for key in _block(known, name) if not {key, f"{name}/{key}"} & SET_AT_LAUNCH
+        f"/{name}/{key}"
+        for name in BLOCKS
+        for key in _block(known, name)
+        if not any(f"{each}/".startswith((f"{key}/", f"{name}/{key}/")) for each in SET_AT_LAUNCH)
     ]
     if not left:
         return ok("none")
