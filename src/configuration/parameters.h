@@ -19,6 +19,7 @@
 #include "machine/legs/leg_parameters.h"
 #include "machine/wheeled/drive_train_parameters.h"
 #include "navigation/navigation_parameters.h"
+#include "parameters/block.h"
 #include "parameters/parameter_tree.h"
 #include "parameters/problem_list.h"
 #include "parameters/schema.h"
@@ -85,7 +86,6 @@ inline std::vector<Word> words_of(DriverName) {
   };
 #define DRIVE(name, driver, ...) add(#driver);
 #include "drivers/drive_table.def"
-#include "parameters/block.h"
   return words;
 }
 

@@ -11,7 +11,7 @@ int Descriptor::write(std::string_view bytes, std::optional<off_t> at) const noe
     const ssize_t taken =
         at ? ::pwrite(number_, bytes.data(), bytes.size(), *at) : ::write(number_, bytes.data(), bytes.size());
     if (taken < 0 && errno == EINTR) continue;
-    if (taken < 0) return errno;
+    if (taken <= 0) return taken < 0 ? errno : EIO;
     bytes.remove_prefix(static_cast<std::size_t>(taken));
     if (at) *at += taken;
   }

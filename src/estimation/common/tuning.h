@@ -3,7 +3,7 @@
 /// states unit, meaning and origin. Deviations are standard deviations.
 ///
 /// The origin "recordings" means drives of real robots, or with their errors (bench/odometry/recordings.py,
-/// field_bench.py). The origin "faults" means sensors that fail shortly (bench/odometry/short_faults.py).
+/// field_bench.py). The origin "faults" means sensors that fail shortly (test_short_faults.py).
 
 #include <array>
 #include <cstdint>

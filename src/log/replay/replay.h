@@ -7,7 +7,7 @@
 ///
 /// The whole message of a row that was read from a log is compared, byte for byte. Its fields are put together again
 /// from the outputs of the laws and the frames that they used. Values that no law computes are covered by the checksum
-/// of the message (message_differences.h).
+/// of the message (field_differences.h).
 ///
 /// A law is not compared until its next snapshot while its state is unknown: before its first snapshot, after missing
 /// rows, in another process. The same holds after it used a frame that is neither in the log nor computed again. If an

@@ -23,7 +23,7 @@ double angle_between_lines(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
 struct Profile {
   std::vector<double> heights;  ///< m, support in each direction across the axle
   double reach = 0;             ///< m, farthest point from the axle
-  double radius = 0;            ///< m (wheel.h)
+  double radius = 0;            ///< m (rolling.h)
   double first = 0, last = 0;   ///< m along the axle, part that touches the ground
 };
 

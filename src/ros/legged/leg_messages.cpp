@@ -54,7 +54,7 @@ std::optional<Mode> mode_of_gait(const std::string& gait, const Gaits& gaits) {
 }
 
 std::string gait_of_mode(const Mode& mode, const Gaits& gaits) {
-  return mode.kind == ModeKind::kGait ? gaits.at(mode.index).name.data() : "auto";
+  return mode.kind == ModeKind::kGait && mode.index < gaits.size() ? gaits[mode.index].name.data() : "auto";
 }
 
 LegState leg_state(const LegReport& report, const LegModel& robot, ros::Time stamp) {

@@ -1,5 +1,5 @@
 #pragma once
-/// This condition finds gyro and wheels that measure different yaw rates.
+/// The difference of the yaw rates that gyro and wheels measure.
 ///
 ///   |ω_gyro·z − ω| > limit + kScrub·|ω| + δ,   ω = (v_right − v_left)/b
 ///

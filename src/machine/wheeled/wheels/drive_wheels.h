@@ -3,7 +3,7 @@
 ///
 /// Drive wheels are named by `left_wheel_joints` and `right_wheel_joints`, both or neither, in any order. Otherwise
 /// they are found. A candidate
-///   rolls (wheel.h) on an axle that is lateral within kAxleTolerance;
+///   rolls (rolling.h) on an axle that is lateral within kAxleTolerance;
 ///   reaches the floor: its lowest point is within kFloorTolerance of that of the lowest candidate, or within the
 ///     travel of its suspension;
 ///   carries no rollers (rollers.h), is not behind a swivel (swivel.h), and follows no other joint than that of a wheel
@@ -35,7 +35,7 @@ inline constexpr double kPairTolerance = 0.01;
 struct RollingBody {
   std::size_t body = 0;     ///< index into RigidBodies::bodies
   WheelModel wheel;         ///< without `joint`
-  double out_of_round = 0;  ///< m, out-of-roundness (wheel.h)
+  double out_of_round = 0;  ///< m, out-of-roundness (rolling.h)
 };
 
 /// Returns the body with its measure as a wheel. Its sign is +1 if the axle points left; the caller sets its side.
