@@ -71,6 +71,19 @@ void Join::give_repeated() {
   give(std::get<3>(repeated_));
 }
 
+void Join::add(const DriverTrace& row) {
+  add_to<0>(row);
+}
+void Join::add(const EstimatorTrace& row) {
+  add_to<1>(row);
+}
+void Join::add(const ControllerTrace& row) {
+  add_to<2>(row);
+}
+void Join::add(const MonitorTrace& row) {
+  add_to<3>(row);
+}
+
 void Join::emit_beyond(std::size_t window) {
   const std::size_t before = std::exchange(window_, window);
   drain(false);
@@ -136,10 +149,5 @@ void Join::emit(std::uint64_t cycle) {
   std::apply([&](auto&... queue) { ((has[node++] ? queue.pop_front() : void()), ...); }, queues_);
   give_repeated();
 }
-
-template void Join::add_to<0>(const DriverTrace&);
-template void Join::add_to<1>(const EstimatorTrace&);
-template void Join::add_to<2>(const ControllerTrace&);
-template void Join::add_to<3>(const MonitorTrace&);
 
 }  // namespace robot_control

@@ -32,10 +32,10 @@ class Join {
   /// `period` is in s. `sink` receives each row; its pointers are valid during the call.
   Join(double period, std::function<void(const JoinedRow&)> sink, std::size_t window = kJoinWindow);
 
-  void add(const DriverTrace& row) { add_to<0>(row); }
-  void add(const EstimatorTrace& row) { add_to<1>(row); }
-  void add(const ControllerTrace& row) { add_to<2>(row); }
-  void add(const MonitorTrace& row) { add_to<3>(row); }
+  void add(const DriverTrace& row);
+  void add(const EstimatorTrace& row);
+  void add(const ControllerTrace& row);
+  void add(const MonitorTrace& row);
 
   /// Emits the cycles for which another node is more than `window` rows ahead.
   void emit_beyond(std::size_t window);
