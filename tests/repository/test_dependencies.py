@@ -92,7 +92,7 @@ def test_what_was_installed_by_hand_is_hidden(only_listed, tmp_path):
 
 def imported():
     """Modules that the shipped programs import, also inside of functions."""
-    for path in [*(ROOT / "scripts").glob("*.py"), *(ROOT / "python").rglob("*.py")]:
+    for path in [*(ROOT / "scripts").rglob("*.py"), *(ROOT / "python").rglob("*.py")]:
         for node in ast.walk(ast.parse(path.read_text())):
             if isinstance(node, ast.Import):
                 yield from (name.name for name in node.names)

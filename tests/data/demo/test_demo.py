@@ -1,3 +1,4 @@
+import itertools
 import signal
 import subprocess
 import sys
@@ -5,8 +6,10 @@ import time
 
 import pytest
 from robot_control import ClosedLoop
+from robot_control.data.demo import launched, lockstep
 from robot_control.data.demo import main as demo
 from robot_control.data.demo.arguments import parse
+from robot_control.ui.child import Child
 
 WAIT = "import time\nprint('ready')\nfor _ in range(6000): time.sleep(0.01)"
 """The sleeps are short, because a signal just before one is handled at its end."""
@@ -28,7 +31,7 @@ def test_nothing_is_said_when_all_was_granted():
 
 
 def child(tmp_path, code):
-    started = demo.Child([sys.executable, "-u", "-c", code], tmp_path / "output")
+    started = Child([sys.executable, "-u", "-c", code], tmp_path / "output")
     deadline = time.monotonic() + 20
     while "ready" not in (tmp_path / "output").read_text() and time.monotonic() < deadline:
         time.sleep(0.01)
@@ -57,7 +60,7 @@ def test_a_child_that_ignores_sigint_is_killed(tmp_path):
 
 
 def test_what_was_started_is_ended_after_an_error(tmp_path):
-    with pytest.raises(RuntimeError, match="broken"), demo._ended_at_the_end() as children:
+    with pytest.raises(RuntimeError, match="broken"), launched.ended_at_the_end() as children:
         children.append(child(tmp_path, WAIT))
         raise RuntimeError("broken")
     assert not children[0].running
@@ -65,15 +68,15 @@ def test_what_was_started_is_ended_after_an_error(tmp_path):
 
 def test_the_last_complete_row_of_a_growing_file_is_found(tmp_path):
     log = tmp_path / "run.bag"
-    assert demo._last_row(log) is None
+    assert launched.last_row(log) is None
     loop = ClosedLoop()
     loop.log_into(tmp_path)
-    assert demo._last_row(log) is None
+    assert launched.last_row(log) is None
     loop.run(2.5, (0.5, 0.2))
-    assert 1990 <= demo._last_row(log)["cycle"] <= 2010, "whole seconds are in the file"
-    assert demo._last_row(log)["requested_linear"] == demo.LINEAR
+    assert 1990 <= launched.last_row(log)["cycle"] <= 2010, "whole seconds are in the file"
+    assert launched.last_row(log)["requested_linear"] == launched.LINEAR
     loop.end_log()
-    assert demo._last_row(log)["cycle"] == 2499
+    assert launched.last_row(log)["cycle"] == 2499
 
 
 @pytest.mark.parametrize("seconds", ["0", "-3", "1.9", "nan", "inf", "ten"])
@@ -111,7 +114,7 @@ def test_the_folder_is_made_and_left_empty(tmp_path):
 
 
 def test_a_disk_that_fails_during_the_run_is_reported_without_a_traceback(tmp_path, monkeypatch, capsys):
-    def fail(seconds, out, robot, drives, velocity):
+    def fail(seconds, out, *_, **__):
         raise OSError(28, "No space left on device", str(out / "run.png"))
 
     monkeypatch.setattr(demo, "run_demo", fail)
@@ -127,3 +130,16 @@ def test_a_disk_that_fails_during_the_run_is_reported_without_a_traceback(tmp_pa
 def test_sigterm_ends_like_an_interrupt():
     with pytest.raises(KeyboardInterrupt):
         demo._interrupt(signal.SIGTERM, None)
+
+
+@pytest.mark.parametrize("legged", [False, True])
+def test_the_script_repeats_its_command_before_it_is_too_old(legged):
+    text, asked, cycles = lockstep.script(3.2, legged=legged)
+    rows = [[float(cell) for cell in line.split(",")] for line in text.splitlines()[1:]]
+    times = [cycle * launched.PERIOD for cycle, _, _ in rows]
+    assert times[0] == launched.REST_TIME
+    assert max(later - one for one, later in itertools.pairwise(times)) <= 0.5
+    assert rows[-1][1:] == [0, 0]
+    assert times[-1] == pytest.approx(launched.REST_TIME + asked)
+    assert asked >= 3.2
+    assert cycles > rows[-1][0]

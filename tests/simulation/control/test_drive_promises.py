@@ -2,7 +2,7 @@
 
 import pytest
 from robot_control import ClosedLoop
-from robot_control.data.demo.main import ANGULAR, LINEAR
+from robot_control.data.demo.launched import ANGULAR, LINEAR
 from robot_control.data.demo.tracking import judge
 from robot_control.loop.signal_names import number_of
 

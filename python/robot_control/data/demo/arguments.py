@@ -11,7 +11,7 @@ LEGGED_ROBOT = "quadbot"
 
 
 def parse(arguments: Sequence[str] | None = None) -> argparse.Namespace:
-    """`seconds`, `out`, `robot`, `drives` and `wheel_command` of scripts/demo; ends the program on a wrong one."""
+    """The arguments of scripts/demo as `seconds`, `out`, `robot` …; ends the program on a wrong one."""
     parser = argparse.ArgumentParser(prog="scripts/demo", description="Drives the simulated robot and judges the run.")
     parser.add_argument("--seconds", type=_seconds, default=10.0, help="of driving (default %(default)g)")
     parser.add_argument("--out", type=_folder, default="demo_out", help="folder (default ./demo_out)")
@@ -20,6 +20,8 @@ def parse(arguments: Sequence[str] | None = None) -> argparse.Namespace:
     parser.add_argument("--drives", choices=tuple(DRIVES), help="the motors stand behind such simulated drives")
     meaning = "what the drives take (default torque, or what --drives takes alone)"
     parser.add_argument("--wheel-command", choices=("torque", "velocity"), help=meaning)
+    meaning = "lockstep: exact on any machine; wall: in real time, which a busy machine disturbs (default %(default)s)"
+    parser.add_argument("--clock", choices=("lockstep", "wall"), default="lockstep", help=meaning)
     given = parser.parse_args(arguments)
     if given.drives and given.robot == LEGGED_ROBOT:
         parser.error(f"--drives move wheels alone, and {LEGGED_ROBOT} stands on legs: leave one of both out")

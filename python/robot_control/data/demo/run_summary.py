@@ -41,7 +41,8 @@ class RunSummary:
     """None if there was nothing to judge."""
     untracked: str
     """Why nothing was judged; empty otherwise."""
-    timing: LoopTiming
+    timing: LoopTiming | None
+    """None in lockstep, which has no deadlines."""
     stolen_share: float
     """Share of the processors' time, 0 … 1."""
     safety: Safety
@@ -62,7 +63,14 @@ class RunSummary:
 
 
 def summarize(
-    log: Log, linear: float, angular: float, driven: float, stolen_share: float = 0.0, *, legged: bool = False
+    log: Log,
+    linear: float,
+    angular: float,
+    driven: float,
+    stolen_share: float = 0.0,
+    *,
+    legged: bool = False,
+    clock: str = "wall",
 ) -> RunSummary:
     """Judges a run.
 
@@ -70,10 +78,11 @@ def summarize(
         log: of one run.
         linear: m/s, commanded.
         angular: rad/s, commanded.
-        driven: s of wall-clock time from the command's arrival to its end. A log whose steady part ends early, because
+        driven: s of this clock from the command's arrival to its end. A log whose steady part ends early, because
             something died, tracked nothing.
         stolen_share: of the processors' time during the run.
         legged: of a robot on legs.
+        clock: wall or lockstep.
     """
     tracking, untracked = None, ""
     tolerances = ON_LEGS if legged else ON_WHEELS
@@ -81,10 +90,10 @@ def summarize(
         tracking = judge(log, linear, angular, tolerances)
     except NotSteadyError as error:
         untracked = str(error)
-    timing = loop_timing(log)
+    timing = loop_timing(log) if clock == "wall" else None
     if tracking is not None:
         # The time that a slow plant lost against the wall clock is no fault.
-        missing = driven - timing.slipped - (tracking.end - tracking.begin)
+        missing = driven - (timing.slipped if timing else 0.0) - (tracking.end - tracking.begin)
         if missing > tolerances.rise + SETTLE:
             tracking, untracked = None, f"{missing:.1f} s of the {driven:g} s driven are not in the steady part"
     postures = entered(log["legged_phase"], "LegPhase") if legged else ()
@@ -118,7 +127,9 @@ def to_json(summary: RunSummary) -> str:
 
 def to_table(summary: RunSummary) -> str:
     """The summary for a reader at a terminal, at most 80 columns wide."""
-    lines = [*_motion_lines(summary), "", *_timing_lines(summary), ""]
+    lines = [*_motion_lines(summary), ""]
+    if summary.timing is not None:
+        lines += [*_timing_lines(summary.timing, summary.stolen_share), ""]
     lines += [_safety_line(summary.safety), *_posture_lines(summary), *_brake_lines(summary.brakes)]
     return "\n".join(lines)
 
@@ -147,9 +158,7 @@ def _motion_lines(summary: RunSummary) -> list[str]:
     return lines
 
 
-def _timing_lines(summary: RunSummary) -> list[str]:
-    timing = summary.timing
-
+def _timing_lines(timing: LoopTiming, stolen: float) -> list[str]:
     def row(name: str, values: Distribution) -> str:
         return f"  {name:<32}{values.p50:12.1f}{values.p99:12.1f}{values.max:12.1f}"
 
@@ -165,7 +174,7 @@ def _timing_lines(summary: RunSummary) -> list[str]:
         f"  {'permit late':<32}{timing.late_permits:12d}",
         f"  {'tick overran':<32}{timing.overruns:12d}",
         f"  {'plant slipped [ms]':<32}{timing.slipped * 1000:12.1f}",
-        f"  {'processor time stolen':<32}{summary.stolen_share * 100:10.2f} %",
+        f"  {'processor time stolen':<32}{stolen * 100:10.2f} %",
     ]
 
 
