@@ -89,7 +89,7 @@ def kind_in(header: Mapping[str, Any]) -> Kind:
     return Kind(str(header.get("kind", "")))
 
 
-def read_log(path: Path, columns: Sequence[str] = ()) -> dict[str, FloatArray]:
+def read_log(path: Path | str, columns: Sequence[str] = ()) -> dict[str, FloatArray]:
     """All rows of the last run in a run.bag; `columns`: only these, where they are there.
 
     A last chunk that was cut short, because its writer was killed, is left out.
@@ -97,8 +97,9 @@ def read_log(path: Path, columns: Sequence[str] = ()) -> dict[str, FloatArray]:
     return read_run(path, columns).columns
 
 
-def read_run(path: Path, columns: Sequence[str] = ()) -> RunLog:
+def read_run(path: Path | str, columns: Sequence[str] = ()) -> RunLog:
     """As `read_log`, with what stands around the rows."""
+    path = Path(path)
     if not is_bag(path):
         raise LogError(f"{path} is no run.bag (a run.csv is a table that export.py makes of one, for other programs)")
     try:

@@ -52,6 +52,13 @@ def test_states_and_causes_of_a_stop_are_named(run):
     assert safety.causes == ("e_stop_topic", "controller_lost")
 
 
+def test_lateness_is_named_before_what_follows_from_it(run):
+    run["permit_causes"][6000:] = mask_of("StopCause", "controller_lost", "impact")
+    assert to_table(summary_of(run)).startswith("stopped: the loop was late, because the machine was busy: load ")
+    run["permit_causes"][6000:] = mask_of("StopCause", "impact")
+    assert "was late" not in to_table(summary_of(run))
+
+
 EXPIRED, NO_COMMAND, PERMIT_BRAKE = (
     mask_of("GateReason", name) for name in ("permit_expired", "no_command", "permit_brake")
 )

@@ -199,6 +199,29 @@ def test_a_node_that_still_requests_motion_is_named_before_the_reset(driving):
     assert actions[-1] == ("operator", "then call e_stop_reset")
 
 
+LATE = Cause("estimator_lost", "the estimator published no state", "look", "integrator", "7 cycles", first=True)
+
+
+def test_a_stop_of_a_busy_machine_names_lateness_load_and_remedy_first(driving):
+    answer = judge(replace(stopped(driving, FAST, LATE), busy=True, load="load 40 on 2 cores"))
+    assert answer.headline == (
+        "Stopped: the loop was late, because the machine was busy: estimator_lost (7 cycles), load 40 on 2 cores."
+    )
+    assert "end other programs" in answer.actions[0][1]
+
+
+@pytest.mark.parametrize("counters", [{"overruns": "3"}, {"slipped_s": "0.2"}])
+def test_cycles_that_ended_late_show_lateness_as_the_load_does(counters, driving):
+    assert "was late" in judge(stopped(saying(driving, DRIVER, **counters), LATE)).headline
+
+
+def test_neither_an_idle_machine_nor_a_node_that_died_nor_another_cause_is_late(driving):
+    idle = saying(driving, DRIVER, overruns="0", slipped_s="0.000000")
+    dead = replace(without(stopped(driving, LATE), ESTIMATOR), busy=True)
+    for facts in (stopped(idle, LATE), dead, replace(stopped(driving, FAST), busy=True)):
+        assert "was late" not in judge(facts).headline
+
+
 def test_a_ramp_is_reported_as_stopping(driving):
     assert judge(stopped(driving, FAST, state="STOPPING")).headline.startswith("Stopping: ")
 

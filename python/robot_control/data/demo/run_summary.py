@@ -14,6 +14,7 @@ from robot_control.data.loop_timing import Distribution, LoopTiming, loop_timing
 from robot_control.data.run_log import FloatArray, Log, last
 from robot_control.files.json_values import finite
 from robot_control.loop.signal_names import causes_in, states
+from robot_control.robot.diagnosis.lateness import BY_LATENESS, REMEDY, SENTENCE, load_in_words
 
 BRAKES_SHOWN = 4
 LYING = "lying"
@@ -127,7 +128,7 @@ def to_json(summary: RunSummary) -> str:
 
 def to_table(summary: RunSummary) -> str:
     """The summary for a reader at a terminal, at most 80 columns wide."""
-    lines = [*_motion_lines(summary), ""]
+    lines = [*_lateness_lines(summary), *_motion_lines(summary), ""]
     if summary.timing is not None:
         lines += [*_timing_lines(summary.timing, summary.stolen_share), ""]
     lines += [_safety_line(summary.safety), *_posture_lines(summary), *_brake_lines(summary.brakes)]
@@ -156,6 +157,15 @@ def _motion_lines(summary: RunSummary) -> list[str]:
     if tracking.excused_cycles:
         lines.append(f"  {'cycles excused: braked, 50 after':<32}{tracking.excused_cycles:12d}")
     return lines
+
+
+def _lateness_lines(summary: RunSummary) -> list[str]:
+    """The reason before its consequences, where a stop of a run on the wall clock followed from lateness."""
+    if summary.timing is None or not BY_LATENESS.intersection(summary.safety.causes):
+        return []
+    late = f"{summary.timing.overruns} ticks overran, the plant slipped by {summary.timing.slipped * 1000:.0f} ms"
+    said = f"stopped: {SENTENCE}: {load_in_words()}; {late}. Remedy: {REMEDY}, as scripts/demo without --clock has it"
+    return [*textwrap.wrap(said, WIDTH), ""]
 
 
 def _timing_lines(timing: LoopTiming, stolen: float) -> list[str]:

@@ -3,6 +3,7 @@
 from collections.abc import Iterator
 
 from robot_control.robot.diagnosis.answer import Answer, Verdict
+from robot_control.robot.diagnosis.lateness import ACTOR, REMEDY, SENTENCE, late
 from robot_control.robot.diagnosis.legs import execution
 from robot_control.robot.diagnosis.state import Cause, Facts, speeds
 from robot_control.robot.safety_states import DRIVABLE
@@ -108,9 +109,17 @@ def _stopped(facts: Facts) -> Answer | None:
     causes = sorted(safety.causes, key=lambda cause: not cause.first)
     doing = "Stopping" if safety.state == "STOPPING" else "Stopped"
     measured = f" ({causes[0].detail})" if causes[0].detail else ""
-    headline = f"{doing}: {causes[0].sentence}{measured}."
-    commands = tuple(_commands(facts, causes, absent))
-    return Answer(Verdict.STOPPED, headline, tuple(_actions(facts, causes, absent)), commands)
+    headline, actions = f"{doing}: {causes[0].sentence}{measured}.", list(_actions(facts, causes, absent))
+    if late(causes[0].name, absent, delayed=_delayed(facts)):
+        seen = ", ".join(part for part in (f"{causes[0].name}{measured}", facts.load) if part)
+        headline = f"{doing}: {SENTENCE}: {seen}."
+        actions.insert(0, (ACTOR, REMEDY))
+    return Answer(Verdict.STOPPED, headline, tuple(actions), tuple(_commands(facts, causes, absent)))
+
+
+def _delayed(facts: Facts) -> bool:
+    counters = (facts.value(facts.driver, key) for key in ("overruns", "slipped_s"))
+    return facts.busy or any(counter.strip("0.") for counter in counters)
 
 
 def _actions(facts: Facts, causes: list[Cause], absent: tuple[str, ...]) -> Iterator[tuple[str, str]]:

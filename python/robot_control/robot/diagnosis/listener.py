@@ -4,6 +4,7 @@ import threading
 import time
 from collections.abc import Callable, Sequence
 from typing import Any
+from urllib.parse import urlsplit
 
 import rospy
 from geometry_msgs.msg import Twist, TwistStamped
@@ -12,6 +13,7 @@ from nav_msgs.msg import Odometry
 from robot_control.msg import SafetyStatus
 from robot_control.robot.boundary import Latest, boundary
 from robot_control.robot.diagnosis.facts import below, nodes_of, other_robots, safety_of
+from robot_control.robot.diagnosis.lateness import busy, load_in_words
 from robot_control.robot.diagnosis.recent import Diagnostics, values_of
 from robot_control.robot.diagnosis.state import SILENCE, Facts, Report, Safety, Speeds
 from robot_control.robot.live_parameters import LiveParameters
@@ -79,6 +81,7 @@ class Listener:
         state = self._state or ([], [], [])
         kind, limited, measured = running_kind(), self._limited.fresh(now, SILENCE), self._measured.fresh(now, SILENCE)
         newest = self._reports.items(now).items()
+        local = urlsplit(self.master.uri).hostname in {"localhost", "127.0.0.1"}
         reports = {name: Report(status.message, values_of(status), now - at) for name, (at, status) in newest}
         return Facts(
             master=self.master.uri,
@@ -94,6 +97,8 @@ class Listener:
             limited=None if limited is None else speeds_of(limited.twist),
             measured=None if measured is None else speeds_of(measured.twist.twist),
             command_timeout=self._parameters.command_timeout,
+            load=load_in_words() if local else "",
+            busy=local and busy(),
         )
 
     def safety(self, now: float) -> Safety | None:

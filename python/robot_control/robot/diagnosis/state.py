@@ -76,6 +76,8 @@ class Facts:
     limited: Speeds | None = None  # the command after limits
     measured: Speeds | None = None  # by odometry
     command_timeout: float = 0.0  # s, cmd_vel_timeout of the running controller; 0: off, or not known
+    load: str = ""  # of the robot's machine, in words, where it is this one
+    busy: bool = False  # true if more programs want to run there than it has cores
 
     @property
     def driver(self) -> str:

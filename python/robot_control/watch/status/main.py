@@ -11,6 +11,7 @@ from robot_control.installed_files import share_file
 from robot_control.msg import RobotStatus
 from robot_control.robot.boundary import boundary
 from robot_control.robot.diagnosis.facts import below
+from robot_control.robot.diagnosis.lateness import busy
 from robot_control.robot.diagnosis.recent import Diagnostics
 from robot_control.robot.robot_kind import running_kind
 from robot_control.robot.ros_node import running_node
@@ -56,6 +57,7 @@ class Status:
             kind=running_kind(),
             commander="" if drive is None else drive.commander,
             posture="" if legs is None else legs.posture,
+            busy=busy(),
         )
 
 

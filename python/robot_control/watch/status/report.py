@@ -8,6 +8,7 @@ from diagnostic_msgs.msg import DiagnosticStatus
 
 from robot_control.loop.roles import Kind
 from robot_control.msg import RobotStatus, SafetyStatus
+from robot_control.robot.diagnosis.lateness import REMEDY, SENTENCE, late, load_in_words
 from robot_control.robot.diagnosis.recent import values_of
 from robot_control.robot.safety_states import DRIVABLE
 
@@ -25,6 +26,7 @@ class Reports:
     kind: Kind = field(default_factory=Kind)
     commander: str = ""  # from drive_state, if there is a list of command sources
     posture: str = ""  # from leg_state
+    busy: bool = False  # more programs want to run than there are cores
 
     def value(self, node: str, key: str) -> str:
         """A value in a node's report; empty if it is not there."""
@@ -77,6 +79,9 @@ def _health(reports: Reports) -> tuple[int, list[str]]:
         if report.level != DiagnosticStatus.OK:
             levels.append(RobotStatus.WARN if report.level == DiagnosticStatus.WARN else RobotStatus.ERROR)
             problems.append(f"{node}: {report.message}")
+    silent = [node for node in reports.kind.loop[1:] if node not in reports.diagnostics]
+    if reports.safety is not None and late(reports.safety.first_cause, silent, delayed=reports.busy):
+        problems.insert(0, f"{SENTENCE}: {load_in_words()}; {REMEDY}")
     return max(levels), problems
 
 
