@@ -78,6 +78,7 @@ def run_demo(
     else:
         print(f"{log['time'][-1]:.1f} s of simulated time in {took:.1f} s")
     print(f"\n{to_table(summary)}\n\n{verdict}; see {printable(str(out))}/summary.json, run.bag, run.csv, run.png")
+    print(f"see it in a browser: scripts/try {robot}")
     return 0 if summary.passed else 1
 
 

@@ -1,7 +1,13 @@
 """A ROS 1 bag as MCAP: the same messages, their definitions beside them (mcap.dev/spec/registry, ros1)."""
 
+import io
 from pathlib import Path
+from typing import Any
 
+from std_msgs.msg import String
+
+from robot_control.data.export.topics import Topics
+from robot_control.data.run_log import is_run_log, read_run
 from robot_control.files.bag_file import BagFile
 from robot_control.ui.pypi import use_packages
 
@@ -11,7 +17,9 @@ class McapError(RuntimeError):
 
 
 def write_mcap(source: Path, target: Path) -> str:
-    """Returns `BagFile.cut`. Raises McapError, BagFileError, OSError."""
+    """Writes the messages of the bag; of a run.bag also what the robot publishes, with its URDF.
+    Returns `BagFile.cut`. Raises McapError, BagFileError, LogError, OSError.
+    """
     use_packages("export")
     try:
         from mcap.writer import Writer
@@ -27,5 +35,26 @@ def write_mcap(source: Path, target: Path) -> str:
             channels[number] = writer.register_channel(topic, "ros1", schema)
         for number, time_ns, data in bag.raw(bag.topics):
             writer.add_message(channels[number], log_time=time_ns, data=data, publish_time=time_ns)
+        if is_run_log(source):
+            _add_topics(writer, source)
         writer.finish()
     return bag.cut
+
+
+def _add_topics(writer: Any, source: Path) -> None:  # noqa: ANN401 (of the package)
+    run = read_run(source)
+    topics = Topics(run)
+    channels: dict[str, int] = {}
+
+    def add(topic: str, message: Any, time_ns: int) -> None:  # noqa: ANN401 (genpy has no types)
+        if topic not in channels:
+            schema = writer.register_schema(message._type, "ros1msg", message._full_text.encode())
+            channels[topic] = writer.register_channel(topic, "ros1", schema)
+        data = io.BytesIO()
+        message.serialize(data)
+        writer.add_message(channels[topic], log_time=time_ns, data=data.getvalue(), publish_time=time_ns)
+
+    add("/robot_description", String(run.header["urdf"]), round(run.ros_time[0] * 1e9))
+    for row in range(run.ros_time.size):
+        for topic, message, stamp in topics.of_row(row):
+            add(f"/{topic}", message, stamp.to_nsec())

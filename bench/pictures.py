@@ -1,0 +1,136 @@
+"""The pictures and the film of README and docs, made anew of the programs as they are: scripts/pictures."""
+
+from __future__ import annotations
+
+import argparse
+import math
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Iterator
+from pathlib import Path
+
+import matplotlib.image
+import rosgraph
+import rospy
+from geometry_msgs.msg import PoseStamped, Quaternion
+from nav_msgs.msg import Odometry
+from robot_control.data.demo.launched import ended_at_the_end
+from robot_control.data.demo.main import run_demo
+from robot_control.data.render import main as render
+from robot_control.ui.child import Child
+from robot_control.ui.program import run
+
+from bench.console.browser import Browser, missing
+from bench.console.process import Console, wait_for
+
+DOCS = Path(__file__).resolve().parents[1] / "docs"
+SIZE = (720, 406)
+"""px of the film"""
+RATE = 10
+"""pictures per second of the film"""
+WALK = slice(2.5, 9.5)
+"""s of the walk that are shown, standing up included"""
+PLACES = ((2.0, 0.0, 0.0), (1.0, 2.0, math.pi / 2), (2.2, 3.5, 0.0))
+"""m, rad: the goals that are driven while the map is made"""
+SHOT = 0.4
+"""s between two pictures of the page"""
+LIMIT = 120.0
+"""s for a goal"""
+
+
+def walk(folder: Path) -> Iterator[Path]:
+    """Pictures of quadbot that stands up and walks, in the demo's run."""
+    run_demo(6.0, folder / "demo", "quadbot")
+    given = [str(folder / "demo" / "run.bag"), "--urdf", "urdf/quadbot.urdf", "--size", f"{SIZE[0]}x{SIZE[1]}"]
+    options = render.arguments([*given, "--distance", "1.6"])
+    moments = [each for each in render.read_moments(options.run, 1 / RATE) if WALK.start <= each.time <= WALK.stop]
+    render.make_current()
+    film = render.Film(render.Scene(render.model_of(options)), moments, options)
+    for number, picture in enumerate(film.pictures()):
+        path = folder / f"walk_{number:03}.png"
+        matplotlib.image.imsave(path, picture)
+        yield path
+
+
+def mapping(folder: Path) -> Iterator[Path]:
+    """Pictures of the console while a room is mapped and driven."""
+    with ended_at_the_end() as children:
+        command = ["roslaunch", "robot_control", "navigation.launch", "scene:=room", "unknown_is_free:=true"]
+        children.append(Child(command, folder / "launch.log"))
+        wait_for("a master", rosgraph.is_master_online)
+        rospy.init_node("pictures", disable_signals=True)
+        goals = rospy.Publisher("move_base_simple/goal", PoseStamped, queue_size=1)
+        console, browser = Console(), Browser(1280, 720)
+        try:
+            browser.open(console.address)
+            wait_for("a map", lambda: browser.data("model") and goals.get_num_connections() > 0)
+            number, due = 0, 0.0
+            for x, y, yaw in PLACES:
+                goal = PoseStamped()
+                goal.header.frame_id = "map"
+                goal.pose.position.x, goal.pose.position.y = x, y
+                goal.pose.orientation = Quaternion(0, 0, math.sin(yaw / 2), math.cos(yaw / 2))
+                goals.publish(goal)
+                end = time.monotonic() + LIMIT
+                while time.monotonic() < end:
+                    time.sleep(max(0.0, due - time.monotonic()))
+                    due = time.monotonic() + SHOT
+                    path = folder / f"page_{number:03}.png"
+                    browser.picture(path)
+                    number += 1
+                    yield path
+                    odometry = rospy.wait_for_message("odom", Odometry, LIMIT).pose.pose.position
+                    if math.dist((odometry.x, odometry.y), (x, y)) < 0.15:
+                        break
+        finally:
+            browser.end()
+            console.end()
+
+
+def write_film(folder: Path, path: Path) -> None:
+    """Writes a GIF of the pictures of both parts, one after the other."""
+    inputs = []
+    for part in ("walk", "page"):
+        inputs += ["-framerate", str(RATE), "-i", str(folder / f"{part}_%03d.png")]
+    size = f"scale={SIZE[0]}:{SIZE[1]}:flags=lanczos,setsar=1"
+    joined = f"[0]{size}[a];[1]{size}[b];[a][b]concat=n=2,split[c][d]"
+    colours = "[c]palettegen=max_colors=128[p];[d][p]paletteuse=dither=none:diff_mode=rectangle"
+    command = ["ffmpeg", "-y", "-loglevel", "error", *inputs, "-filter_complex", f"{joined};{colours}", str(path)]
+    subprocess.run(command, check=True)
+
+
+def draw_plot(folder: Path, path: Path) -> None:
+    """Runs the first program of README, and keeps the plot that it saves."""
+    readme = (DOCS.parent / "README.md").read_text()
+    program = readme.partition("```python\n")[2].partition("```")[0]
+    style = "import matplotlib\nmatplotlib.use('Agg')\nmatplotlib.rcParams['figure.figsize'] = 7.2, 3\n"
+    subprocess.run([sys.executable, "-c", style + program], cwd=folder, check=True)
+    shutil.copy(folder / "turn.png", path)
+
+
+def main() -> int:
+    """Entry point of scripts/pictures."""
+    parser = argparse.ArgumentParser(prog="scripts/pictures", description=__doc__)
+    parser.add_argument("--out", type=Path, default=DOCS, help="folder (default docs)")
+    given = parser.parse_args()
+    if missing():
+        print(f"scripts/pictures: {missing()}")
+        return 2
+    given.out.mkdir(parents=True, exist_ok=True)
+    with tempfile.TemporaryDirectory(prefix="pictures-") as name:
+        folder = Path(name)
+        os.environ["ROS_HOME"] = str(folder / "ros")
+        draw_plot(folder, given.out / "first_plot.png")
+        pictures = [*walk(folder), *mapping(folder)]
+        write_film(folder, given.out / "film.gif")
+    size = (given.out / "film.gif").stat().st_size
+    print(f"wrote {given.out / 'film.gif'}: {len(pictures)} pictures, {size / 1e6:.1f} MB")
+    return 0
+
+
+if __name__ == "__main__":
+    run(main)
