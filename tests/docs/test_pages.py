@@ -104,6 +104,21 @@ def test_the_film_of_the_readme_is_one_that_a_code_host_plays():
     assert len(data) <= 3_000_000
 
 
+def tables(page):
+    """Rows of cells of each table."""
+    for lines in re.findall(r"(?:^\|.*\n)+", prose(page), re.MULTILINE):
+        yield [[cell.strip() for cell in line.strip().strip("|").split("|")] for line in lines.splitlines()[2:]]
+
+
+@pytest.mark.parametrize("page", [page for page in PAGES if page.parent.name != "evidence"], ids=lambda page: page.name)
+def test_a_page_for_users_has_no_measured_table_of_more_than_five_rows(page):
+    """A table is one of measurements where more than a third of the cells beside its names begin with a number."""
+    for rows in tables(page):
+        cells = [cell for row in rows for cell in row[1:]]
+        numbers = [cell for cell in cells if re.match(r"[≤≥<>±~−-]?\s*[\d.,]+(\s|$|[a-z%°µ])", cell)]
+        assert len(rows) <= 5 or 3 * len(numbers) <= len(cells), rows[0]
+
+
 def test_every_folder_of_the_source_is_on_the_map():
     on_the_map = set(re.findall(r"`src/(\w+)`", prose(ROOT / "docs" / "architecture.md")))
     assert on_the_map == {path.name for path in (ROOT / "src").iterdir() if path.is_dir()}
