@@ -17,10 +17,11 @@ import matplotlib.image
 import rosgraph
 import rospy
 from geometry_msgs.msg import PoseStamped, Quaternion
-from nav_msgs.msg import Odometry
+from nav_msgs.msg import OccupancyGrid, Odometry
 from robot_control.data.demo.launched import ended_at_the_end
 from robot_control.data.demo.main import run_demo
 from robot_control.data.render import main as render
+from robot_control.robot.pose import Pose, turned, yaw_of
 from robot_control.ui.child import Child
 from robot_control.ui.program import run
 
@@ -34,12 +35,12 @@ RATE = 10
 """pictures per second of the film"""
 WALK = slice(2.5, 9.5)
 """s of the walk that are shown, standing up included"""
-PLACES = ((2.0, 0.0, 0.0), (1.0, 2.0, math.pi / 2), (2.2, 3.5, 0.0))
+PLACES = (Pose(2.0, 0.0, 0.0), Pose(1.0, 2.0, math.pi / 2), Pose(2.2, 3.5, 0.0))
 """m, rad: the goals that are driven while the map is made"""
-SHOT = 0.4
-"""s between two pictures of the page"""
-LIMIT = 120.0
-"""s for a goal"""
+STEP, RADIUS, NEAR = 0.08, 0.2, 0.15
+"""m between two pictures of the page; of a turn, at this radius; m from a goal that count as reached"""
+LIMIT, PATIENCE = 120.0, 5.0
+"""s for a goal; s without motion after which it is sent again"""
 
 
 def walk(folder: Path) -> Iterator[Path]:
@@ -57,7 +58,7 @@ def walk(folder: Path) -> Iterator[Path]:
 
 
 def mapping(folder: Path) -> Iterator[Path]:
-    """Pictures of the console while a room is mapped and driven."""
+    """Pictures of the console while a room is mapped and driven: one after each STEP of the robot."""
     with ended_at_the_end() as children:
         command = ["roslaunch", "robot_control", "navigation.launch", "scene:=room", "unknown_is_free:=true"]
         children.append(Child(command, folder / "launch.log"))
@@ -68,27 +69,35 @@ def mapping(folder: Path) -> Iterator[Path]:
         try:
             browser.open(console.address)
             wait_for("a map", lambda: browser.data("model") and goals.get_num_connections() > 0)
-            number, due = 0, 0.0
-            for x, y, yaw in PLACES:
-                goal = PoseStamped()
-                goal.header.frame_id = "map"
-                goal.pose.position.x, goal.pose.position.y = x, y
-                goal.pose.orientation = Quaternion(0, 0, math.sin(yaw / 2), math.cos(yaw / 2))
-                goals.publish(goal)
-                end = time.monotonic() + LIMIT
-                while time.monotonic() < end:
-                    time.sleep(max(0.0, due - time.monotonic()))
-                    due = time.monotonic() + SHOT
-                    path = folder / f"page_{number:03}.png"
-                    browser.picture(path)
-                    number += 1
-                    yield path
-                    odometry = rospy.wait_for_message("odom", Odometry, LIMIT).pose.pose.position
-                    if math.dist((odometry.x, odometry.y), (x, y)) < 0.15:
-                        break
+            rospy.wait_for_message("map", OccupancyGrid, LIMIT)
+            number, shown = 0, Pose(math.inf, 0.0, 0.0)
+            for place in PLACES:
+                began, moved = time.monotonic(), 0.0
+                while math.dist(shown[:2], place[:2]) > NEAR:
+                    if time.monotonic() - began > LIMIT:
+                        raise TimeoutError(f"the robot did not reach {place}")
+                    if time.monotonic() - moved > PATIENCE:  # a goal is given up where the machine is busy
+                        goals.publish(goal(place))
+                        moved = time.monotonic()
+                    here = rospy.wait_for_message("odom", Odometry, LIMIT).pose.pose
+                    pose = Pose(here.position.x, here.position.y, yaw_of(here.orientation))
+                    if math.dist(pose[:2], shown[:2]) + RADIUS * abs(turned(pose.yaw - shown.yaw)) > STEP:
+                        path = folder / f"page_{number:03}.png"
+                        browser.picture(path)
+                        number, shown, moved = number + 1, pose, time.monotonic()
+                        yield path
         finally:
             browser.end()
             console.end()
+
+
+def goal(place: Pose) -> PoseStamped:
+    """The message of a goal in the map."""
+    message = PoseStamped()
+    message.header.frame_id = "map"
+    message.pose.position.x, message.pose.position.y = place.x, place.y
+    message.pose.orientation = Quaternion(0, 0, math.sin(place.yaw / 2), math.cos(place.yaw / 2))
+    return message
 
 
 def write_film(folder: Path, path: Path) -> None:
