@@ -21,7 +21,7 @@ from nav_msgs.msg import OccupancyGrid, Odometry
 from robot_control.data.demo.launched import ended_at_the_end
 from robot_control.data.demo.main import run_demo
 from robot_control.data.render import main as render
-from robot_control.robot.pose import Pose, turned, yaw_of
+from robot_control.robot.pose import Pose, pose_of, turned
 from robot_control.ui.child import Child
 from robot_control.ui.program import run
 
@@ -73,15 +73,15 @@ def mapping(folder: Path) -> Iterator[Path]:
             number, shown = 0, Pose(math.inf, 0.0, 0.0)
             for place in PLACES:
                 began, moved = time.monotonic(), 0.0
-                while math.dist(shown[:2], place[:2]) > NEAR:
+                while math.dist((shown.x, shown.y), (place.x, place.y)) > NEAR:
                     if time.monotonic() - began > LIMIT:
                         raise TimeoutError(f"the robot did not reach {place}")
                     if time.monotonic() - moved > PATIENCE:  # a goal is given up where the machine is busy
                         goals.publish(goal(place))
                         moved = time.monotonic()
-                    here = rospy.wait_for_message("odom", Odometry, LIMIT).pose.pose
-                    pose = Pose(here.position.x, here.position.y, yaw_of(here.orientation))
-                    if math.dist(pose[:2], shown[:2]) + RADIUS * abs(turned(pose.yaw - shown.yaw)) > STEP:
+                    pose = pose_of(rospy.wait_for_message("odom", Odometry, LIMIT))
+                    way = math.dist((pose.x, pose.y), (shown.x, shown.y)) + RADIUS * abs(turned(pose.yaw - shown.yaw))
+                    if way > STEP:
                         path = folder / f"page_{number:03}.png"
                         browser.picture(path)
                         number, shown, moved = number + 1, pose, time.monotonic()

@@ -110,16 +110,12 @@ def _stopped(facts: Facts) -> Answer | None:
     doing = "Stopping" if safety.state == "STOPPING" else "Stopped"
     measured = f" ({causes[0].detail})" if causes[0].detail else ""
     headline, actions = f"{doing}: {causes[0].sentence}{measured}.", list(_actions(facts, causes, absent))
-    if late(causes[0].name, absent, delayed=_delayed(facts)):
+    slipped = facts.value(facts.driver, "slipped_s").strip("0.")
+    if late(causes[0].name, absent, delayed=facts.busy or bool(slipped)):
         seen = ", ".join(part for part in (f"{causes[0].name}{measured}", facts.load) if part)
         headline = f"{doing}: {SENTENCE}: {seen}."
         actions.insert(0, (ACTOR, REMEDY))
     return Answer(Verdict.STOPPED, headline, tuple(actions), tuple(_commands(facts, causes, absent)))
-
-
-def _delayed(facts: Facts) -> bool:
-    counters = (facts.value(facts.driver, key) for key in ("overruns", "slipped_s"))
-    return facts.busy or any(counter.strip("0.") for counter in counters)
 
 
 def _actions(facts: Facts, causes: list[Cause], absent: tuple[str, ...]) -> Iterator[tuple[str, str]]:

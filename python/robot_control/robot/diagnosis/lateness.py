@@ -23,7 +23,7 @@ def busy() -> bool:
 
 
 def late(first_cause: str, missing: Collection[str], *, delayed: bool) -> bool:
-    """True if a stop with this first cause is one of lateness: `missing` nodes of the loop, `delayed`: the driver
-    counted cycles that ended late, or more programs want to run than there are cores.
+    """True if a stop with this first cause is one of lateness: `missing` nodes of the loop, `delayed`: the
+    simulated time slipped, or more programs want to run than there are cores.
     """
     return first_cause in BY_LATENESS and not missing and delayed
