@@ -51,7 +51,7 @@ NavigatorOutput Navigator::step(const NavigatorInput& input, Costmap* costmap) {
       wait(input.problem, out);
     } else if (state_ == NavigatorState::kDriving) {
       drive(input, *costmap, out);
-    } else if (input.now - planned_at_ >= kReplan) {
+    } else if (input.now - planned_at_ >= kReplanPeriod) {
       plan(input, *costmap, out);
     }
     const double longest = driven_ ? kNoProgressTime : kFirstPathTime, waited = input.now - progress_at_;
@@ -80,7 +80,7 @@ void Navigator::plan(const NavigatorInput& input, Costmap& costmap, NavigatorOut
       found = plan_path(costmap, input.pose, goal_);
       costmap.update(input.now);
       if (!found.problem.empty()) return fail(found.problem, out);
-      driven_ = true;  // a way will be there when what blocks it has gone
+      driven_ = true;  // there is a path once the obstacle has gone
     }
     return wait(blocked, out);
   }
@@ -111,15 +111,15 @@ void Navigator::drive(const NavigatorInput& input, Costmap& costmap, NavigatorOu
   }
   const double free = free_distance(costmap, path_.poses, input.pose, passed_);
   note_progress(input);
-  const bool blocked = free < kWatched;
-  if (blocked && input.now - planned_at_ >= kReplan) plan(input, costmap, out);
-  if (blocked && !out.path && free < kStopBefore) wait(reason_.empty() ? "the way is blocked" : reason_, out);
-  if (!blocked) reason_ = input.now - progress_at_ > kReplan ? input.slowed_by : "";
+  const bool blocked = free < kMinFreeDistance;
+  if (blocked && input.now - planned_at_ >= kReplanPeriod) plan(input, costmap, out);
+  if (blocked && !out.path && free < kStopDistance) wait(reason_.empty() ? "the way is blocked" : reason_, out);
+  if (!blocked) reason_ = input.now - progress_at_ > kReplanPeriod ? input.slowed_by : "";
 }
 
 void Navigator::note_progress(const NavigatorInput& input) {
   const double left = remaining(input.pose);
-  if (left < least_remaining_ - kProgress) {
+  if (left < least_remaining_ - kMinProgress) {
     least_remaining_ = left;
     attempts_ = 0;
     progress_at_ = input.now;

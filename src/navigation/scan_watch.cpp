@@ -38,7 +38,7 @@ std::string ScanWatch::structure_problem(const Scan& scan) const {
 std::string ScanWatch::receive(const Scan& scan, const std::string& publisher, double stamp, double now, double moved) {
   const auto refuse = [&](const std::string& why) { return refused_ = why; };
   if (const std::string why = structure_problem(scan); !why.empty()) return refuse(why);
-  const bool bound = std::abs(now - received_) < kBinding;
+  const bool bound = std::abs(now - received_) < kPublisherTimeout;
   if (bound && publisher != publisher_) {
     return refuse("scan has two publishers, " + publisher_ + " and " + publisher + ": stop one of them");
   }
@@ -58,16 +58,16 @@ std::string ScanWatch::receive(const Scan& scan, const std::string& publisher, d
 }
 
 std::string ScanWatch::problem(double now) const {
-  if (now - received_ > kSilence) {
+  if (now - received_ > kScanTimeout) {
     return refused_.empty() ? text("scan is silent for %.1f s: check the laser and its driver", now - received_)
                             : refused_;
   }
-  if (std::abs(now - stamp_) > kSilence) {
+  if (std::abs(now - stamp_) > kScanTimeout) {
     return text("the stamps of scan are %.1f s %s: synchronise the clocks of laser and robot", std::abs(now - stamp_),
                 now > stamp_ ? "old" : "ahead");
   }
   if (blind_) return "scan has no range that was measured: is the laser covered?";
-  if (moved_ - changed_at_ > kMoved) return "scan is frozen: its ranges stay the same while the robot moves";
+  if (moved_ - changed_at_ > kFrozenMotion) return "scan is frozen: its ranges stay the same while the robot moves";
   return "";
 }
 
