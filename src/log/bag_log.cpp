@@ -1,7 +1,5 @@
 #include "log/bag_log.h"
 
-#include <algorithm>
-#include <cmath>
 #include <filesystem>
 #include <optional>
 #include <system_error>

@@ -17,7 +17,6 @@
 #include <cstdint>
 #include <deque>
 #include <memory>
-#include <string>
 
 #include "log/bag_writer.h"
 #include "log/log_chunk.h"

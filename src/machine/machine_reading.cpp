@@ -5,10 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "machine/bodies/rigid_bodies.h"
 #include "machine/description/urdf_document.h"
 #include "machine/description/wording.h"
-#include "machine/machine_model.h"
 #include "machine/overrides.h"
 #include "signals/joint.h"
 

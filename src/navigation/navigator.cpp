@@ -6,7 +6,7 @@
 #include <limits>
 #include <utility>
 
-#include "navigation/text.h"
+#include "signals/formatted_text.h"
 
 namespace robot_control::navigation {
 namespace {
@@ -56,7 +56,7 @@ NavigatorOutput Navigator::step(const NavigatorInput& input, Costmap* costmap) {
     }
     const double longest = driven_ ? kNoProgressTime : kFirstPathTime, waited = input.now - progress_at_;
     if (active() && waited > longest)
-      fail((reason_.empty() ? "the robot does not move" : reason_) + text(" (for %.0f s)", waited), out);
+      fail((reason_.empty() ? "the robot does not move" : reason_) + formatted(" (for %.0f s)", waited), out);
   }
   out.state = state_;
   if (state_ == NavigatorState::kFailed) reason_ += input.explanation;

@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "navigation/straightening.h"
-#include "navigation/text.h"
+#include "signals/formatted_text.h"
 
 namespace robot_control::navigation {
 namespace {
@@ -217,9 +217,9 @@ std::string no_path_problem(const Costmap& costmap, Cell start, Cell goal) {
   if (!narrow) return "there is no way to the goal: obstacles or unknown space lie all around it or the robot";
   const double needed = 2 * (costmap.footprint().half_width + kPadding), wide = 2 * narrow->second;
   const Grid& grid = costmap.grid();
-  const std::string where = text("the narrowest place of the widest way, at (%.2f, %.2f) m, is %.2f m wide",
-                                 grid.x_of(narrow->first.column), grid.y_of(narrow->first.row), wide);
-  if (wide < needed) return "there is no way for this outline: " + where + text(", and it needs %.2f m", needed);
+  const std::string where = formatted("the narrowest place of the widest way, at (%.2f, %.2f) m, is %.2f m wide",
+                                      grid.x_of(narrow->first.column), grid.y_of(narrow->first.row), wide);
+  if (wide < needed) return "there is no way for this outline: " + where + formatted(", and it needs %.2f m", needed);
   return "there is no way for this outline: it cannot turn where it would have to; " + where;
 }
 
@@ -230,12 +230,12 @@ std::string goal_problem(const Costmap& costmap, const PlanarPose& goal) {
   }
   const bool near = std::abs(goal.x) <= kFarthest && std::abs(goal.y) <= kFarthest;
   const Cell cell = near ? grid.cell_at(goal.x, goal.y) : Cell{-1, -1};
-  const std::string at = text("the goal (%.2f, %.2f) m ", goal.x, goal.y);
+  const std::string at = formatted("the goal (%.2f, %.2f) m ", goal.x, goal.y);
   if (!grid.contains(cell)) return at + "lies outside the map";
   if (costmap.occupied(cell)) return at + (costmap.unknown(cell) ? "lies in unknown space" : "lies in an obstacle");
   if (costmap.free(goal)) return "";
-  return at + text("is too near to an obstacle or to unknown space for the outline: %.2f m from its base",
-                   costmap.distance(cell));
+  return at + formatted("is too near to an obstacle or to unknown space for the outline: %.2f m from its base",
+                        costmap.distance(cell));
 }
 
 }  // namespace

@@ -14,11 +14,9 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
-#include <cstdint>
 #include <cstring>
 #include <fstream>
 #include <future>
-#include <string_view>
 #include <system_error>
 #include <utility>
 

@@ -4,8 +4,6 @@
 #include <cmath>
 #include <limits>
 
-#include "signals/command_frame.h"
-
 namespace robot_control {
 
 namespace {

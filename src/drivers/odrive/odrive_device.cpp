@@ -8,7 +8,6 @@
 #include "drivers/odrive/odrive_errors.h"
 #include "drivers/odrive/odrive_messages_05.h"
 #include "drivers/odrive/odrive_messages_06.h"
-#include "drivers/odrive/odrive_parameters.h"
 
 namespace robot_control {
 namespace {

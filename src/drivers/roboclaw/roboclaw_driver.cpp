@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <sstream>
 
 namespace robot_control {
 namespace {
@@ -214,10 +213,9 @@ void RoboclawDriver::write(std::span<const JointCommand> commands) noexcept {
 }
 
 std::string RoboclawDriver::description() const {
-  std::ostringstream text;
-  text << "RoboClaw on " << line_->name() << ", takes speeds, its serial timeout is " << kTimeoutNs / 1'000'000
-       << " ms; on silence it " << described(parameters_.line.on_silence) << " (stated in the drive file)";
-  return text.str();
+  return "RoboClaw on " + line_->name() + ", takes speeds, its serial timeout is " +
+         std::to_string(kTimeoutNs / 1'000'000) + " ms; on silence it " + described(parameters_.line.on_silence) +
+         " (stated in the drive file)";
 }
 
 std::string RoboclawDriver::warning() const {

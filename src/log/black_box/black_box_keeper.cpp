@@ -3,13 +3,11 @@
 #include <sys/resource.h>
 
 #include <algorithm>
-#include <array>
 #include <chrono>
-#include <cstdio>
 #include <filesystem>
 
-#include "log/black_box/saved_black_box.h"
 #include "log/log_error.h"
+#include "signals/formatted_text.h"
 #include "signals/names.h"
 
 namespace robot_control {
@@ -63,11 +61,9 @@ void BlackBoxKeeper::check_size() {
   size_checked_ = true;
   const double held = box_->seconds_held();
   if (held >= kPromised) return;
-  std::array<char, 200> text{};
-  std::snprintf(
-      text.data(), text.size(), "telemetry.black_box of %.3g GB holds %.0f s of this robot; %.0f s need %.2g GB",
-      static_cast<double>(bytes_) * 1e-9, held, kPromised, static_cast<double>(bytes_) * 1e-9 * 1.1 * kPromised / held);
-  notes_.emplace_back(text.data());
+  const double gigabytes = static_cast<double>(bytes_) * 1e-9;
+  notes_.push_back(formatted("telemetry.black_box of %.3g GB holds %.0f s of this robot; %.0f s need %.2g GB",
+                             gigabytes, held, kPromised, gigabytes * 1.1 * kPromised / held));
 }
 
 BlackBoxKeeper::Outcome BlackBoxKeeper::save(const std::string& ring, IncidentKind kind, const std::string& why,

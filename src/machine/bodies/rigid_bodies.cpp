@@ -5,10 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <limits>
-#include <set>
-#include <string>
-#include <vector>
 
 #include "machine/bodies/body_joint.h"
 #include "machine/bodies/gyration.h"

@@ -6,18 +6,17 @@
 #include <limits>
 #include <numbers>
 #include <set>
-#include <sstream>
 #include <vector>
 
 #include "machine/bodies/rigid_bodies.h"
 #include "machine/bodies/rolling.h"
 #include "machine/bodies/shape_support.h"
 #include "machine/description/wording.h"
-#include "machine/legs/leg_kinematics.h"
 #include "machine/legs/lying_posture.h"
 #include "machine/machine_reading.h"
 #include "machine/model_hash.h"
 #include "machine/suspicions.h"
+#include "signals/formatted_text.h"
 
 namespace robot_control {
 namespace {
@@ -261,10 +260,7 @@ const char* name_of(LegPlace place) noexcept {
 }
 
 std::string LegModel::parts() const {
-  std::ostringstream text;
-  text.precision(4);
-  text << "four legs of " << leg_length() << " m";
-  return text.str();
+  return formatted("four legs of %.4g m", leg_length());
 }
 
 double LegModel::leg_length() const noexcept {

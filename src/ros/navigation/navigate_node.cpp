@@ -6,19 +6,17 @@
 #include <std_srvs/Empty.h>
 
 #include <cmath>
-#include <memory>
-#include <stdexcept>
 
 #include "navigation/footprint.h"
 #include "navigation/map_consistency.h"
 #include "navigation/map_file.h"
-#include "navigation/text.h"
 #include "ros/navigation/goal_servers.h"
 #include "ros/navigation/navigation_messages.h"
 #include "ros/navigation/path_client.h"
 #include "ros/navigation/scan_guard.h"
 #include "ros/nodes/service_node.h"
 #include "ros/reports/diagnostics.h"
+#include "signals/formatted_text.h"
 
 namespace robot_control::navigation {
 namespace {
@@ -128,7 +126,7 @@ class NavigateService {
     pose_ = place->pose;
     const double age = time.toSec() - place->stamp;
     if (place->stamp > 0 && age > kMaxPoseAge)
-      return text("the robot is not localised: tf from %s is %.1f s old", parameters_.map_frame.c_str(), age);
+      return formatted("the robot is not localised: tf from %s is %.1f s old", parameters_.map_frame.c_str(), age);
     if ((time - seen_at_).toSec() > kMaxPoseAge)
       return "tf does not give the place of the scans in the map: " + scan_problem_;
     if (!consistency_.problem().empty()) return consistency_.problem();

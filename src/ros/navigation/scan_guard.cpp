@@ -5,7 +5,7 @@
 #include <limits>
 #include <utility>
 
-#include "navigation/text.h"
+#include "signals/formatted_text.h"
 
 namespace robot_control::navigation {
 namespace {
@@ -48,7 +48,7 @@ std::optional<GuardedScan> ScanGuard::next_scan() {
 std::string ScanGuard::reason() {
   const std::lock_guard lock(mutex_);
   if (!guards_ || published_ > 0.3) return "";
-  return text("the laser sees something %.2f m before the outline", published_ + kRemainingGap + kLaserNoise);
+  return formatted("the laser sees something %.2f m before the outline", published_ + kRemainingGap + kLaserNoise);
 }
 
 void ScanGuard::use(const PlacedScan& scan) {

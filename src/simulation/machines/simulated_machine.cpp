@@ -1,7 +1,6 @@
 #include "simulation/machines/simulated_machine.h"
 
 #include "drivers/drive_motors.h"
-#include "drivers/mujoco/mujoco_plant.h"
 #include "drivers/table/read_drive_file.h"
 #include "drivers/table/simulated_front.h"
 #include "simulation/machines/driven_plant.h"

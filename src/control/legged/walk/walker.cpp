@@ -2,12 +2,10 @@
 
 #include <Eigen/Geometry>
 #include <Eigen/LU>
-#include <algorithm>
 #include <cmath>
 #include <optional>
 
 #include "control/legged/walk/foothold.h"
-#include "control/legged/walk/leg_use.h"
 #include "control/legged/walk/swing.h"
 #include "control/legged/walk/walking_speed.h"
 #include "machine/gravity.h"

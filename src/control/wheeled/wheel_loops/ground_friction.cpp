@@ -1,6 +1,5 @@
 #include "control/wheeled/wheel_loops/ground_friction.h"
 
-#include <algorithm>
 #include <utility>
 
 namespace robot_control {

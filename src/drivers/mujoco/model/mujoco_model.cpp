@@ -11,10 +11,8 @@
 #include <fstream>
 #include <iterator>
 #include <set>
-#include <string>
 #include <string_view>
 #include <system_error>
-#include <vector>
 
 #include "drivers/driver.h"
 #include "drivers/mujoco/model/mjcf.h"

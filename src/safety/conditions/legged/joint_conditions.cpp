@@ -1,8 +1,5 @@
 #include "safety/conditions/legged/joint_conditions.h"
 
-#include <algorithm>
-#include <cmath>
-
 namespace robot_control {
 
 ConditionMeasurement JointFollowing::measure(const LeggedMeasurements& now, const ConditionWatch& watch,
