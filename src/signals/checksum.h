@@ -2,12 +2,12 @@
 /// This is the checksum of all data except frames on the bus: messages of a log, records, files, a robot, the gate's
 /// output. It detects changes, but does not protect against an author who computes it again.
 
+#include <array>
 #include <cstdint>
+#include <cstdio>
 #include <cstring>
 #include <string>
 #include <string_view>
-
-#include "signals/formatted_text.h"
 
 namespace robot_control {
 
@@ -40,7 +40,9 @@ class Checksum {
 
 /// Returns the 16 digits in which sums and builds are written.
 inline std::string hex(std::uint64_t number) {
-  return formatted("%016llx", static_cast<unsigned long long>(number));
+  std::array<char, 17> text{};
+  std::snprintf(text.data(), text.size(), "%016llx", static_cast<unsigned long long>(number));
+  return text.data();
 }
 
 }  // namespace robot_control
