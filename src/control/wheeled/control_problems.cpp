@@ -63,7 +63,7 @@ constexpr double kMinShare = 0.1;
 constexpr double kMaxRipple = 0.3;
 
 /// A set is not refused if derived gains are nearly as bad.
-constexpr double kNotWorse = 1.2;
+constexpr double kDerivedFactor = 1.2;
 
 /// Counts are judged at these shares of full speed.
 constexpr std::array kSpeedParts{1.0, 0.3, 0.1, 0.03};
@@ -111,7 +111,7 @@ struct Loop {
   const Load* oscillating_load(const Loop& derived) const {
     for (const Load* lifted : {loads.data(), loads.data() + loads.size() / 2}) {
       const double part = ripple(*lifted);
-      if (part > kMaxRipple && part > kNotWorse * derived.ripple(*lifted)) return lifted;
+      if (part > kMaxRipple && part > kDerivedFactor * derived.ripple(*lifted)) return lifted;
     }
     return nullptr;
   }

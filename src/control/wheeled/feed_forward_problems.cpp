@@ -38,8 +38,8 @@ void check_plausible(const MeasuredValue& value, std::vector<std::string>& probl
 /// Checks the torque that the joints take at full speed against the motors' torque and the description.
 void check_joint_losses(const DriveControllerParameters& parameters, const DriveTrain& robot,
                         std::vector<std::string>& problems) {
-  constexpr double kPart = 0.25;  // of the effort limit: half of what a worm gear loses at full load
-  constexpr double kTimes = 2;    // of the described value
+  constexpr double kEffortShare = 0.25;   // of the effort limit: half of what a worm gear loses at full load
+  constexpr double kDescribedFactor = 2;  // of the described value
   const DriveKinematics kinematics(robot);
   const double linear = parameters.max_linear_speed;
   const double angular = parameters.max_angular_speed;
@@ -51,8 +51,10 @@ void check_joint_losses(const DriveControllerParameters& parameters, const Drive
   for (const WheelModel& wheel : robot.wheels) {
     const JointModel& joint = robot.joints[wheel.joint];
     const double speed = std::ranges::max(speeds, {}, [](double value) { return std::abs(value); });
-    max_damping = std::min(max_damping, std::max(kTimes * joint.damping, kPart * joint.effort_limit / std::abs(speed)));
-    max_friction = std::min(max_friction, std::max(kTimes * joint.friction, kPart * joint.effort_limit));
+    max_damping = std::min(
+        max_damping, std::max(kDescribedFactor * joint.damping, kEffortShare * joint.effort_limit / std::abs(speed)));
+    max_friction =
+        std::min(max_friction, std::max(kDescribedFactor * joint.friction, kEffortShare * joint.effort_limit));
   }
   const auto check = [&](const char* key, const char* unit, const std::optional<double>& given, double limit,
                          const char* why) {

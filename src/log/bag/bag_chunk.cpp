@@ -31,7 +31,7 @@ std::unique_ptr<LZ4F_dctx, FreeContext> make_context() {
 }  // namespace
 
 void read_bag_chunk(BagFile& file, const BagChunk& chunk, std::string& content) {
-  constexpr std::size_t kPiece = std::size_t{1} << 16U;
+  constexpr std::size_t kReadSize = std::size_t{1} << 16U;
   constexpr std::size_t kGrowth = std::size_t{1} << 20U;
   const auto context = make_context();
   std::uint64_t at = chunk.begin;
@@ -43,7 +43,7 @@ void read_bag_chunk(BagFile& file, const BagChunk& chunk, std::string& content) 
     throw BagError({.offset = place}, field, problem);
   };
   for (bool ended = false; !ended;) {
-    const std::string_view from = file.read(at, std::min<std::uint64_t>(kPiece, end - at), "data");
+    const std::string_view from = file.read(at, std::min<std::uint64_t>(kReadSize, end - at), "data");
     char surplus = 0;
     const bool full = made == chunk.size;
     if (!full && made == content.size()) content.resize(std::min<std::size_t>(chunk.size, made + kGrowth));
@@ -105,9 +105,9 @@ std::string_view BagFile::read(std::uint64_t offset, std::size_t count, const st
                    std::to_string(count) + " bytes, but the file ends after " + std::to_string(available), true);
   }
   if (offset < begin_ || offset + count > begin_ + window_.size()) {
-    constexpr std::size_t kAhead = std::size_t{4} << 20U;  // a whole bag of a black box, which may be overwritten
+    constexpr std::size_t kReadAhead = std::size_t{4} << 20U;  // a whole bag of a black box, which may be overwritten
     const std::size_t got =
-        fill(offset, static_cast<std::size_t>(std::min<std::uint64_t>(std::max(count, kAhead), available)));
+        fill(offset, static_cast<std::size_t>(std::min<std::uint64_t>(std::max(count, kReadAhead), available)));
     if (got < count) throw BagError({.offset = offset + got}, field, "the file became shorter while it was read", true);
   }
   return std::string_view(window_).substr(offset - begin_, count);

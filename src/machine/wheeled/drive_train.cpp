@@ -146,11 +146,11 @@ void read_yaw_inertia(const RigidBodies& robot, DriveTrain& model) {
 /// A wheel of the robot on its wheels is accelerated by all wheels together, straight or turning. The factor admits a
 /// robot of half the described mass.
 void set_acceleration_limits(DriveTrain& model) {
-  constexpr double kLighter = 2;
+  constexpr double kMassFactor = 2;
   for (const WheelModel& wheel : model.wheels) {
     const double inertia = std::min(straight_inertia(model, wheel), turning_inertia(model, wheel));
     JointModel& joint = model.joints[wheel.joint];
-    joint.acceleration_limit = kLighter * joint.effort_limit / inertia;
+    joint.acceleration_limit = kMassFactor * joint.effort_limit / inertia;
   }
 }
 

@@ -9,14 +9,14 @@
 namespace robot_control {
 namespace {
 
-constexpr std::uint64_t kNoWish = kReasonNoCommand | kReasonTimedOut | kReasonRefused | kReasonManySenders;
+constexpr std::uint64_t kNoRequestInForce = kReasonNoCommand | kReasonTimedOut | kReasonRefused | kReasonManySenders;
 constexpr std::uint64_t kNoEffect = kReasonNoPermit | kReasonPermitBrake | kReasonPermitRamp | kReasonBadSensors;
 constexpr std::uint64_t kHindrances = kNoEffect | kReasonPermitSlow | kReasonPartIgnored;
 
-/// Returns the text of the request. Speeds below kRounding, remains of a sender's arithmetic, are shown as zero.
+/// Returns the text of the request. Speeds below kShownAsZero, remains of a sender's arithmetic, are shown as zero.
 std::string requested_text_of(const PlanarTwist& requested) {
-  constexpr double kRounding = 1e-6;  // m/s and rad/s
-  const auto shown = [](double speed) { return std::abs(speed) < kRounding ? 0.0 : speed; };
+  constexpr double kShownAsZero = 1e-6;  // m/s and rad/s
+  const auto shown = [](double speed) { return std::abs(speed) < kShownAsZero ? 0.0 : speed; };
   return formatted("cmd_vel %.4g m/s, %.4g rad/s", shown(requested.linear), shown(requested.angular));
 }
 
@@ -95,7 +95,7 @@ std::vector<ReportLine> CommandReport::update(const CommandFrame& command) {
     reported_.reset();
   }
   if ((command.reasons & kReasonRefused) != 0) reported_.reset();
-  if ((command.reasons & kNoWish) != 0 || command.requests_received == 0) return lines;
+  if ((command.reasons & kNoRequestInForce) != 0 || command.requests_received == 0) return lines;
 
   const Report made = made_of(command);
   if (made.hindrance != hindrance_) hindered_since_ns_ = now_ns;

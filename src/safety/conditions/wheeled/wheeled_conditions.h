@@ -18,12 +18,12 @@ namespace robot_control {
 
 /// This condition finds a robot that still moves although it is commanded to stand.
 ///
-///   not_stopping     s of motion (joint_standstill.h) since standstill was commanded, until the robot stood for kRest.
+///   not_stopping     s of motion (joint_standstill.h) since standstill was commanded, until the robot stood for kRestTime.
 ///                    Covers robots that roll on, are pushed, or oscillate about their rest position and stand at the
 ///                    turning points. Without a known wheel speed the condition is not evaluated
 class NotStopping {
  public:
-  static constexpr double kRest = 0.5;  ///< s
+  static constexpr double kRestTime = 0.5;  ///< s
 
   NotStopping(const SafetyParameters&, const DriveTrain&, double period) noexcept : period_(period) {}
 
@@ -33,7 +33,7 @@ class NotStopping {
     if (!now.motion.speed_known()) return kNothingMeasured;
     const bool moves = now.standstill.moving();
     rested_ = moves ? 0 : rested_ + now.elapsed;
-    if (!now.targets.commanded_to_stand() || static_cast<double>(rested_) * period_ >= kRest) {
+    if (!now.targets.commanded_to_stand() || static_cast<double>(rested_) * period_ >= kRestTime) {
       moved_ = 0;
     } else if (moves) {
       moved_ += now.elapsed;
