@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "estimation/common/values.h"
+
 namespace robot_control {
 
 std::optional<Vector3> ImuSamples::Channel::step(const std::optional<Vector3>& sample, double dt,

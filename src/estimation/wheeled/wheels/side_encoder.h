@@ -19,7 +19,6 @@
 /// offset, and the travel in between is lost. So do the first angles after a drive had a fault and no position.
 
 #include <array>
-#include <cstdint>
 
 #include "estimation/common/tuning.h"
 #include "machine/encoders/tracking_loop.h"
