@@ -8,23 +8,12 @@
 #include "ros/reports/name_list.h"
 #include "signals/formatted_text.h"
 #include "signals/names.h"
+#include "signals/wheeled/slip_detection.h"
 
 namespace robot_control {
 namespace {
 
 constexpr double kDegrees = 180 / std::numbers::pi;  // ° per rad
-
-/// Describes in words how WheeledState::residual_level affects the detection of slip.
-///
-/// With an IMU such as the BMI088, slip above 0.025 m/s times the level is detected within 0.2 s
-/// (estimation/wheeled/slip/slip_detector.h). From kSlowDetection on this is 0.08 m/s, from kNoDetection on 1 m/s.
-std::string slip_detection(double residual_level) {
-  constexpr double kSlowDetection = 3, kNoDetection = 40;
-  if (residual_level == 0) return "unknown: nothing was compared yet";
-  if (residual_level < kSlowDetection) return "on";
-  return formatted("%s: residuals %.0f × the sensors' noise", residual_level < kNoDetection ? "slow" : "off",
-                   residual_level);
-}
 
 }  // namespace
 
