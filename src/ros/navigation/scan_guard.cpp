@@ -10,7 +10,7 @@
 namespace robot_control::navigation {
 namespace {
 
-constexpr double kPeriod = 0.1;            // s
+constexpr double kWatchPeriod = 0.1;       // s
 constexpr double kStandstillSpeed = 0.02;  // m/s, rad/s
 constexpr int kStandstillTicks = 10;       // ticks
 
@@ -30,7 +30,7 @@ ScanGuard::ScanGuard(const ros::NodeHandle& handle, Footprint footprint)
             const std::lock_guard lock(mutex_);
             measured_ = {odometry.twist.twist.linear.x, odometry.twist.twist.angular.z};
           }) {
-  timer_ = handle_.createWallTimer(ros::WallDuration(kPeriod), [this](const ros::WallTimerEvent&) { watch(); });
+  timer_ = handle_.createWallTimer(ros::WallDuration(kWatchPeriod), [this](const ros::WallTimerEvent&) { watch(); });
   spinner_.start();
 }
 
