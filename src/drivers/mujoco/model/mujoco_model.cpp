@@ -281,7 +281,7 @@ std::string exported_mjcf(const MachineModel& robot, const MujocoPlantParameters
     const JointModel& held = whole.robot.joints[joint];
     if (held.role != JointRole::kHeld) continue;
     mjtNum& friction = whole.model->dof_frictionloss[whole.joint_velocity[joint]];
-    friction = std::max(friction, std::min(held.effort_limit, kBeyondRobots));
+    friction = std::max(friction, std::min(held.effort_limit, kMaxPlausible));
   }
   std::string path = (std::filesystem::temp_directory_path() / "robot_control_XXXXXX").string();
   const int file = mkstemp(path.data());
