@@ -2,10 +2,10 @@
 /// Detects moving objects from two scans of one laser, and predicts their positions.
 ///
 /// Neighbouring rays whose ends are within kMaxGap are one cluster. A cluster moves if kMinNewShare of its points lie
-/// where space was free kScanInterval before. Space was free if the rays on both sides of the point passed it: a single
-/// ray that grazes a wall also passes the next point of that wall. Walls that come into sight do not move, because the
-/// view was blocked before. The velocity is that of the middle of the points between the two scans. A cluster that is
-/// larger than kMaxSize counts as static.
+/// where space was free kScanInterval before. Space was free if the rays on both sides of the point passed it. One ray
+/// is not enough: a ray that grazes a wall also passes the next point of that wall. Walls that come into sight do not
+/// move, because the view was blocked before. The velocity is that of the middle of the points between the two scans. A
+/// cluster that is larger than kMaxSize counts as static.
 
 #include <deque>
 #include <vector>

@@ -250,11 +250,11 @@ Plan plan_path(const Costmap& costmap, const PlanarPose& start, const PlanarPose
   if (plan.problem.empty() && costmap.occupied(from)) plan.problem = "the robot stands in an obstacle of the map";
   if (!plan.problem.empty()) return plan;
   if (std::hypot(goal.x - start.x, goal.y - start.y) <
-      kSamePosition) {                       // a path needs two points; the robot turns on the spot
-    constexpr double kShortestPath = 0.002;  // m
-    const PlanarPose end{start.x + kShortestPath * std::cos(start.yaw), start.y + kShortestPath * std::sin(start.yaw),
+      kSamePosition) {                        // a path needs two points; the robot turns on the spot
+    constexpr double kMinPathLength = 0.002;  // m
+    const PlanarPose end{start.x + kMinPathLength * std::cos(start.yaw), start.y + kShortestPath * std::sin(start.yaw),
                          goal.yaw};
-    if (turn_is_free(costmap, {start.x, start.y}, start.yaw, goal.yaw)) return {{start, end}, kShortestPath, ""};
+    if (turn_is_free(costmap, {start.x, start.y}, start.yaw, goal.yaw)) return {{start, end}, kMinPathLength, ""};
   }
   const std::vector<PlanarPose> path = Search(costmap, start, goal).run();
   if (path.empty()) {
