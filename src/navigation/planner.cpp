@@ -252,7 +252,7 @@ Plan plan_path(const Costmap& costmap, const PlanarPose& start, const PlanarPose
   if (std::hypot(goal.x - start.x, goal.y - start.y) <
       kSamePosition) {                        // a path needs two points; the robot turns on the spot
     constexpr double kMinPathLength = 0.002;  // m
-    const PlanarPose end{start.x + kMinPathLength * std::cos(start.yaw), start.y + kShortestPath * std::sin(start.yaw),
+    const PlanarPose end{start.x + kMinPathLength * std::cos(start.yaw), start.y + kMinPathLength * std::sin(start.yaw),
                          goal.yaw};
     if (turn_is_free(costmap, {start.x, start.y}, start.yaw, goal.yaw)) return {{start, end}, kMinPathLength, ""};
   }
