@@ -26,6 +26,7 @@
 #include "bindings/signal_names.h"
 #include "bindings/wheeled/offline_estimator.h"
 #include "bindings/wheeled/wheel_loops.h"
+#include "control/common/limits/stop_distance.h"
 #include "control/legged/walk/gait.h"
 #include "control/legged/walk/own_gaits.h"
 #include "control/legged/walk/twist_limiter.h"

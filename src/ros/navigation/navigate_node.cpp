@@ -107,7 +107,7 @@ class NavigateService {
     const PlacedScan& seen = waiting_->seen;
     const auto base = frames_.lookup(parameters_.map_frame, guard_.input().base_frame(), seen.stamp, scan_problem_);
     if (!base) return;
-    costmap_->set_predicted(placed(waiting_->predicted, base->pose));
+    costmap_->set_predicted(from_base_axes(waiting_->predicted, base->pose));
     consistency_.update(costmap_->insert(seen.scan, composed(base->pose, seen.laser), now()));
     waiting_.reset();
     seen_at_ = time;

@@ -1,10 +1,11 @@
+#include "control/common/limits/stop_distance.h"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
 #include <random>
 
-#include "control/legged/walk/twist_limiter.h"
 #include "control/wheeled/limits/speed_limiter.h"
 #include "support/constants.h"
 
