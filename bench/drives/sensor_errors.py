@@ -2,7 +2,7 @@
 
 `recorded` is the field with vibrations as strong as the strongest of the recordings (`bench.odometry.recordings`). Its
 measure is the standard deviation within WINDOW seconds on the axis that shakes most, while the robot moves. Noise of
-the density D, up to the bandwidth f of the plant's vibration (vibration.h), has a standard deviation of D·√(π f).
+the density D, up to the bandwidth f of the plant's vibration (sensor_errors.h), has a standard deviation of D·√(π f).
 """
 
 from __future__ import annotations

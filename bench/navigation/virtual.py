@@ -99,7 +99,7 @@ class Robot:
         )
         free = 0.0
         if not self.navigation.silent(self.loop.time):
-            free = self.navigation.free_way(self._scan, sensor, *self._motion())
+            free = self.navigation.clearance_along(self._scan, sensor, *self._motion())
         self.loop.clearance(free)
         return problem
 

@@ -23,7 +23,7 @@
 #include "gate/gate.h"
 #include "loop/gate_setup.h"
 #include "rt/clock.h"
-#include "safety/safety_monitor.h"
+#include "safety/conditions/wheeled/wheeled_conditions.h"
 #include "simulation/closed_loop.h"
 #include "support/allocation_guard.h"
 

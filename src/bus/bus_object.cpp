@@ -10,11 +10,10 @@
 #include <cerrno>
 #include <climits>
 #include <cstddef>
-#include <cstdio>
 #include <system_error>
-#include <utility>
 
 #include "rt/futex.h"
+#include "signals/formatted_text.h"
 
 namespace robot_control {
 namespace {
@@ -116,9 +115,8 @@ const char* kind_text(mode_t mode) {
   if (!S_ISREG(status.st_mode)) {
     fail(channel, name, std::string(kind_text(status.st_mode)) + " stands in its place", listing + "remove it");
   }
-  char mode[8];
-  std::snprintf(mode, sizeof mode, "%04o", static_cast<unsigned>(status.st_mode & 07777U));
-  fail(channel, name, std::string("its mode is ") + mode + ", and must be 0600: others than this user may have it open",
+  fail(channel, name,
+       formatted("its mode is %04o, and must be 0600: others than this user may have it open", status.st_mode & 07777U),
        listing + "stop all nodes and remove it; the next start creates it again");
 }
 

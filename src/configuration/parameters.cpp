@@ -3,7 +3,6 @@
 #include "configuration/peer_file.h"
 #include "parameters/parameters_text.h"
 #include "parameters/tree_reader.h"
-#include "signals/robot_kinds.h"
 
 namespace robot_control {
 namespace {

@@ -87,9 +87,9 @@ std::string sign_in(const YAML::Node& node, bool foreign, int depth) {
     const bool text = pair.second.IsScalar();
     if (key == "ros__parameters") return key;
     if (key == "type" && text && pair.second.Scalar().ends_with("Controller")) return "type " + pair.second.Scalar();
-    constexpr auto kOfOne = std::to_array<std::string_view>(
+    constexpr auto kForeignKeys = std::to_array<std::string_view>(
         {"left_wheel", "left_wheel_names", "has_velocity_limits", "wheel_radius_multiplier", "enable_odom_tf"});
-    if (foreign && std::ranges::find(kOfOne, key) != kOfOne.end()) return key;
+    if (foreign && std::ranges::find(kForeignKeys, key) != kForeignKeys.end()) return key;
     std::string inner = sign_in(pair.second, foreign, depth + 1);
     if (!inner.empty()) return inner;
   }

@@ -12,15 +12,15 @@
 /// A move begins at the position of the first order, Q. The part u of the way falls from 1, so that the joint arrives
 /// slowly:
 ///
-///   u̇ = −min(1/kQuick, u/kGentle)/time      q* = P + u (Q − P)
+///   u̇ = −min(1/kFirstRateShare, u/kEndShare)/time      q* = P + u (Q − P)
 ///
 /// A joint with Q between P and `start`, S, is ahead of the others, and waits for them:
 ///
 ///   q* = P + min(u, (Q − P)/(S − P)) (S − P)
 ///
-/// The stiffness falls to 0 in the last part kFade of `time`. After `time`, and without a position, the move is kDamp.
-/// After `brake_after` it is kBrake, which needs neither encoder nor the sense of the motor. It is kBrake, too, once q
-/// is farther than kLost from q*: a failed encoder or a reversed motor drives the joint away.
+/// The stiffness falls to 0 in the last part kFadeShare of `time`. After `time`, and without a position, the move is
+/// kDamp. After `brake_after` it is kBrake, which needs neither encoder nor the sense of the motor. It is kBrake, too,
+/// once q is farther than kMaxDeviation from q*: a failed encoder or a reversed motor drives the joint away.
 ///
 /// A driver that cannot carry out an action says so (Driver::accepts), and the loop does not start.
 
@@ -54,10 +54,10 @@ using StopProfile = std::vector<StopAction>;  ///< one action for each joint
 /// The stop of one joint as a law. While a command moves the joint, its state is that of a new object.
 class JointStop {
  public:
-  static constexpr double kQuick = 0.64;   ///< part of the time in which u reaches 0 at its first rate
-  static constexpr double kGentle = 0.18;  ///< part of the time: the time constant with which u ends
-  static constexpr double kFade = 0.2;     ///< part of the time
-  static constexpr double kLost = 0.25;    ///< rad or m; sound joints stay within 0.1
+  static constexpr double kFirstRateShare = 0.64;  ///< part of the time in which u reaches 0 at its first rate
+  static constexpr double kEndShare = 0.18;        ///< part of the time: the time constant with which u ends
+  static constexpr double kFadeShare = 0.2;        ///< part of the time
+  static constexpr double kMaxDeviation = 0.25;    ///< rad or m; sound joints stay within 0.1
 
   /// Returns true from the first order of a move on.
   bool moves() const noexcept { return elapsed_ > 0; }
@@ -70,7 +70,7 @@ class JointStop {
   std::optional<double> begin_;  ///< Q
   double elapsed_ = 0;           ///< s, since the first order
   double left_ = 1;              ///< u
-  bool lost_ = false;            ///< farther than kLost from q* since the first order
+  bool lost_ = false;            ///< farther than kMaxDeviation from q* since the first order
 };
 
 }  // namespace robot_control

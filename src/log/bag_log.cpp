@@ -1,7 +1,5 @@
 #include "log/bag_log.h"
 
-#include <algorithm>
-#include <cmath>
 #include <filesystem>
 #include <optional>
 #include <system_error>
@@ -169,7 +167,7 @@ bool MotionWatch::step(const JoinedRow& row, std::int64_t time_ns) noexcept {
     state_ = state;
     causes_ = row.monitor->permit.causes;
   }
-  if (event) until_ns_ = time_ns + kAfter;
+  if (event) until_ns_ = time_ns + kTimeAfterStop;
   return time_ns < until_ns_;
 }
 

@@ -17,7 +17,6 @@
 #include <cstdint>
 #include <deque>
 #include <memory>
-#include <string>
 
 #include "log/bag_writer.h"
 #include "log/log_chunk.h"
@@ -33,10 +32,11 @@ namespace robot_control {
 /// If only motion is recorded (telemetry.record: motion), this watch decides which cycles are.
 ///
 /// The robot moves while a velocity other than zero is requested, while the estimator reports no standstill, or while a
-/// node gives no frame. A change of the safety monitor's state or causes counts as motion. Motion ends `kAfter` later.
+/// node gives no frame. A change of the safety monitor's state or causes counts as motion. Motion ends `kTimeAfterStop`
+/// later.
 class MotionWatch {
  public:
-  static constexpr std::int64_t kAfter = 5'000'000'000;  ///< ns; the oscillation after a stop is recorded, too
+  static constexpr std::int64_t kTimeAfterStop = 5'000'000'000;  ///< ns; the oscillation after a stop is recorded, too
 
   /// True: the cycle is to be recorded.
   bool step(const JoinedRow& row, std::int64_t time_ns) noexcept;

@@ -8,7 +8,6 @@
 #include <charconv>
 #include <filesystem>
 #include <functional>
-#include <string_view>
 #include <system_error>
 
 #include "log/log_error.h"

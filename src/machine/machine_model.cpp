@@ -1,7 +1,5 @@
 #include "machine/machine_model.h"
 
-#include <array>
-
 #include "machine/bodies/gyration.h"
 #include "machine/bodies/posed_bodies.h"
 #include "machine/machine_reading.h"

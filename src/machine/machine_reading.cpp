@@ -5,10 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "machine/bodies/rigid_bodies.h"
 #include "machine/description/urdf_document.h"
 #include "machine/description/wording.h"
-#include "machine/machine_model.h"
 #include "machine/overrides.h"
 #include "signals/joint.h"
 
@@ -94,7 +92,7 @@ Pose imu_pose(const RigidBodies& robot, const std::string& link, const MachinePa
   Eigen::Quaterniond rotation(place.linear());
   if (parameters.imu_position) {
     const Eigen::Vector3d given = finite(robot, "robot/imu_position", "m", *parameters.imu_position);
-    if ((given - place.translation()).norm() > kWorthNoting * length) {
+    if ((given - place.translation()).norm() > kNotedShare * length) {
       notes.push_back({RobotNote::Kind::kOverridden, "robot/imu_position",
                        words(given) + " m holds, the URDF says " + words(place.translation()) + " m"});
     }
@@ -104,7 +102,7 @@ Pose imu_pose(const RigidBodies& robot, const std::string& link, const MachinePa
     const Eigen::Vector3d given = finite(robot, "robot/imu_orientation", "rad", *parameters.imu_orientation);
     const Eigen::Quaterniond from_urdf = rotation;
     rotation = rotation_of(given);
-    if (rotation.angularDistance(from_urdf) > kWorthNoting) {
+    if (rotation.angularDistance(from_urdf) > kNotedShare) {
       notes.push_back({RobotNote::Kind::kOverridden, "robot/imu_orientation",
                        words(given) + " rad holds, the URDF says " + words(rpy_of(place.linear())) + " rad"});
     }
@@ -129,7 +127,7 @@ Eigen::Vector3d effective_centre(const RigidBodies& bodies, const MachineParamet
                                  const Eigen::Vector3d& from_urdf, MachineModel& machine) {
   if (!parameters.centre_of_gravity) return from_urdf;
   const Eigen::Vector3d centre = finite(bodies, "robot/centre_of_gravity", "m", *parameters.centre_of_gravity);
-  if ((centre - from_urdf).norm() > kWorthNoting * length) {
+  if ((centre - from_urdf).norm() > kNotedShare * length) {
     machine.notes.push_back({RobotNote::Kind::kOverridden, "robot/centre_of_gravity",
                              words(centre) + " m holds, the URDF says " + words(from_urdf) + " m"});
   }

@@ -16,7 +16,7 @@ double overridden(const std::string& name, const std::string& unit, const std::o
   if (!std::isfinite(*given) || *given <= 0) {
     refuse(robot.source, element, number(*given) + space + unit, "Give a finite value above zero, or none");
   }
-  if (std::abs(*given - from_urdf) <= kWorthNoting * std::abs(from_urdf)) return *given;
+  if (std::abs(*given - from_urdf) <= kNotedShare * std::abs(from_urdf)) return *given;
   const RobotNote note{RobotNote::Kind::kOverridden, element,
                        number(*given) + space + unit + " holds, the URDF says " +
                            (from_urdf == 0 ? "nothing" : number(from_urdf) + space + unit)};

@@ -9,7 +9,7 @@
 
 namespace robot_control {
 
-inline constexpr double kWorthNoting = 0.01;
+inline constexpr double kNotedShare = 0.01;
 
 /// Returns `given` if it is set, else `from_urdf`. A difference above 1 % is noted, once for equal words. Throws
 /// RobotError if the value is not finite or not above zero.

@@ -33,13 +33,13 @@ void note_masses(MachineModel& robot) {
     mass += body.mass;
     for (const Shape& shape : body.shapes) box.extend(box_of(body, shape));
   }
-  if (!box.isEmpty() && mass > kSteel * box.volume()) {
+  if (!box.isEmpty() && mass > kSteelDensity * box.volume()) {
     note(robot, "<robot>",
          number(mass) + " kg, more than a block of steel of the robot's size (" + number(box.sizes().x()) + " × " +
              number(box.sizes().y()) + " × " + number(box.sizes().z()) + " m): are masses in grams? A URDF's are kg");
   }
   const RigidBody& base = robot.bodies->bodies[0];
-  if (base.mass < kLightBase * mass) {
+  if (base.mass < kMinBaseShare * mass) {
     note(robot, link_element(base.name),
          "it and what is fixed to it weigh only " + number(base.mass) + " of " + number(mass) +
              " kg: is its <inertial> missing?");

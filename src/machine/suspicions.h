@@ -3,7 +3,7 @@
 ///
 ///   lengths   a shape larger than kMaxPart: probably millimetres
 ///   masses    more than a block of steel with the size of the box about all shapes: probably grams
-///   base      less than kLightBase of the mass is in the root and the parts fixed to it: a missing <inertial>
+///   base      less than kMinBaseShare of the mass is in the root and the parts fixed to it: a missing <inertial>
 ///   held      the effort limit of a held joint is below the weight that the joint bears at rest
 
 #include <string>
@@ -12,9 +12,9 @@
 
 namespace robot_control {
 
-inline constexpr double kMaxPart = 20;  ///< m
-inline constexpr double kSteel = 7850;  ///< kg/m³
-inline constexpr double kLightBase = 0.15;
+inline constexpr double kMaxPart = 20;         ///< m
+inline constexpr double kSteelDensity = 7850;  ///< kg/m³
+inline constexpr double kMinBaseShare = 0.15;
 
 /// Adds the notes to a machine with bodies.
 void note_suspicious_bodies(MachineModel& machine);

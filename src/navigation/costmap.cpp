@@ -6,7 +6,7 @@
 namespace robot_control::navigation {
 namespace {
 
-constexpr float kNever = -std::numeric_limits<float>::infinity();
+constexpr float kNotMarked = -std::numeric_limits<float>::infinity();
 
 /// Calls `visit` for each cell that the line crosses, in steps of half a cell, until it returns false.
 template <class Visit>
@@ -62,7 +62,7 @@ Costmap::Costmap(const Grid& map, Footprint footprint, bool unknown_is_free)
                 2 * grid_.resolution),
       unknown_(grid_.cells.size()),
       unknown_is_free_(unknown_is_free),
-      marked_(grid_.cells.size(), kNever) {
+      marked_(grid_.cells.size(), kNotMarked) {
   std::vector<bool> walls(grid_.cells.size());
   for (std::size_t i = 0; i < walls.size(); ++i) walls[i] = grid_.cells[i] >= kOccupiedFrom;
   wall_distance_ = distances(walls, grid_.columns, grid_.resolution, farthest_);
@@ -71,7 +71,7 @@ Costmap::Costmap(const Grid& map, Footprint footprint, bool unknown_is_free)
 
 void Costmap::clear() {
   for (std::size_t i = 0; i < unknown_.size(); ++i) unknown_[i] = grid_.cells[i] < 0;
-  std::fill(marked_.begin(), marked_.end(), kNever);
+  std::fill(marked_.begin(), marked_.end(), kNotMarked);
   update(0);
 }
 
@@ -85,7 +85,7 @@ Agreement Costmap::insert(const Scan& scan, const PlanarPose& sensor, double now
     const double length = hit ? range : scan.range_max, angle = sensor.yaw + scan.angle(ray);
     bool passed = false;
     follow_ray(grid_, sensor, angle, length - grid_.resolution, [&](std::size_t cell, double along) {
-      marked_[cell] = kNever;
+      marked_[cell] = kNotMarked;
       unknown_[cell] = false;
       passed |= wall_distance_[cell] == 0 && along < length - kBehindWall;
       return true;
@@ -100,7 +100,7 @@ Agreement Costmap::insert(const Scan& scan, const PlanarPose& sensor, double now
       result.explained += passed ? 0 : 1;
     } else {
       ends.push_back(cell);
-      result.unforeseen += !passed && grid_.cells[cell] >= 0 ? 1 : 0;
+      result.unexpected += !passed && grid_.cells[cell] >= 0 ? 1 : 0;
     }
   }
   for (const std::size_t cell : ends) {
@@ -110,11 +110,11 @@ Agreement Costmap::insert(const Scan& scan, const PlanarPose& sensor, double now
   return result;
 }
 
-void Costmap::foresee(const std::vector<Point>& places) {
-  foreseen_.clear();
-  for (const Point place : places) {
-    const Cell cell = grid_.cell_at(place.x, place.y);
-    if (grid_.contains(cell)) foreseen_.push_back(grid_.index(cell));
+void Costmap::set_predicted(const std::vector<Point>& points) {
+  predicted_.clear();
+  for (const Point point : points) {
+    const Cell cell = grid_.cell_at(point.x, point.y);
+    if (grid_.contains(cell)) predicted_.push_back(grid_.index(cell));
   }
 }
 
@@ -124,7 +124,7 @@ void Costmap::update(double now) {
     occupied[i] = wall_distance_[i] == 0 || marked_[i] > now - kMemory || (unknown_[i] && !unknown_is_free_);
   }
   if (std::isfinite(now)) {
-    for (const std::size_t cell : foreseen_) occupied[cell] = true;
+    for (const std::size_t cell : predicted_) occupied[cell] = true;
   }
   distance_ = distances(occupied, grid_.columns, grid_.resolution, farthest_);
 }

@@ -1,5 +1,5 @@
 #pragma once
-/// The outline of a robot in the plane: what encloses all its shapes, seen from above, with every joint at zero.
+/// The outline of a robot in the plane. It encloses all its shapes, seen from above, with every joint at zero.
 
 #include <functional>
 #include <string>

@@ -12,9 +12,9 @@ constexpr double kShare = 0.2;  // of the newest scan in the mean
 
 void MapConsistency::update(const Agreement& seen) {
   if (seen.rays < kMinRays) return;
-  const int agreeing = seen.rays - seen.contradicting - seen.unforeseen;
+  const int agreeing = seen.rays - seen.contradicting - seen.unexpected;
   agreeing_ += kShare * (static_cast<double>(agreeing) / seen.rays - agreeing_);
-  const bool bad = seen.contradicting > kContradicting * seen.rays || seen.explained < kExplainedLeast * seen.rays;
+  const bool bad = seen.contradicting > kMaxContradicting * seen.rays || seen.explained < kMinExplained * seen.rays;
   bad_ = std::clamp(bad_ + (bad ? 1 : -1), 0, kBadScans);
   contradicts_ = bad_ == kBadScans || (contradicts_ && bad_ > 0);
   if (bad) {
@@ -25,7 +25,7 @@ void MapConsistency::update(const Agreement& seen) {
 }
 
 std::string MapConsistency::explanation() const {
-  if (contradicts_ || agreeing_ >= kAgreeing) return "";
+  if (contradicts_ || agreeing_ >= kMinAgreement) return "";
   return "; the scan contradicts the map in " + std::to_string(std::lround(100 * (1 - agreeing_))) +
          " % of its rays, which pass its walls or end where it is free";
 }

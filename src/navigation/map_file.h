@@ -29,7 +29,7 @@ class MapError : public std::runtime_error {
 /// `path` is that of the YAML file. Throws MapError.
 Grid read_map(const std::string& path);
 
-/// Returns why such a grid is not taken: "resolution is -1 m: …"; "" if it is. It holds for files and for messages.
+/// Returns why such a grid is refused: "resolution is -1 m: …"; "" if it is not. It holds for files and for messages.
 std::string grid_problem(double columns, double rows, double resolution, double origin_x, double origin_y,
                          double origin_yaw);
 

@@ -6,18 +6,18 @@
 namespace robot_control::navigation {
 namespace {
 
-constexpr double kApart = 0.4;      // s between the two scans
-constexpr double kGap = 0.25;       // m
-constexpr double kLargest = 1.2;    // m
-constexpr double kNew = 0.25;       // of the points
-constexpr double kThrough = 0.1;    // m by which a ray passed the place of a point
-constexpr double kFastest = 2.5;    // m/s; what is farther away is another cluster
-constexpr double kSlowest = 0.1;    // m/s
-constexpr double kTick = 0.1;       // s
-constexpr double kTouching = 0.02;  // m
+constexpr double kScanInterval = 0.4;  // s between the two scans
+constexpr double kMaxGap = 0.25;       // m
+constexpr double kMaxSize = 1.2;       // m
+constexpr double kMinNewShare = 0.25;  // of the points
+constexpr double kMinPassing = 0.1;    // m by which a ray has to pass a point
+constexpr double kMaxSpeed = 2.5;      // m/s; a cluster that is farther away is another one
+constexpr double kMinSpeed = 0.1;      // m/s
+constexpr double kTimeStep = 0.1;      // s
+constexpr double kContact = 0.02;      // m
 
-/// Returns whether the laser looked through this place, by the rays on both sides of it.
-bool seen_free(const Scan& scan, const PlanarPose& sensor, Point at) {
+/// Returns whether the rays on both sides of this point passed it.
+bool was_free(const Scan& scan, const PlanarPose& sensor, Point at) {
   const double dx = at.x - sensor.x, dy = at.y - sensor.y;
   const double offset = std::atan2(dy, dx) - sensor.yaw - scan.angle_min;
   const double turns = offset / scan.angle_increment, whole = 2 * M_PI / std::abs(scan.angle_increment);
@@ -25,7 +25,7 @@ bool seen_free(const Scan& scan, const PlanarPose& sensor, Point at) {
   const auto passed = [&](double ray) {
     if (ray < 0 || ray >= static_cast<double>(scan.ranges.size())) return false;
     const float range = scan.ranges[static_cast<std::size_t>(ray)];
-    return range > std::hypot(dx, dy) + kThrough && range >= scan.range_min;
+    return range > std::hypot(dx, dy) + kMinPassing && range >= scan.range_min;
   };
   return passed(std::floor(between)) && passed(std::ceil(between));
 }
@@ -37,7 +37,7 @@ std::vector<MovingObjects::Cluster> MovingObjects::clusters_of(const Scan& scan,
   for (const Point point : points_of(scan, sensor)) {
     if (!clusters.empty()) {
       const Point last = clusters.back().points.back();
-      if (std::hypot(point.x - last.x, point.y - last.y) < kGap) {
+      if (std::hypot(point.x - last.x, point.y - last.y) < kMaxGap) {
         clusters.back().points.push_back(point);
         continue;
       }
@@ -51,7 +51,7 @@ std::vector<MovingObjects::Cluster> MovingObjects::clusters_of(const Scan& scan,
       high = {std::max(high.x, point.x), std::max(high.y, point.y)};
     }
     cluster.middle = {(low.x + high.x) / 2, (low.y + high.y) / 2};
-    if (std::hypot(high.x - low.x, high.y - low.y) > kLargest) cluster.points.clear();
+    if (std::hypot(high.x - low.x, high.y - low.y) > kMaxSize) cluster.points.clear();
   }
   std::erase_if(clusters, [](const Cluster& cluster) { return cluster.points.empty(); });
   return clusters;
@@ -59,17 +59,17 @@ std::vector<MovingObjects::Cluster> MovingObjects::clusters_of(const Scan& scan,
 
 std::vector<MovingObject> MovingObjects::update(const Scan& scan, const PlanarPose& sensor, double now) {
   if (!records_.empty() && now <= records_.back().at) records_.clear();
-  while (records_.size() > 1 && records_[1].at <= now - kApart) records_.pop_front();
+  while (records_.size() > 1 && records_[1].at <= now - kScanInterval) records_.pop_front();
   std::vector<MovingObject> objects;
   const std::vector<Cluster> clusters = clusters_of(scan, sensor);
-  const ScanRecord* before = records_.empty() || now - records_[0].at > 2 * kApart ? nullptr : &records_[0];
+  const ScanRecord* before = records_.empty() || now - records_[0].at > 2 * kScanInterval ? nullptr : &records_[0];
   const double elapsed = before != nullptr ? now - before->at : 0;
-  for (std::size_t i = 0; before != nullptr && elapsed > kApart / 2 && i < clusters.size(); ++i) {
+  for (std::size_t i = 0; before != nullptr && elapsed > kScanInterval / 2 && i < clusters.size(); ++i) {
     const Cluster& cluster = clusters[i];
     const auto fresh = std::count_if(cluster.points.begin(), cluster.points.end(),
-                                     [&](Point point) { return seen_free(before->scan, before->sensor, point); });
-    if (static_cast<double>(fresh) < std::max(2.0, kNew * static_cast<double>(cluster.points.size()))) continue;
-    double nearest = kFastest * elapsed;
+                                     [&](Point point) { return was_free(before->scan, before->sensor, point); });
+    if (static_cast<double>(fresh) < std::max(2.0, kMinNewShare * static_cast<double>(cluster.points.size()))) continue;
+    double nearest = kMaxSpeed * elapsed;
     Point velocity;
     for (const Cluster& old : before->clusters) {
       const double dx = cluster.middle.x - old.middle.x, dy = cluster.middle.y - old.middle.y;
@@ -77,13 +77,13 @@ std::vector<MovingObject> MovingObjects::update(const Scan& scan, const PlanarPo
       nearest = std::hypot(dx, dy);
       velocity = {dx / elapsed, dy / elapsed};
     }
-    if (std::hypot(velocity.x, velocity.y) > kSlowest) objects.push_back({cluster.points, velocity});
+    if (std::hypot(velocity.x, velocity.y) > kMinSpeed) objects.push_back({cluster.points, velocity});
   }
   records_.push_back({scan, sensor, now, clusters});
   return objects;
 }
 
-std::vector<Point> placed(std::vector<Point> points, const PlanarPose& base) {
+std::vector<Point> from_base_axes(std::vector<Point> points, const PlanarPose& base) {
   for (Point& point : points) {
     const PlanarPose at = composed(base, {point.x, point.y, 0});
     point = {at.x, at.y};
@@ -91,7 +91,7 @@ std::vector<Point> placed(std::vector<Point> points, const PlanarPose& base) {
   return points;
 }
 
-std::vector<MovingObject> objects_seen_from(std::vector<MovingObject> objects, const PlanarPose& base) {
+std::vector<MovingObject> in_base_axes(std::vector<MovingObject> objects, const PlanarPose& base) {
   const double c = std::cos(base.yaw), s = std::sin(base.yaw);
   const auto turned = [&](double x, double y) { return Point{c * x + s * y, c * y - s * x}; };
   for (MovingObject& object : objects) {
@@ -101,15 +101,15 @@ std::vector<MovingObject> objects_seen_from(std::vector<MovingObject> objects, c
   return objects;
 }
 
-std::vector<Point> places_ahead(const std::vector<MovingObject>& objects, const Footprint& footprint) {
+std::vector<Point> predicted_points(const std::vector<MovingObject>& objects, const Footprint& footprint) {
   std::vector<Point> places;
   for (const MovingObject& object : objects) {
     std::vector<Point> own;
-    for (double time = 0; time <= kForesight; time += kTick) {
+    for (double time = 0; time <= kPredictionTime; time += kTimeStep) {
       for (const Point point : object.points)
         own.push_back({point.x + object.velocity.x * time, point.y + object.velocity.y * time});
     }
-    if (std::ranges::any_of(own, [&](Point place) { return footprint.distance(place) < kTouching; })) continue;
+    if (std::ranges::any_of(own, [&](Point place) { return footprint.distance(place) < kContact; })) continue;
     places.insert(places.end(), own.begin(), own.end());
   }
   return places;

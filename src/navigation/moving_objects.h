@@ -1,10 +1,11 @@
 #pragma once
-/// Objects in motion: two scans of one laser show them, and where they will be.
+/// Detects moving objects from two scans of one laser, and predicts their positions.
 ///
-/// Neighbouring rays whose ends are within kGap are one cluster. A cluster moves if kNew of its points lie where the
-/// laser looked through kApart before. There the rays on both sides went on: one alone passes the next point of a wall
-/// along which it grazes. Walls that come into sight do not move: there the view was blocked. The velocity is that of
-/// the middle of the points between the two scans. A cluster that is larger than kLargest is taken to stand.
+/// Neighbouring rays whose ends are within kMaxGap are one cluster. A cluster moves if kMinNewShare of its points lie
+/// where space was free kScanInterval before. Space was free if the rays on both sides of the point passed it. One ray
+/// is not enough: a ray that grazes a wall also passes the next point of that wall. Walls that come into sight do not
+/// move, because the view was blocked before. The velocity is that of the middle of the points between the two scans. A
+/// cluster that is larger than kMaxSize counts as static.
 
 #include <deque>
 #include <vector>
@@ -13,7 +14,7 @@
 
 namespace robot_control::navigation {
 
-inline constexpr double kForesight = 3;  ///< s; at 0.5 m/s the outline crosses the way of a cart in 2.5 s
+inline constexpr double kPredictionTime = 3;  ///< s; at 0.5 m/s the outline crosses the path of a cart in 2.5 s
 
 struct MovingObject {
   std::vector<Point> points;  ///< m
@@ -22,7 +23,7 @@ struct MovingObject {
 
 class MovingObjects {
  public:
-  /// Returns what moves, in the frame of `sensor`, which has to be at rest: the odometry's. `now` in s.
+  /// Returns the moving objects, in the frame of `sensor`, which has to be fixed: the odometry's. `now` in s.
   std::vector<MovingObject> update(const Scan& scan, const PlanarPose& sensor, double now);
 
  private:
@@ -42,13 +43,13 @@ class MovingObjects {
 };
 
 /// Returns points, given in the axes of `base`, in the frame in which `base` is given.
-std::vector<Point> placed(std::vector<Point> points, const PlanarPose& base);
+std::vector<Point> from_base_axes(std::vector<Point> points, const PlanarPose& base);
 
 /// Returns the objects in the axes of `base`, which is given in their frame.
-std::vector<MovingObject> objects_seen_from(std::vector<MovingObject> objects, const PlanarPose& base);
+std::vector<MovingObject> in_base_axes(std::vector<MovingObject> objects, const PlanarPose& base);
 
-/// Returns the places that the objects, given in base axes, will take within kForesight. Those that touch the standing
-/// outline on their way are left out: where it stands is no better than what lies ahead.
-std::vector<Point> places_ahead(const std::vector<MovingObject>& objects, const Footprint& footprint);
+/// Returns the points that the objects, given in base axes, will occupy within kPredictionTime. An object that will
+/// touch the outline at its present pose is left out: waiting there is no safer than driving on.
+std::vector<Point> predicted_points(const std::vector<MovingObject>& objects, const Footprint& footprint);
 
 }  // namespace robot_control::navigation

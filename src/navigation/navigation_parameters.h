@@ -28,7 +28,7 @@ inline Keys keys(LocalizationParameters& localization) {
 
 struct NavigateParameters {
   double speed = 0.5;            ///< m/s of a goal that names none
-  bool unknown_is_free = false;  ///< goals and ways may lie where neither map nor laser has been
+  bool unknown_is_free = false;  ///< goals and paths may lie where neither map nor laser has been
   std::string map_frame = "map";
 };
 

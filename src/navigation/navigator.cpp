@@ -6,7 +6,7 @@
 #include <limits>
 #include <utility>
 
-#include "navigation/text.h"
+#include "signals/formatted_text.h"
 
 namespace robot_control::navigation {
 namespace {
@@ -51,12 +51,12 @@ NavigatorOutput Navigator::step(const NavigatorInput& input, Costmap* costmap) {
       wait(input.problem, out);
     } else if (state_ == NavigatorState::kDriving) {
       drive(input, *costmap, out);
-    } else if (input.now - planned_at_ >= kReplan) {
+    } else if (input.now - planned_at_ >= kReplanPeriod) {
       plan(input, *costmap, out);
     }
     const double longest = driven_ ? kNoProgressTime : kFirstPathTime, waited = input.now - progress_at_;
     if (active() && waited > longest)
-      fail((reason_.empty() ? "the robot does not move" : reason_) + text(" (for %.0f s)", waited), out);
+      fail((reason_.empty() ? "the robot does not move" : reason_) + formatted(" (for %.0f s)", waited), out);
   }
   out.state = state_;
   if (state_ == NavigatorState::kFailed) reason_ += input.explanation;
@@ -80,7 +80,7 @@ void Navigator::plan(const NavigatorInput& input, Costmap& costmap, NavigatorOut
       found = plan_path(costmap, input.pose, goal_);
       costmap.update(input.now);
       if (!found.problem.empty()) return fail(found.problem, out);
-      driven_ = true;  // a way will be there when what blocks it has gone
+      driven_ = true;  // there is a path once the obstacle has gone
     }
     return wait(blocked, out);
   }
@@ -111,15 +111,15 @@ void Navigator::drive(const NavigatorInput& input, Costmap& costmap, NavigatorOu
   }
   const double free = free_distance(costmap, path_.poses, input.pose, passed_);
   note_progress(input);
-  const bool blocked = free < kWatched;
-  if (blocked && input.now - planned_at_ >= kReplan) plan(input, costmap, out);
-  if (blocked && !out.path && free < kStopBefore) wait(reason_.empty() ? "the way is blocked" : reason_, out);
-  if (!blocked) reason_ = input.now - progress_at_ > kReplan ? input.slowed_by : "";
+  const bool blocked = free < kMinFreeDistance;
+  if (blocked && input.now - planned_at_ >= kReplanPeriod) plan(input, costmap, out);
+  if (blocked && !out.path && free < kStopDistance) wait(reason_.empty() ? "the way is blocked" : reason_, out);
+  if (!blocked) reason_ = input.now - progress_at_ > kReplanPeriod ? input.slowed_by : "";
 }
 
 void Navigator::note_progress(const NavigatorInput& input) {
   const double left = remaining(input.pose);
-  if (left < least_remaining_ - kProgress) {
+  if (left < least_remaining_ - kMinProgress) {
     least_remaining_ = left;
     attempts_ = 0;
     progress_at_ = input.now;

@@ -3,13 +3,13 @@
 /// ROS; follow_path drives what it plans.
 ///
 ///   planning   the first plan of a goal; a goal that the map alone does not allow is refused at once
-///   driving    follow_path has a path. A path that is blocked within kLookAhead is replaced, at most once per kReplan.
-///              Where there is no other way, the robot drives on until kStopBefore before the obstacle
-///   waiting    nothing is driven: the way is blocked, or the laser, the map or the place is not to be trusted. After
-///              kNoProgressTime the goal is given up, before the first path after kFirstPathTime
+///   driving    follow_path has a path. A path that is blocked within kMinFreeDistance is replaced, at most once per
+///              kReplanPeriod. If there is no other path, the robot drives on until kStopDistance before the obstacle
+///   waiting    nothing is driven: the path is blocked, or the laser, the map or the pose cannot be trusted. The goal is
+///              given up after kNoProgressTime; before the first path, after kFirstPathTime
 ///
-/// A path that follow_path gave up is planned again, kAttempts times without kProgress in between. No later path from
-/// standstill restarts these times. follow_path refuses what a stop of the robot has revoked.
+/// A path that follow_path gave up is planned again, kAttempts times without kMinProgress in between. No later path
+/// from standstill restarts these times. follow_path refuses what a stop of the robot has revoked.
 
 #include <optional>
 #include <string>
@@ -20,10 +20,10 @@ namespace robot_control::navigation {
 
 inline constexpr double kNoProgressTime = 20;  ///< s
 inline constexpr double kFirstPathTime = 2;    ///< s, in which a map, a scan and tf arrive after a start
-inline constexpr double kReplan = 1;           ///< s
-inline constexpr double kWatched = 4;          ///< m ahead of the robot; farther obstacles may have gone until then
-inline constexpr double kStopBefore = 0.6;     ///< m
-inline constexpr double kProgress = 0.3;       ///< m
+inline constexpr double kReplanPeriod = 1;     ///< s
+inline constexpr double kMinFreeDistance = 4;  ///< m ahead of the robot; farther obstacles may have gone until then
+inline constexpr double kStopDistance = 0.6;   ///< m
+inline constexpr double kMinProgress = 0.3;    ///< m
 inline constexpr int kAttempts = 3;
 
 /// The end of the last path that was sent to follow_path.

@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "navigation/straightening.h"
-#include "navigation/text.h"
+#include "signals/formatted_text.h"
 
 namespace robot_control::navigation {
 namespace {
@@ -45,7 +45,7 @@ struct Open {
   bool operator<(const Open& other) const { return cost > other.cost; }  // the queue's top is the cheapest
 };
 
-/// Costs from each cell to the goal without headings; kUnreached where there is no way even for the inscribed circle.
+/// Costs from each cell to the goal without headings; kUnreached where there is no path even for the inscribed circle.
 std::vector<float> costs_to(const Costmap& costmap, Cell goal) {
   const Grid& grid = costmap.grid();
   std::vector<float> costs(grid.cells.size(), kUnreached);
@@ -70,12 +70,14 @@ std::vector<float> costs_to(const Costmap& costmap, Cell goal) {
   return costs;
 }
 
-/// Returns whether the outline may go from one pose to the next. It is free there, or neither is free and it has no
-/// less air there.
+/// Returns whether the outline may go from one pose to the next. The next pose is free, or neither is free and the next
+/// one has no less clearance.
 bool may_go(const Costmap& costmap, const PlanarPose& from, const PlanarPose& to) {
   if (costmap.free(to)) return true;
-  const auto air = [&](const PlanarPose& pose) { return costmap.distance(costmap.grid().cell_at(pose.x, pose.y)); };
-  return !costmap.free(from) && air(to) >= air(from) && air(to) > 0;
+  const auto clearance = [&](const PlanarPose& pose) {
+    return costmap.distance(costmap.grid().cell_at(pose.x, pose.y));
+  };
+  return !costmap.free(from) && clearance(to) >= clearance(from) && clearance(to) > 0;
 }
 
 /// The search over cells and headings.
@@ -96,7 +98,7 @@ class Search {
     }
   }
 
-  /// Returns the states from start to goal; empty if there is no way.
+  /// Returns the poses from start to goal; empty if there is no path.
   std::vector<PlanarPose> run() {
     while (!open_.empty()) {
       const std::uint64_t at = open_.top().state;
@@ -105,7 +107,7 @@ class Search {
       if (node.closed) continue;
       node.closed = true;
       const double yaw = heading_of(static_cast<int>(at % kSectors));
-      if (cell_of(at) == goal_cell_ && turn_is_free(costmap_, {goal_.x, goal_.y}, yaw, goal_.yaw)) return way(at);
+      if (cell_of(at) == goal_cell_ && turn_is_free(costmap_, {goal_.x, goal_.y}, yaw, goal_.yaw)) return path_to(at);
       expand(at, node.cost);
     }
     return {};
@@ -164,7 +166,7 @@ class Search {
     }
   }
 
-  std::vector<PlanarPose> way(std::uint64_t end) {
+  std::vector<PlanarPose> path_to(std::uint64_t end) {
     std::vector<PlanarPose> poses;
     for (std::uint64_t at = end; at != kStart; at = nodes_[at].from) poses.push_back(pose_of(at));
     std::reverse(poses.begin(), poses.end());
@@ -180,10 +182,10 @@ class Search {
   std::priority_queue<Open> open_;
 };
 
-/// Returns the widest way's narrowest cell and its distance from obstacles, for a point; nothing if there is no way.
+/// Returns the narrowest cell of the widest path and its distance from obstacles; nothing if there is no path.
 std::optional<std::pair<Cell, double>> narrowest(const Costmap& costmap, Cell start, Cell goal) {
   const Grid& grid = costmap.grid();
-  std::vector<float> width(grid.cells.size(), 0);  // of the widest way to the cell
+  std::vector<float> width(grid.cells.size(), 0);  // of the widest path to the cell
   std::vector<std::size_t> at_cell(grid.cells.size());
   std::priority_queue<std::pair<float, std::size_t>> open;
   const auto reach = [&](Cell cell, float before, std::size_t narrow) {
@@ -210,14 +212,14 @@ std::optional<std::pair<Cell, double>> narrowest(const Costmap& costmap, Cell st
   return std::nullopt;
 }
 
-std::string no_way(const Costmap& costmap, Cell start, Cell goal) {
+std::string no_path_problem(const Costmap& costmap, Cell start, Cell goal) {
   const auto narrow = narrowest(costmap, start, goal);
   if (!narrow) return "there is no way to the goal: obstacles or unknown space lie all around it or the robot";
   const double needed = 2 * (costmap.footprint().half_width + kPadding), wide = 2 * narrow->second;
   const Grid& grid = costmap.grid();
-  const std::string where = text("the narrowest place of the widest way, at (%.2f, %.2f) m, is %.2f m wide",
-                                 grid.x_of(narrow->first.column), grid.y_of(narrow->first.row), wide);
-  if (wide < needed) return "there is no way for this outline: " + where + text(", and it needs %.2f m", needed);
+  const std::string where = formatted("the narrowest place of the widest way, at (%.2f, %.2f) m, is %.2f m wide",
+                                      grid.x_of(narrow->first.column), grid.y_of(narrow->first.row), wide);
+  if (wide < needed) return "there is no way for this outline: " + where + formatted(", and it needs %.2f m", needed);
   return "there is no way for this outline: it cannot turn where it would have to; " + where;
 }
 
@@ -228,18 +230,18 @@ std::string goal_problem(const Costmap& costmap, const PlanarPose& goal) {
   }
   const bool near = std::abs(goal.x) <= kFarthest && std::abs(goal.y) <= kFarthest;
   const Cell cell = near ? grid.cell_at(goal.x, goal.y) : Cell{-1, -1};
-  const std::string at = text("the goal (%.2f, %.2f) m ", goal.x, goal.y);
+  const std::string at = formatted("the goal (%.2f, %.2f) m ", goal.x, goal.y);
   if (!grid.contains(cell)) return at + "lies outside the map";
   if (costmap.occupied(cell)) return at + (costmap.unknown(cell) ? "lies in unknown space" : "lies in an obstacle");
   if (costmap.free(goal)) return "";
-  return at + text("is too near to an obstacle or to unknown space for the outline: %.2f m from its base",
-                   costmap.distance(cell));
+  return at + formatted("is too near to an obstacle or to unknown space for the outline: %.2f m from its base",
+                        costmap.distance(cell));
 }
 
 }  // namespace
 
 Plan plan_path(const Costmap& costmap, const PlanarPose& start, const PlanarPose& goal) {
-  constexpr double kHere = 0.04;  // m; the end of a path is as exact
+  constexpr double kSamePosition = 0.04;  // m; the end of a path is as exact
   Plan plan;
   plan.problem = goal_problem(costmap, goal);
   const Grid& grid = costmap.grid();
@@ -247,17 +249,19 @@ Plan plan_path(const Costmap& costmap, const PlanarPose& start, const PlanarPose
   if (plan.problem.empty() && !grid.contains(from)) plan.problem = "the robot is outside the map";
   if (plan.problem.empty() && costmap.occupied(from)) plan.problem = "the robot stands in an obstacle of the map";
   if (!plan.problem.empty()) return plan;
-  if (std::hypot(goal.x - start.x, goal.y - start.y) < kHere) {  // a path needs two points; the robot turns on the spot
-    constexpr double kTiny = 0.002;                              // m
-    const PlanarPose end{start.x + kTiny * std::cos(start.yaw), start.y + kTiny * std::sin(start.yaw), goal.yaw};
-    if (turn_is_free(costmap, {start.x, start.y}, start.yaw, goal.yaw)) return {{start, end}, kTiny, ""};
+  if (std::hypot(goal.x - start.x, goal.y - start.y) <
+      kSamePosition) {                        // a path needs two points; the robot turns on the spot
+    constexpr double kMinPathLength = 0.002;  // m
+    const PlanarPose end{start.x + kMinPathLength * std::cos(start.yaw), start.y + kMinPathLength * std::sin(start.yaw),
+                         goal.yaw};
+    if (turn_is_free(costmap, {start.x, start.y}, start.yaw, goal.yaw)) return {{start, end}, kMinPathLength, ""};
   }
-  const std::vector<PlanarPose> way = Search(costmap, start, goal).run();
-  if (way.empty()) {
-    plan.problem = no_way(costmap, from, grid.cell_at(goal.x, goal.y));
+  const std::vector<PlanarPose> path = Search(costmap, start, goal).run();
+  if (path.empty()) {
+    plan.problem = no_path_problem(costmap, from, grid.cell_at(goal.x, goal.y));
     return plan;
   }
-  plan.poses = straightened(costmap, way, start, goal);
+  plan.poses = straightened(costmap, path, start, goal);
   plan.length = length_of(plan.poses);
   return plan;
 }
@@ -265,8 +269,8 @@ Plan plan_path(const Costmap& costmap, const PlanarPose& start, const PlanarPose
 double free_distance(const Costmap& costmap, const std::vector<PlanarPose>& poses, const PlanarPose& robot,
                      std::size_t& passed) {
   const auto away = [&](std::size_t i) { return std::hypot(poses[i].x - robot.x, poses[i].y - robot.y); };
-  constexpr std::size_t kReach = 20;  // poses; a way that crosses itself is not left for its later part
-  for (std::size_t i = passed; i < std::min(poses.size(), passed + kReach); ++i) {
+  constexpr std::size_t kSearchedPoses = 20;  // a path that crosses itself is not left for its later part
+  for (std::size_t i = passed; i < std::min(poses.size(), passed + kSearchedPoses); ++i) {
     if (away(i) < away(passed)) passed = i;
   }
   double along = 0;

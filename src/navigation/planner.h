@@ -1,14 +1,14 @@
 #pragma once
-/// Finds the way of an outline over a costmap, as poses that follow_path drives.
+/// Finds a path for an outline over a costmap, as poses that follow_path drives.
 ///
 /// States are (cell, heading sector of 22.5°). Moves are one step along the heading, one step back, and a turn on the
 /// spot by one sector. A step costs its length times Costmap::step_cost, one back kBackFactor times that, a sector
 /// kSectorCost. A* is guided by the same cost without headings, from a search backwards from the goal.
-/// MRPT's PlannerSimple2D takes a circle alone. The planners of OMPL draw samples. Their ways differ from run to run,
-/// and a timeout stands for "there is no way". Therefore neither is used.
+/// MRPT's PlannerSimple2D takes a circle alone. The planners of OMPL draw samples. Their paths differ from run to run,
+/// and a timeout is their only sign that there is no path. Therefore neither is used.
 ///
-/// The way is then straightened (straightening.h). Every pose carries the robot's heading: follow_path drives a segment
-/// backwards whose poses point against it.
+/// The path is then straightened (straightening.h). Every pose carries the robot's heading: follow_path drives a
+/// segment backwards whose poses point against it.
 
 #include <string>
 #include <vector>
@@ -21,14 +21,14 @@ inline constexpr double kBackFactor = 3;
 inline constexpr double kSectorCost = 0.15;  ///< m; 22.5° take 0.4 s, in which follow_path drives 0.2 m
 
 struct Plan {
-  std::vector<PlanarPose> poses;  ///< from start to goal; empty: there is no way
+  std::vector<PlanarPose> poses;  ///< from start to goal; empty: there is no path
   double length = 0;              ///< m
   std::string problem;            ///< why there is none: a sentence without full stop
 };
 
 /// The costmap is up to date (Costmap::update). A start that is not free may be left, as long as every step is freer
 /// than the start or free. A goal is refused outside the map, in an obstacle, in unknown space, or too near to either.
-/// The problem names the narrowest place of the widest way if there is no way for the outline.
+/// The problem names the narrowest point of the widest path if there is no path for the outline.
 Plan plan_path(const Costmap& costmap, const PlanarPose& start, const PlanarPose& goal);
 
 /// Returns the distance along the poses to the first one that is not free, from the pose nearest to `robot` on; ∞ if

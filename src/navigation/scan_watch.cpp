@@ -3,34 +3,34 @@
 #include <algorithm>
 #include <cmath>
 
-#include "navigation/text.h"
+#include "signals/formatted_text.h"
 
 namespace robot_control::navigation {
 
 std::string ScanWatch::structure_problem(const Scan& scan) const {
   const std::size_t rays = scan.ranges.size();
-  if (rays < 2 || rays > kMaxRays) return text("scan has %zu rays: 2 to %zu are taken", rays, kMaxRays);
+  if (rays < 2 || rays > kMaxRays) return formatted("scan has %zu rays: 2 to %zu are taken", rays, kMaxRays);
   if (!std::isfinite(scan.angle_min) || !std::isfinite(scan.angle_increment) || scan.angle_increment == 0) {
-    return text("scan has angle_min %g and angle_increment %g: both must be finite, the increment not zero",
-                scan.angle_min, scan.angle_increment);
+    return formatted("scan has angle_min %g and angle_increment %g: both must be finite, the increment not zero",
+                     scan.angle_min, scan.angle_increment);
   }
   constexpr double kTurn = 2 * M_PI + 0.1;  // rad
   if (std::abs(scan.angle_increment) * static_cast<double>(rays - 1) > kTurn) {
-    return text("scan covers %.1f rad: one turn at most is taken",
-                std::abs(scan.angle_increment) * static_cast<double>(rays - 1));
+    return formatted("scan covers %.1f rad: one turn at most is taken",
+                     std::abs(scan.angle_increment) * static_cast<double>(rays - 1));
   }
   const double last = scan.angle(rays - 1);
   if (std::abs(scan.angle_max - last) > 2 * std::abs(scan.angle_increment)) {
-    return text(
+    return formatted(
         "scan has angle_max %.3f rad, and its last ray is at %.3f rad: angle_min + angle_increment x (rays - 1)",
         scan.angle_max, last);
   }
   if (!std::isfinite(scan.range_max)) {
-    return text("scan has range_max %g m: it must be finite, set that of the laser's driver", scan.range_max);
+    return formatted("scan has range_max %g m: it must be finite, set that of the laser's driver", scan.range_max);
   }
   if (!(scan.range_min >= 0 && scan.range_min < scan.range_max)) {
-    return text("scan has range_min %g m and range_max %g m: 0 <= range_min < range_max must hold", scan.range_min,
-                scan.range_max);
+    return formatted("scan has range_min %g m and range_max %g m: 0 <= range_min < range_max must hold", scan.range_min,
+                     scan.range_max);
   }
   return "";
 }
@@ -38,13 +38,13 @@ std::string ScanWatch::structure_problem(const Scan& scan) const {
 std::string ScanWatch::receive(const Scan& scan, const std::string& publisher, double stamp, double now, double moved) {
   const auto refuse = [&](const std::string& why) { return refused_ = why; };
   if (const std::string why = structure_problem(scan); !why.empty()) return refuse(why);
-  const bool bound = std::abs(now - received_) < kBinding;
+  const bool bound = std::abs(now - received_) < kPublisherTimeout;
   if (bound && publisher != publisher_) {
     return refuse("scan has two publishers, " + publisher_ + " and " + publisher + ": stop one of them");
   }
   if (bound && stamp < stamp_) {
     return refuse(
-        text("the stamps of scan go back by %.3f s: check the clock of the laser's computer", stamp_ - stamp));
+        formatted("the stamps of scan go back by %.3f s: check the clock of the laser's computer", stamp_ - stamp));
   }
   blind_ = std::none_of(scan.ranges.begin(), scan.ranges.end(),
                         [&](float range) { return scan.hit(range) || range > scan.range_max; });
@@ -58,16 +58,16 @@ std::string ScanWatch::receive(const Scan& scan, const std::string& publisher, d
 }
 
 std::string ScanWatch::problem(double now) const {
-  if (now - received_ > kSilence) {
-    return refused_.empty() ? text("scan is silent for %.1f s: check the laser and its driver", now - received_)
+  if (now - received_ > kScanTimeout) {
+    return refused_.empty() ? formatted("scan is silent for %.1f s: check the laser and its driver", now - received_)
                             : refused_;
   }
-  if (std::abs(now - stamp_) > kSilence) {
-    return text("the stamps of scan are %.1f s %s: synchronise the clocks of laser and robot", std::abs(now - stamp_),
-                now > stamp_ ? "old" : "ahead");
+  if (std::abs(now - stamp_) > kScanTimeout) {
+    return formatted("the stamps of scan are %.1f s %s: synchronise the clocks of laser and robot",
+                     std::abs(now - stamp_), now > stamp_ ? "old" : "ahead");
   }
   if (blind_) return "scan has no range that was measured: is the laser covered?";
-  if (moved_ - changed_at_ > kMoved) return "scan is frozen: its ranges stay the same while the robot moves";
+  if (moved_ - changed_at_ > kFrozenMotion) return "scan is frozen: its ranges stay the same while the robot moves";
   return "";
 }
 

@@ -1,14 +1,14 @@
 #pragma once
-/// Whether a laser can be trusted, from its messages alone.
+/// Checks whether a laser can be trusted, from its messages alone.
 ///
 /// A message is refused that has less than two rays, more than kMaxRays, or more than one turn. Angles and limits have
-/// to be finite, and the increment not zero. A stated angle_max has to be within two steps of the last ray. In some
-/// drivers it lies one step behind it. A message is refused, too, with a stamp before that of the last one, or of
-/// another publisher. That lasts for kBinding: a clock that was set back counts from then on. A refused message is as
-/// good as none.
+/// to be finite, and the increment not zero. A stated angle_max has to be within two steps of the last ray, because
+/// some drivers state it one step too far. A message is also refused if its stamp is before that of the last one, or if
+/// another publisher sent it. This ends kPublisherTimeout after the last accepted message, so that a clock may be set
+/// back. A refused message counts as not received.
 ///
-/// The scan is silent if no message was accepted for kSilence, or if its stamps are older than that. It is blind
-/// without one range that was measured, and frozen if the same ranges come again while the robot moved by kMoved.
+/// The scan is silent if no message was accepted for kScanTimeout, or if its stamps are older than that. It is blind
+/// without one range that was measured, and frozen if the ranges stay the same while the robot moves by kFrozenMotion.
 
 #include <string>
 #include <vector>
@@ -18,14 +18,14 @@
 namespace robot_control::navigation {
 
 inline constexpr std::size_t kMaxRays = 20'000;
-inline constexpr double kSilence = 0.5;  ///< s
-inline constexpr double kBinding = 1;    ///< s
-inline constexpr double kMoved = 0.05;   ///< m or rad
+inline constexpr double kScanTimeout = 0.5;     ///< s
+inline constexpr double kPublisherTimeout = 1;  ///< s
+inline constexpr double kFrozenMotion = 0.05;   ///< m or rad
 
 class ScanWatch {
  public:
-  /// Returns why the message is refused; "" if it is taken. `stamp` and `now` are s on the clock of stamps, `moved` is
-  /// the way that the robot has driven or turned so far, m + rad.
+  /// Returns why the message is refused; "" if it is accepted. `stamp` and `now` are s on the clock of stamps, `moved`
+  /// is how far the robot has driven and turned so far, m + rad.
   std::string receive(const Scan& scan, const std::string& publisher, double stamp, double now, double moved);
 
   /// Returns why the newest scan does not count at this time; "" if it does.
@@ -37,7 +37,7 @@ class ScanWatch {
   std::string publisher_, refused_ = "no scan has come: start the laser's driver, which publishes scan";
   double received_ = -1e9, stamp_ = -1e9;  // s
   std::vector<float> ranges_;
-  double changed_at_ = 0, moved_ = 0;  // m + rad, when the ranges were last others; now
+  double changed_at_ = 0, moved_ = 0;  // m + rad, at the last change of the ranges; now
   bool blind_ = false;
 };
 

@@ -26,30 +26,30 @@ double straight_cost(const Costmap& costmap, Point a, Point b, bool back) {
   return cost;
 }
 
-/// A corner of the way; `back`: the segment to it is driven backwards.
+/// A corner of the path; `back`: the segment to it is driven backwards.
 struct Vertex {
   Point at;
   bool back = false;
 };
 
-/// The ends of the segments of a way, which turns on the spot at some of them.
-std::vector<Vertex> vertices_of(const std::vector<PlanarPose>& way, const PlanarPose& start, const PlanarPose& goal) {
+/// Returns the ends of the segments of a path, which turns on the spot at some of them.
+std::vector<Vertex> vertices_of(const std::vector<PlanarPose>& path, const PlanarPose& start, const PlanarPose& goal) {
   std::vector<Vertex> vertices = {{{start.x, start.y}, false}};
-  for (std::size_t i = 1; i < way.size(); ++i) {
-    const double dx = way[i].x - way[i - 1].x, dy = way[i].y - way[i - 1].y;
+  for (std::size_t i = 1; i < path.size(); ++i) {
+    const double dx = path[i].x - path[i - 1].x, dy = path[i].y - path[i - 1].y;
     if (dx == 0 && dy == 0) continue;
-    vertices.push_back({{way[i].x, way[i].y}, dx * std::cos(way[i].yaw) + dy * std::sin(way[i].yaw) < 0});
+    vertices.push_back({{path[i].x, path[i].y}, dx * std::cos(path[i].yaw) + dy * std::sin(path[i].yaw) < 0});
   }
   if (vertices.size() == 1) vertices.push_back({});
   vertices.back().at = {goal.x, goal.y};
   return vertices;
 }
 
-/// Leaves out the vertices between which the straight way is free and costs no more.
+/// Leaves out the vertices between which the straight line is free and costs no more.
 std::vector<Vertex> corners_of(const Costmap& costmap, const std::vector<Vertex>& given, double start_yaw,
                                double goal_yaw) {
-  constexpr std::size_t kMisses = 20;  // vertices in a row to which there is no straight way
-  std::vector<double> costs = {0};     // from the start along the given way
+  constexpr std::size_t kMisses = 20;  // vertices in a row to which there is no straight line
+  std::vector<double> costs = {0};     // from the start along the given path
   for (std::size_t i = 1; i < given.size(); ++i) {
     costs.push_back(costs.back() + straight_cost(costmap, given[i - 1].at, given[i].at, given[i].back));
   }
@@ -99,9 +99,9 @@ bool turn_is_free(const Costmap& costmap, Point at, double from, double to) {
   return true;
 }
 
-std::vector<PlanarPose> straightened(const Costmap& costmap, const std::vector<PlanarPose>& way,
+std::vector<PlanarPose> straightened(const Costmap& costmap, const std::vector<PlanarPose>& path,
                                      const PlanarPose& start, const PlanarPose& goal) {
-  return poses_of(corners_of(costmap, vertices_of(way, start, goal), start.yaw, goal.yaw), goal.yaw);
+  return poses_of(corners_of(costmap, vertices_of(path, start, goal), start.yaw, goal.yaw), goal.yaw);
 }
 
 double length_of(const std::vector<PlanarPose>& poses) {

@@ -7,7 +7,7 @@
 #include "robots/wheeled/safety_limits.h"
 #include "robots/wheeled/slow_loop.h"
 #include "robots/wheeled/start_check.h"
-#include "safety/safety_monitor.h"
+#include "safety/conditions/wheeled/wheeled_conditions.h"
 
 namespace robot_control {
 

@@ -14,21 +14,21 @@
 namespace robot_control {
 namespace {
 
-struct Death {
+struct FatalSignal {
   int signal;
   std::string_view name;
   std::string_view what;
   std::string_view remedy;
 };
 
-constexpr std::string_view kBug = "keep its core dump (coredumpctl) and report it, then start the node again";
-constexpr Death kDeaths[] = {
+constexpr std::string_view kReportRemedy = "keep its core dump (coredumpctl) and report it, then start the node again";
+constexpr FatalSignal kFatalSignals[] = {
     {SIGBUS, "SIGBUS", "shared memory was truncated, or its file system is full",
      "look at 'df /dev/shm' and at the processes that write there, then start the node again"},
-    {SIGSEGV, "SIGSEGV", "it used an address that is not its own", kBug},
-    {SIGILL, "SIGILL", "it came to an instruction that cannot be", kBug},
-    {SIGFPE, "SIGFPE", "it divided an integer by zero", kBug},
-    {SIGABRT, "SIGABRT", "it gave up, the message before says why", kBug},
+    {SIGSEGV, "SIGSEGV", "it used an address that is not its own", kReportRemedy},
+    {SIGILL, "SIGILL", "it came to an instruction that cannot be", kReportRemedy},
+    {SIGFPE, "SIGFPE", "it divided an integer by zero", kReportRemedy},
+    {SIGABRT, "SIGABRT", "it gave up, the message before says why", kReportRemedy},
 };
 
 /// A Text holds at most Size bytes; the rest is cut.
@@ -66,7 +66,7 @@ void say(std::string_view line) noexcept {
   [[maybe_unused]] const auto written = write(STDERR_FILENO, line.data(), line.size());
 }
 
-void speak(const Death& death, const siginfo_t& info) noexcept {
+void speak(const FatalSignal& death, const siginfo_t& info) noexcept {
   Text<512> line;
   line.add(node_name.view());
   line.add(": ");
@@ -98,7 +98,7 @@ void die_of(int signal, siginfo_t& info) noexcept {
 extern "C" void report_crash(int signal, siginfo_t* info, void* /*context*/) {
   // A second failing thread waits here: its end would interrupt the report of the first one.
   while (dying.exchange(true)) pause();
-  for (const Death& death : kDeaths) {
+  for (const FatalSignal& death : kFatalSignals) {
     if (death.signal == signal) speak(death, *info);
   }
   die_of(signal, *info);
@@ -116,7 +116,7 @@ void install_crash_report(const std::string& name, const std::string& consequenc
   action.sa_sigaction = &report_crash;
   action.sa_flags = SA_SIGINFO | SA_ONSTACK;
   sigfillset(&action.sa_mask);
-  for (const Death& death : kDeaths) sigaction(death.signal, &action, nullptr);
+  for (const FatalSignal& death : kFatalSignals) sigaction(death.signal, &action, nullptr);
 }
 
 AlternateStack::AlternateStack() noexcept {

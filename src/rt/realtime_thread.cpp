@@ -14,11 +14,9 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
-#include <cstdint>
 #include <cstring>
 #include <fstream>
 #include <future>
-#include <string_view>
 #include <system_error>
 #include <utility>
 
@@ -60,7 +58,7 @@ std::string memory_refusal(const std::string& why) {
 }
 
 /// These libraries come with ROS and with the readers of meshes. No loop calls them.
-constexpr auto kNotOfTheLoop = std::to_array<std::string_view>(
+constexpr auto kLibrariesOutsideTheLoop = std::to_array<std::string_view>(
     {"libassimp.", "libdraco.", "libicudata.", "libicui18n.", "libicuuc.", "libpython3."});
 
 RealtimeReport lock_memory() {
@@ -77,7 +75,7 @@ RealtimeReport lock_memory() {
     return report;
   }
   report.memory_lock = Grant::kGranted;
-  unlock_libraries(kNotOfTheLoop);
+  unlock_libraries(kLibrariesOutsideTheLoop);
   mallopt(M_ARENA_MAX, 2);
   mallopt(M_TRIM_THRESHOLD, -1);
   pthread_attr_t attributes;
@@ -245,12 +243,12 @@ LatencyRequest::~LatencyRequest() {
 }
 
 bool precede_ordinary_threads() noexcept {
-  constexpr int kLowest = 1;
-  if (rlimit limit{}; getrlimit(RLIMIT_RTPRIO, &limit) == 0 && limit.rlim_cur < kLowest) {
+  constexpr int kLowestPriority = 1;
+  if (rlimit limit{}; getrlimit(RLIMIT_RTPRIO, &limit) == 0 && limit.rlim_cur < kLowestPriority) {
     limit.rlim_cur = limit.rlim_max;
     setrlimit(RLIMIT_RTPRIO, &limit);
   }
-  const sched_param parameter{.sched_priority = kLowest};
+  const sched_param parameter{.sched_priority = kLowestPriority};
   return sched_setscheduler(0, SCHED_FIFO | SCHED_RESET_ON_FORK, &parameter) == 0;
 }
 

@@ -2,9 +2,9 @@
 /// The user's parameters of the safety monitor.
 ///
 /// A condition is active when a quantity measured from raw sensors and the command is beyond `limit` without
-/// interruption for `persistence`. Only wrong_state.h looks at the estimate, to doubt it. An active condition is a
-/// cause, and `reaction` is what the monitor does. The conditions and their defaults: signals/stop_causes.def. They are
-/// defined in conditions/wheeled, conditions/legged and conditions/common.
+/// interruption for `persistence`. Only the condition wrong_state reads the estimate, to check it. An active condition
+/// is a cause, and `reaction` is what the monitor does. The conditions and their defaults: signals/stop_causes.def.
+/// They are defined in conditions/wheeled, conditions/legged and conditions/common.
 
 #include <algorithm>
 #include <array>

@@ -13,7 +13,6 @@
 #include <string>
 #include <string_view>
 
-#include "signals/bit_name.h"
 #include "signals/command_frame.h"
 #include "signals/gate_report.h"
 #include "signals/injected_fault.h"
@@ -23,6 +22,17 @@
 #include "signals/state_frame.h"
 
 namespace robot_control {
+
+/// A BitName describes one bit of a frame's bit set in words.
+struct BitName {
+  std::uint64_t bit;
+  std::string_view name;      ///< snake_case, for logs and topics
+  std::string_view sentence;  ///< the condition that the bit reports
+  std::string_view remedy;    ///< the action that removes the condition
+  std::string_view actor =
+      {};  ///< role that applies the remedy: "operator", "integrator", "technician"; stop causes only
+  std::string_view unit = {};  ///< unit of CauseEvidence::value and limit; empty: the cause has none
+};
 
 // clang-format off
 /// A latched cause needs e_stop_reset after its remedy; with an empty remedy it needs only that. The actor is

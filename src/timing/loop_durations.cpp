@@ -36,7 +36,7 @@ std::optional<std::int64_t> LoopDurations::measure(Role role, Quantity quantity,
   const CycleTiming& own = *times.timing[index(role)];
   const auto& waker = times.timing[index(waker_of(role))];
   const Last& last = last_[index(role)];
-  const DriverTimes& sampled = marks_[driver.command_cycle.value_or(0) % kMarks];
+  const DriverTimes& sampled = marks_[driver.command_cycle.value_or(0) % kRememberedCycles];
   const bool next = follows(driver, driver_.run, driver_.cycle);
   const auto paused_since = [&](const DriverTimes& before) { return driver.held_ns != before.held_ns; };
   switch (quantity) {
@@ -78,7 +78,7 @@ void LoopDurations::add(const CycleTimes& times) noexcept {
     last = {driver.run, driver.cycle, driver.due_ns + times.timing[i]->woke_ns};
   }
   driver_ = driver;
-  marks_[driver.cycle % kMarks] = driver;
+  marks_[driver.cycle % kRememberedCycles] = driver;
 }
 
 }  // namespace robot_control

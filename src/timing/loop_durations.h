@@ -88,7 +88,7 @@ class LoopDurations {
   std::uint64_t skipped(Role role) const noexcept { return skipped_[static_cast<std::size_t>(role)]; }  ///< cycles
 
  private:
-  static constexpr std::size_t kMarks = 16;  ///< cycles; a command lives four
+  static constexpr std::size_t kRememberedCycles = 16;  ///< cycles; a command lives four
 
   struct Last {
     std::uint64_t run = 0;
@@ -100,8 +100,8 @@ class LoopDurations {
 
   std::vector<Entry> entries_;
   std::array<Last, kLoopRoles> last_{};
-  DriverTimes driver_;                       ///< of the cycle before
-  std::array<DriverTimes, kMarks> marks_{};  ///< by cycle
+  DriverTimes driver_;                                  ///< of the cycle before
+  std::array<DriverTimes, kRememberedCycles> marks_{};  ///< by cycle
   std::uint64_t overruns_ = 0;
   std::array<std::uint64_t, kLoopRoles> skipped_{};
 };

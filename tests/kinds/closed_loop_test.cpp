@@ -61,7 +61,7 @@ TEST_F(SecondKind, AnEmergencyStopMovesItDownAndNothingHoldsItAfterwards) {
   fastest = 0;
   wait(397);
   EXPECT_LT(std::abs(angle()), 0.1 * lifted);
-  EXPECT_LT(fastest, 1.5 * lifted / (JointStop::kQuick * kDownTime))
+  EXPECT_LT(fastest, 1.5 * lifted / (JointStop::kFirstRateShare * kDownTime))
       << "1.5 times the speed of the reference (StopKind::kMove)";
   wait(2000);
   EXPECT_NEAR(angle(), 0, 0.01);

@@ -58,7 +58,7 @@ TEST_F(AMotionWatch, EndsAWhileAfterTheMotion) {
   estimator.state.base.flags |= kStateStandstill;
   while (step()) {
   }
-  EXPECT_NEAR(static_cast<double>(now - begin), static_cast<double>(MotionWatch::kAfter), 2e6);
+  EXPECT_NEAR(static_cast<double>(now - begin), static_cast<double>(MotionWatch::kTimeAfterStop), 2e6);
 }
 
 }  // namespace robot_control::tests

@@ -11,7 +11,7 @@
 #include "loop/cycles/estimator_cycle.h"
 #include "loop/cycles/monitor_cycle.h"
 #include "robots/differential_drive.h"
-#include "safety/safety_monitor.h"
+#include "safety/conditions/wheeled/wheeled_conditions.h"
 #include "simulation/faults/node_faults.h"
 
 namespace robot_control {

@@ -2,8 +2,8 @@
 
 #include <gtest/gtest.h>
 
-#include "navigation/guard.h"
 #include "navigation/house.h"
+#include "navigation/motion_clearance.h"
 
 namespace robot_control::navigation::tests {
 
@@ -71,14 +71,14 @@ std::vector<MovingObject> object(Point point, Point velocity) {
 }
 
 TEST(PlacesAheadTest, TheyAreThoseOfWhatPassesAStandingRobot) {
-  EXPECT_TRUE(places_ahead(object({1.12, 0}, {-0.5, 0}), diffbot()).empty());
-  const std::vector<Point> ahead = places_ahead(object({1.12, 0.5}, {-0.5, 0}), diffbot());
+  EXPECT_TRUE(predicted_points(object({1.12, 0}, {-0.5, 0}), diffbot()).empty());
+  const std::vector<Point> ahead = predicted_points(object({1.12, 0.5}, {-0.5, 0}), diffbot());
   ASSERT_FALSE(ahead.empty());
-  EXPECT_NEAR(ahead.back().x, 1.12 - 0.5 * kForesight, 0.051);
+  EXPECT_NEAR(ahead.back().x, 1.12 - 0.5 * kPredictionTime, 0.051);
 }
 
 TEST(MoversSeenFromTest, TheyAreTurnedIntoTheAxesOfTheBase) {
-  const MovingObject seen = objects_seen_from(object({2, 1}, {0.5, 0}), {2, 0, M_PI / 2})[0];
+  const MovingObject seen = in_base_axes(object({2, 1}, {0.5, 0}), {2, 0, M_PI / 2})[0];
   EXPECT_NEAR(seen.points[0].x, 1, 1e-9);
   EXPECT_NEAR(seen.points[0].y, 0, 1e-9);
   EXPECT_NEAR(seen.velocity.y, -0.5, 1e-9);
@@ -86,17 +86,17 @@ TEST(MoversSeenFromTest, TheyAreTurnedIntoTheAxesOfTheBase) {
 
 TEST(FreeWayAmongMoversTest, ItEndsWhereOneCrosses) {
   const std::vector<MovingObject> crossing = object({1.12, -1.5}, {0, 0.8});
-  EXPECT_NEAR(free_way(diffbot(), {}, {0.5, 0}, crossing), 1.0 - kBeside - kStopShort, 0.021);
+  EXPECT_NEAR(clearance_along(diffbot(), {}, {0.5, 0}, crossing), 1.0 - kLaserNoise - kRemainingGap, 0.021);
 }
 
 TEST(FreeWayAmongMoversTest, OneThatComesToTheRobotEndsItAtTheMeeting) {
   const std::vector<MovingObject> oncoming = object({1.12, 0}, {-0.5, 0});
-  EXPECT_NEAR(free_way(diffbot(), {}, {0.5, 0}, oncoming), 0.5 - kStopShort, 0.05);
+  EXPECT_NEAR(clearance_along(diffbot(), {}, {0.5, 0}, oncoming), 0.5 - kRemainingGap, 0.05);
 }
 
 TEST(FreeWayAmongMoversTest, TheRobotDrivesOnOutOfTheWayOfOneThatWouldTouchIt) {
   const std::vector<MovingObject> from_the_side = object({0, -1.27}, {0, 0.5});
-  EXPECT_TRUE(std::isinf(free_way(diffbot(), {}, {0.5, 0}, from_the_side)));
+  EXPECT_TRUE(std::isinf(clearance_along(diffbot(), {}, {0.5, 0}, from_the_side)));
 }
 
 }  // namespace robot_control::navigation::tests

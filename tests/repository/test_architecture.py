@@ -126,9 +126,9 @@ MAY_INCLUDE = {
     "bindings": ALL | {"log/replay", "navigation", "navigation/mrpt"},
     "ros": LOOP | {"files", "machine/description"},
     # Maps, costmap, planner: services beside the loop, without ROS.
-    "navigation": {"files", "machine", "parameters"},
+    "navigation": {"signals", "files", "machine", "parameters"},
     "navigation/mrpt": {"navigation"},
-    "ros/navigation": {"navigation", "navigation/mrpt", "ros", "configuration", "files"},
+    "ros/navigation": {"signals", "navigation", "navigation/mrpt", "ros", "configuration", "files"},
     "main": {
         "ros",
         "ros/navigation",

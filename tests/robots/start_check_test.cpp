@@ -9,7 +9,7 @@
 
 #include "control/wheeled/smooth_speed.h"
 #include "loop/cycle_fixture.h"
-#include "loop/machine_identity.h"
+#include "loop/processes/process.h"
 
 namespace robot_control::tests {
 

@@ -4,7 +4,7 @@
 #include <limits>
 #include <stdexcept>
 
-#include "safety/measurements/finite.h"
+#include "safety/conditions/common/frame_conditions.h"
 #include "safety/monitor_fixture.h"
 #include "support/allocation_guard.h"
 #include "support/constants.h"

@@ -12,8 +12,8 @@
 #include <vector>
 
 #include "gate/gate.h"
+#include "safety/conditions/wheeled/wheeled_conditions.h"
 #include "safety/derived_limits.h"
-#include "safety/safety_monitor.h"
 
 namespace robot_control {
 

@@ -6,9 +6,9 @@
 
 #include "bindings/navigation/conversions.h"
 #include "bindings/numpy_version.h"
-#include "navigation/guard.h"
 #include "navigation/map_consistency.h"
 #include "navigation/map_file.h"
+#include "navigation/motion_clearance.h"
 #include "navigation/moving_objects.h"
 #include "navigation/navigator.h"
 #include "navigation/scan_watch.h"
@@ -38,15 +38,15 @@ class Navigation {
     watch_.receive(scan, "laser", now, now, moved);
     consistency_.update(costmap_.insert(scan, composed(planar_of(place), planar_of(sensor)), now));
     const PlanarPose base = planar_of(odometry);
-    seen_ = objects_seen_from(objects_.update(scan, composed(base, planar_of(sensor)), now), base);
-    costmap_.foresee(placed(places_ahead(seen_, costmap_.footprint()), planar_of(place)));
+    seen_ = in_base_axes(objects_.update(scan, composed(base, planar_of(sensor)), now), base);
+    costmap_.set_predicted(from_base_axes(predicted_points(seen_, costmap_.footprint()), planar_of(place)));
     const std::string problem = watch_.problem(now);
     return problem.empty() ? consistency_.problem() : problem;
   }
   bool silent(double now) const { return !watch_.problem(now).empty(); }
-  double free_way(const py::dict& scan, const Pose& sensor, double linear, double angular) const {
-    return navigation::free_way(costmap_.footprint(), points_of(scan_of(scan), planar_of(sensor)), {linear, angular},
-                                seen_);
+  double clearance_along(const py::dict& scan, const Pose& sensor, double linear, double angular) const {
+    return navigation::clearance_along(costmap_.footprint(), points_of(scan_of(scan), planar_of(sensor)),
+                                       {linear, angular}, seen_);
   }
   double distance(double x, double y) const { return costmap_.footprint().distance({x, y}); }
   py::tuple plan(const Pose& start, const Pose& goal, double now) {
@@ -96,7 +96,8 @@ PYBIND11_MODULE(_navigation, module) {
       .def("update", &Navigation::update, py::arg("scan"), py::arg("sensor"), py::arg("place"), py::arg("odometry"),
            py::arg("now"), py::arg("moved"))
       .def("silent", &Navigation::silent, py::arg("now"))
-      .def("free_way", &Navigation::free_way, py::arg("scan"), py::arg("sensor"), py::arg("linear"), py::arg("angular"))
+      .def("clearance_along", &Navigation::clearance_along, py::arg("scan"), py::arg("sensor"), py::arg("linear"),
+           py::arg("angular"))
       .def("distance", &Navigation::distance, py::arg("x"), py::arg("y"))
       .def("plan", &Navigation::plan, py::arg("start"), py::arg("goal"), py::arg("now"))
       .def("begin", &Navigation::begin, py::arg("goal"), py::arg("now"))

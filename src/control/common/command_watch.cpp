@@ -4,19 +4,17 @@
 #include <cmath>
 #include <limits>
 
-#include "signals/command_frame.h"
-
 namespace robot_control {
 
 namespace {
 
-constexpr std::uint64_t kNever = std::numeric_limits<std::uint64_t>::max();
+constexpr std::uint64_t kNoTimeout = std::numeric_limits<std::uint64_t>::max();
 
 /// Returns the whole periods in the rest of `timeout`. The margin keeps 1.25 s / 1 ms at 1250, although neither number
 /// is exact in binary.
 std::uint64_t cycles_left(double timeout, std::int64_t age_ns, double period) noexcept {
   constexpr double kMargin = 1e-6;
-  if (timeout <= 0) return kNever;
+  if (timeout <= 0) return kNoTimeout;
   const double left = timeout - 1e-9 * static_cast<double>(age_ns);
   return static_cast<std::uint64_t>(std::max(0.0, std::floor(left / period + kMargin)));
 }

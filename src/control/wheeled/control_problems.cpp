@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <sstream>
 
 #include "control/wheeled/feed_forward_problems.h"
 #include "control/wheeled/measured_robot.h"
@@ -12,11 +11,14 @@
 #include "control/wheeled/wheel_loops/wheel_loop_gains.h"
 #include "control/wheeled/wheel_loops/wheel_loop_stability.h"
 #include "machine/suspicions.h"
+#include "signals/formatted_text.h"
 #include "signals/roles.h"
 
 namespace robot_control {
 
 namespace {
+
+constexpr const char* kController = program_of(Role::kController).data();
 
 struct Load {
   const char* name;
@@ -61,7 +63,7 @@ constexpr double kMinShare = 0.1;
 constexpr double kMaxRipple = 0.3;
 
 /// A set is not refused if derived gains are nearly as bad.
-constexpr double kNotWorse = 1.2;
+constexpr double kDerivedFactor = 1.2;
 
 /// Counts are judged at these shares of full speed.
 constexpr std::array kSpeedParts{1.0, 0.3, 0.1, 0.03};
@@ -109,7 +111,7 @@ struct Loop {
   const Load* oscillating_load(const Loop& derived) const {
     for (const Load* lifted : {loads.data(), loads.data() + loads.size() / 2}) {
       const double part = ripple(*lifted);
-      if (part > kMaxRipple && part > kNotWorse * derived.ripple(*lifted)) return lifted;
+      if (part > kMaxRipple && part > kDerivedFactor * derived.ripple(*lifted)) return lifted;
     }
     return nullptr;
   }
@@ -156,90 +158,80 @@ bool described(const Loop& loop, const Load& load) {
   return place >= half && !(loop.loads[place] == loop.loads[place - half]);
 }
 
+/// Returns "lifted (0.01 kg·m²)".
+std::string load_words(const Loop& loop, const Load& load) {
+  return formatted("%s (%.3g kg·m²%s)", load.name, load.load.inertia,
+                   described(loop, load) ? " by the description" : "");
+}
+
 std::string unstable_message(const Loop& loop, const Loop& derived, const std::string& joint, const Load& load) {
   const WheelLoopGains& gains = loop.gains;
-  std::ostringstream text;
-  text.precision(3);
-  text << program_of(Role::kController) << ": pid_kp " << gains.kp << ", pid_ki " << gains.ki << ", pid_kd " << gains.kd
-       << ", tracking_bandwidth " << loop.bandwidth << " Hz at " << std::lround(1 / loop.period)
-       << " Hz: the loop of joint '" << joint << "' is unstable with the wheel " << load.name << " ("
-       << load.load.inertia << " kg·m²" << (described(loop, load) ? " by the description" : "") << "): spectral radius "
-       << loop.radius(load) << ", must be < 1. ";
+  const std::string problem = formatted(
+      "%s: pid_kp %.3g, pid_ki %.3g, pid_kd %.3g, tracking_bandwidth %.3g Hz at %ld Hz: the loop of joint '%s' is "
+      "unstable with the wheel %s: spectral radius %.3g, must be < 1. ",
+      kController, gains.kp, gains.ki, gains.kd, loop.bandwidth, std::lround(1 / loop.period), joint.c_str(),
+      load_words(loop, load).c_str(), loop.radius(load));
   const double part = stable_part(loop, derived);
-  if (part > 0) {
-    text << "Use at most pid_kp " << part * gains.kp << ", pid_ki " << part * part * gains.ki << ", pid_kd "
-         << part * gains.kd << ", or leave pid_kp and pid_ki out: then they are derived from the robot.";
-  } else {
-    text
-        << "No smaller gains of this proportion are stable: lower pid_ki or pid_kd against pid_kp, or leave pid_kp and "
+  if (part <= 0) {
+    return problem +
+           "No smaller gains of this proportion are stable: lower pid_ki or pid_kd against pid_kp, or leave pid_kp and "
            "pid_ki out: then they are derived from the robot.";
   }
-  return text.str();
+  return problem +
+         formatted(
+             "Use at most pid_kp %.3g, pid_ki %.3g, pid_kd %.3g, or leave pid_kp and pid_ki out: then they are "
+             "derived from the robot.",
+             part * gains.kp, part * part * gains.ki, part * gains.kd);
 }
 
 std::string underdamped_message(const Loop& loop, const Loop& derived, const std::string& joint, const Load& load) {
-  std::ostringstream text;
-  text.precision(3);
-  text << program_of(Role::kController) << ": pid_kp " << loop.gains.kp << ", pid_ki " << loop.gains.ki << ", pid_kd "
-       << loop.gains.kd << ", tracking_bandwidth " << loop.bandwidth << " Hz: the loop of joint '" << joint
-       << "' oscillates with the wheel " << load.name << " (" << load.load.inertia << " kg·m²"
-       << (described(loop, load) ? " by the description" : "") << "): damping ratio " << loop.damping(load)
-       << ", must be at least " << Loop::least_damping(derived, load) << ". ";
-  if (const double limit = damped_ki(loop, derived); limit > 0) {
-    text << "Use at most pid_ki " << limit;
-  } else {
-    text << "Lower pid_kp and pid_kd, or bring tracking_bandwidth nearer to " << derived.bandwidth << " Hz";
-  }
-  text << "; or leave them out: then they are derived from the robot.";
-  return text.str();
+  const double limit = damped_ki(loop, derived);
+  return formatted(
+             "%s: pid_kp %.3g, pid_ki %.3g, pid_kd %.3g, tracking_bandwidth %.3g Hz: the loop of joint '%s' oscillates "
+             "with the wheel %s: damping ratio %.3g, must be at least %.3g. ",
+             kController, loop.gains.kp, loop.gains.ki, loop.gains.kd, loop.bandwidth, joint.c_str(),
+             load_words(loop, load).c_str(), loop.damping(load), Loop::least_damping(derived, load)) +
+         (limit > 0 ? formatted("Use at most pid_ki %.3g", limit)
+                    : formatted("Lower pid_kp and pid_kd, or bring tracking_bandwidth nearer to %.3g Hz",
+                                derived.bandwidth)) +
+         "; or leave them out: then they are derived from the robot.";
 }
 
 std::string oscillation_message(const Loop& loop, const Loop& derived, const std::string& joint, const Load& load) {
-  std::ostringstream text;
-  text.precision(3);
-  text << program_of(Role::kController) << ": pid_kp " << loop.gains.kp << ", pid_kd " << loop.gains.kd
-       << ", tracking_bandwidth " << loop.bandwidth << " Hz: behind an encoder of " << kCounts
-       << " counts the torque of joint '" << joint << "' oscillates by " << loop.ripple(load)
-       << " of its limit, RMS, with the wheel " << load.name << " (" << load.load.inertia << " kg·m²"
-       << (described(loop, load) ? " by the description" : "") << "), must be at most " << kMaxRipple
-       << ". Lower tracking_bandwidth, derived are " << derived.bandwidth
-       << " Hz, or pid_kp and pid_kd; or leave them out: then they are derived from the robot.";
-  return text.str();
+  return formatted(
+      "%s: pid_kp %.3g, pid_kd %.3g, tracking_bandwidth %.3g Hz: behind an encoder of %d counts the torque of joint "
+      "'%s' oscillates by %.3g of its limit, RMS, with the wheel %s, must be at most %.3g. Lower tracking_bandwidth, "
+      "derived are %.3g Hz, or pid_kp and pid_kd; or leave them out: then they are derived from the robot.",
+      kController, loop.gains.kp, loop.gains.kd, loop.bandwidth, kCounts, joint.c_str(), loop.ripple(load),
+      load_words(loop, load).c_str(), kMaxRipple, derived.bandwidth);
 }
 
 std::string tracking_message(double bandwidth, double limit, double period) {
-  std::ostringstream text;
-  text.precision(3);
-  text << program_of(Role::kController) << ".tracking_bandwidth = " << bandwidth << " Hz: must be at most " << limit
-       << " Hz, " << kMaxTracking << " of the rate of " << std::lround(1 / period)
-       << " Hz: above, wheel speeds follow the encoder's counts. Leave it out: then it is derived from the rate.";
-  return text.str();
+  return formatted(
+      "%s.tracking_bandwidth = %.3g Hz: must be at most %.3g Hz, %.3g of the rate of %ld Hz: above, wheel speeds "
+      "follow the encoder's counts. Leave it out: then it is derived from the rate.",
+      kController, bandwidth, limit, kMaxTracking, std::lround(1 / period));
 }
 
 std::string weak_message(const std::string& key, double value, double derived, const char* unit) {
-  std::ostringstream text;
-  text.precision(3);
-  text << program_of(Role::kController) << "." << key << " = " << value << " " << unit << ": must be at least "
-       << kMinShare * derived << " " << unit << ", a tenth of what is derived from the robot: below, the wheels follow "
-       << "feed_forward alone. Raise it, or leave it out: then it is derived.";
-  return text.str();
+  return formatted(
+      "%s.%s = %.3g %s: must be at least %.3g %s, a tenth of what is derived from the robot: below, the wheels follow "
+      "feed_forward alone. Raise it, or leave it out: then it is derived.",
+      kController, key.c_str(), value, unit, kMinShare * derived, unit);
 }
 
 std::string powerless_message(const JointModel& joint, const DriveTrain& robot) {
-  std::ostringstream text;
-  text << "joint '" << joint.name << "': effort limit " << joint.effort_limit
-       << " N·m, must be > 0: the wheel could not be driven. Set <limit effort=…> in " << robot.source
-       << ", or robot.wheel_effort_limit.";
-  return text.str();
+  return "joint '" + joint.name + "'" + formatted(": effort limit %g N·m", joint.effort_limit) +
+         ", must be > 0: the wheel could not be driven. Set <limit effort=…> in " + robot.source +
+         ", or robot.wheel_effort_limit.";
 }
 
 void add_unused_gains(const DriveControllerParameters& parameters, std::vector<std::string>& problems) {
   const auto add = [&](const char* key, double value) {
-    std::ostringstream text;
-    text << program_of(Role::kController) << "." << key << " = " << value
-         << ": has no effect with robot.wheel_command: velocity, because the drives close the wheel loops. Leave it "
-            "out, or set robot.wheel_command to torque.";
-    problems.push_back(text.str());
+    problems.push_back(
+        formatted("%s.%s = %g: has no effect with robot.wheel_command: velocity, because the drives close the wheel "
+                  "loops. Leave it out, or set robot.wheel_command to torque.",
+                  kController, key, value));
   };
   if (parameters.pid_kp) add("pid_kp", *parameters.pid_kp);
   if (parameters.pid_ki) add("pid_ki", *parameters.pid_ki);

@@ -4,14 +4,16 @@
 #include <cmath>
 #include <limits>
 #include <optional>
-#include <sstream>
 
 #include "control/wheeled/kinematics.h"
+#include "signals/formatted_text.h"
 #include "signals/roles.h"
 
 namespace robot_control {
 
 namespace {
+
+constexpr const char* kProgram = program_of(Role::kController).data();
 
 /// Holds one value of feed_forward and the value of the URDF.
 struct MeasuredValue {
@@ -27,20 +29,17 @@ void check_plausible(const MeasuredValue& value, std::vector<std::string>& probl
       (*value.given <= value.max_factor * value.described && value.described <= value.max_factor * *value.given)) {
     return;
   }
-  std::ostringstream text;
-  text.precision(4);
-  text << program_of(Role::kController) << ".feed_forward." << value.key << " = " << *value.given << " " << value.unit
-       << ": "
-       << "the description says " << value.described << " " << value.unit << "; more than " << value.max_factor
-       << " times either way is taken for a typing error. Correct the one or the other.";
-  problems.push_back(text.str());
+  problems.push_back(formatted(
+      "%s.feed_forward.%s = %.4g %s: the description says %.4g %s; more than %.4g times either way is taken for a "
+      "typing error. Correct the one or the other.",
+      kProgram, value.key, *value.given, value.unit, value.described, value.unit, value.max_factor));
 }
 
 /// Checks the torque that the joints take at full speed against the motors' torque and the description.
 void check_joint_losses(const DriveControllerParameters& parameters, const DriveTrain& robot,
                         std::vector<std::string>& problems) {
-  constexpr double kPart = 0.25;  // of the effort limit: half of what a worm gear loses at full load
-  constexpr double kTimes = 2;    // of the described value
+  constexpr double kEffortShare = 0.25;   // of the effort limit: half of what a worm gear loses at full load
+  constexpr double kDescribedFactor = 2;  // of the described value
   const DriveKinematics kinematics(robot);
   const double linear = parameters.max_linear_speed;
   const double angular = parameters.max_angular_speed;
@@ -52,18 +51,18 @@ void check_joint_losses(const DriveControllerParameters& parameters, const Drive
   for (const WheelModel& wheel : robot.wheels) {
     const JointModel& joint = robot.joints[wheel.joint];
     const double speed = std::ranges::max(speeds, {}, [](double value) { return std::abs(value); });
-    max_damping = std::min(max_damping, std::max(kTimes * joint.damping, kPart * joint.effort_limit / std::abs(speed)));
-    max_friction = std::min(max_friction, std::max(kTimes * joint.friction, kPart * joint.effort_limit));
+    max_damping = std::min(
+        max_damping, std::max(kDescribedFactor * joint.damping, kEffortShare * joint.effort_limit / std::abs(speed)));
+    max_friction =
+        std::min(max_friction, std::max(kDescribedFactor * joint.friction, kEffortShare * joint.effort_limit));
   }
   const auto check = [&](const char* key, const char* unit, const std::optional<double>& given, double limit,
                          const char* why) {
     if (!given || *given <= limit) return;
-    std::ostringstream text;
-    text.precision(4);
-    text << program_of(Role::kController) << ".feed_forward." << key << " = " << *given << " " << unit
-         << ": plausible for this robot are 0 … " << limit << " " << unit << ", " << why
-         << ", or twice what the description says. Where it really is more, say so in the URDF (<dynamics>).";
-    problems.push_back(text.str());
+    problems.push_back(formatted(
+        "%s.feed_forward.%s = %.4g %s: plausible for this robot are 0 … %.4g %s, %s, or twice what the description "
+        "says. Where it really is more, say so in the URDF (<dynamics>).",
+        kProgram, key, *given, unit, limit, unit, why));
   };
   check("wheel_damping", "N·m·s/rad", parameters.feed_forward.wheel_damping, max_damping,
         "a quarter of the wheel's torque limit at the fastest wheel speed of these limits");

@@ -1,8 +1,8 @@
 #include "drivers/board/board_driver.h"
 
-#include <algorithm>
 #include <cmath>
-#include <sstream>
+
+#include "signals/formatted_text.h"
 
 namespace robot_control {
 namespace {
@@ -50,11 +50,10 @@ BoardDriver::BoardDriver(const BoardParameters& parameters, std::span<const Brak
       parameters_(parameters),
       load_(line_load(parameters.wheels.size(), period, parameters.line.bit_rate)) {
   if (load_ > kMaxLineLoad) {
-    std::ostringstream text;
-    text << "a line of " << parameters.line.bit_rate << " bit/s carries the messages of this board at "
-         << std::floor(kMaxLineLoad / load_ / period) << " Hz at most, and robot.rate is " << std::round(1 / period)
-         << " Hz: raise board.bit_rate here and in the board, or lower robot.rate";
-    throw DriverError(text.str());
+    throw DriverError("a line of " + std::to_string(parameters.line.bit_rate) +
+                      formatted(" bit/s carries the messages of this board at %g Hz at most, and robot.rate is %g Hz: "
+                                "raise board.bit_rate here and in the board, or lower robot.rate",
+                                std::floor(kMaxLineLoad / load_ / period), std::round(1 / period)));
   }
   for (std::size_t i = 0; i < wheels_.size(); ++i) laws_.emplace_back(brakes[i], parameters.wheels[i].torque_limit);
   max_age_ns_ = static_cast<std::int64_t>(parameters.line.max_silence) * period_ns_;
@@ -232,13 +231,11 @@ void BoardDriver::stop() noexcept {
 
 std::string BoardDriver::description() const {
   const std::uint64_t firmware = published().firmware;
-  std::ostringstream text;
-  text << "board on " << line_->name() << ", protocol " << int{BOARD_PROTOCOL};
-  if (firmware != 0) text << ", firmware " << firmware;
-  if (load_ > 0) text << ", load of the line " << std::lround(100 * load_) << " %";
-  text << (parameters_.takes_speeds ? ", takes speeds" : ", takes torques") << "; on silence it "
-       << described(parameters_.line.on_silence) << " (stated in the drive file)";
-  return text.str();
+  std::string text = "board on " + line_->name() + ", protocol " + std::to_string(BOARD_PROTOCOL);
+  if (firmware != 0) text += ", firmware " + std::to_string(firmware);
+  if (load_ > 0) text += ", load of the line " + std::to_string(std::lround(100 * load_)) + " %";
+  return text + (parameters_.takes_speeds ? ", takes speeds" : ", takes torques") + "; on silence it " +
+         described(parameters_.line.on_silence) + " (stated in the drive file)";
 }
 
 std::string BoardDriver::warning() const {

@@ -1,8 +1,7 @@
 #include "drivers/cia402/cia402_drive.h"
 
-#include <cstdio>
-
 #include "drivers/wrapped_count.h"
+#include "signals/formatted_text.h"
 
 namespace robot_control::cia402 {
 namespace {
@@ -27,9 +26,7 @@ std::int64_t value_of(const Pdo& pdo, const std::array<std::int64_t, canopen::kM
 }
 
 std::string hexadecimal(std::uint64_t value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "0x%04llX", static_cast<unsigned long long>(value));
-  return text;
+  return formatted("0x%04llX", static_cast<unsigned long long>(value));
 }
 
 }  // namespace
@@ -291,12 +288,9 @@ std::string Cia402Drive::code_words(const DriveStatus& status) const {
       if (status.code == 0) return "";
       return "(" + hexadecimal(status.code) + ": " + canopen::abort_words(static_cast<std::uint32_t>(status.code)) +
              ")";
-    case DriveCause::kSetup: {
-      char text[32];
-      std::snprintf(text, sizeof text, "%04llX:%02llX", static_cast<unsigned long long>(status.code >> 8U),
-                    static_cast<unsigned long long>(status.code & 0xFFU));
-      return text;
-    }
+    case DriveCause::kSetup:
+      return formatted("%04llX:%02llX", static_cast<unsigned long long>(status.code >> 8U),
+                       static_cast<unsigned long long>(status.code & 0xFFU));
     default:
       return status.code == 0 ? "" : hexadecimal(status.code);
   }

@@ -15,7 +15,6 @@
 /// stable below d h / J = 0.6. Half of that is recommended.
 
 #include <array>
-#include <functional>
 #include <span>
 #include <string>
 #include <vector>

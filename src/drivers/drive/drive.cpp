@@ -142,7 +142,7 @@ void Drive::accept_motor_torque(double torque, std::int64_t now_ns) noexcept {
   if (!std::isfinite(torque)) return fail(DriveCause::kNotFinite);
   const double measured = torque / to_joint_;
   const auto [lowest, highest] = std::ranges::minmax(ordered_);
-  const double tolerance = kFollows * drive_.torque_limit;
+  const double tolerance = kEffortTolerance * drive_.torque_limit;
   follows_ = drive_.effort_is_rare && lowest - tolerance <= measured && measured <= highest + tolerance;
   if (!follows_) sample_.joint.effort = measured;
   sample_.effort_valid = true;

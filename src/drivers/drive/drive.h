@@ -64,11 +64,11 @@ class FrameBatch {
 
 /// Some drives measure the torque more rarely than in each cycle (`effort_is_rare`). The effort of their samples is the
 /// torque that was ordered in the last cycle. This holds while the last measurement lay among the orders of kOrders
-/// cycles, with a tolerance of kFollows times the limit. Otherwise the effort is that measurement.
+/// cycles, with a tolerance of kEffortTolerance times the limit. Otherwise the effort is that measurement.
 class Drive : public DriveStateMachine {
  public:
   static constexpr std::size_t kOrders = 8;
-  static constexpr double kFollows = 0.1;
+  static constexpr double kEffortTolerance = 0.1;
   static constexpr unsigned kMaxClears = 3;  ///< requests; all are lost once in 10⁴ at a loss of 5 %
 
   /// `period` is that of the loop in s.

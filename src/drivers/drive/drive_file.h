@@ -3,7 +3,6 @@
 /// per joint. Each drive of drive_table.def has its own, with its keys and the rules across them. It is read by
 /// drivers/table/read_drive_file.h, and makes the driver.
 
-#include <cstdint>
 #include <functional>
 #include <limits>
 #include <memory>

@@ -1,6 +1,6 @@
 #include "drivers/drive/drive_status.h"
 
-#include <cstdio>
+#include "signals/formatted_text.h"
 
 namespace robot_control {
 namespace {
@@ -45,12 +45,6 @@ static_assert(std::size(kCauseWords) == static_cast<std::size_t>(DriveCause::kNo
 
 constexpr const char* kStateWords[] = {"starting", "ready", "running", "fault"};
 
-std::string number_words(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.4g", value);
-  return text;
-}
-
 }  // namespace
 
 std::string status_words(const std::string& name, const DriveStatus& status, const std::string& code) {
@@ -61,7 +55,7 @@ std::string status_words(const std::string& name, const DriveStatus& status, con
   if (*status.subject != '\0') text += std::string(" ") + status.subject;
   if (!code.empty()) text += " " + code;
   if (status.found != status.expected) {
-    text += ", " + number_words(status.found) + " instead of " + number_words(status.expected);
+    text += formatted(", %.4g instead of %.4g", status.found, status.expected);
   }
   return *cause.remedy == '\0' ? text : text + "; " + cause.remedy;
 }

@@ -3,7 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
+
+#include "signals/formatted_text.h"
 
 namespace robot_control {
 namespace {
@@ -138,19 +139,12 @@ std::optional<std::string> bus_load_problem(std::span<const PlannedFrames> plan,
   if (load <= kMaxBusLoad) return std::nullopt;
   const Bits bits = bits_of(plan);
   const double fits = bits.per_cycle > 0 ? std::floor((kMaxBusLoad * bit_rate - bits.per_second) / bits.per_cycle) : 0;
-  char text[256];
-  int length = std::snprintf(
-      text, sizeof text,
+  const std::string problem = formatted(
       "the planned frames load the bus with %.0f %% of %.0f kbit/s at a robot.rate of %g Hz, more than %.0f %%: ",
       100 * load, bit_rate / 1000, rate, 100 * kMaxBusLoad);
-  const auto room = sizeof text - static_cast<std::size_t>(length);
-  if (fits >= min_rate) {
-    std::snprintf(text + length, room, "set robot.rate to at most %.0f", fits);
-  } else {
-    std::snprintf(text + length, room, "no robot.rate fits; set a bit rate of at least %.0f kbit/s, or use two buses",
-                  std::ceil((bits.per_cycle * min_rate + bits.per_second) / kMaxBusLoad / 1000));
-  }
-  return text;
+  if (fits >= min_rate) return problem + formatted("set robot.rate to at most %.0f", fits);
+  return problem + formatted("no robot.rate fits; set a bit rate of at least %.0f kbit/s, or use two buses",
+                             std::ceil((bits.per_cycle * min_rate + bits.per_second) / kMaxBusLoad / 1000));
 }
 
 }  // namespace robot_control

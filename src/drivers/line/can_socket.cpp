@@ -12,7 +12,6 @@
 
 #include <cerrno>
 #include <cstring>
-#include <utility>
 
 #include "drivers/driver.h"
 #include "files/message_text.h"

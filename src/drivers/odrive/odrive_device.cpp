@@ -8,7 +8,6 @@
 #include "drivers/odrive/odrive_errors.h"
 #include "drivers/odrive/odrive_messages_05.h"
 #include "drivers/odrive/odrive_messages_06.h"
-#include "drivers/odrive/odrive_parameters.h"
 
 namespace robot_control {
 namespace {
@@ -19,7 +18,7 @@ constexpr double kVelocityGain = 0.16 / kTurn;  // N·m/(rad/s), the maker's def
 constexpr double kVelocityTolerance = 1.2;      // of the limit, the maker's default
 constexpr double kSupply = 24;                  // V
 constexpr double kLowSupply = 8;
-constexpr double kCool = 35;  // °C
+constexpr double kAmbientTemperature = 35;  // °C
 constexpr double kHotMotor = 120;
 constexpr std::uint32_t kMissingEstimate06 = 0x8, kEncoderFailed05 = 0x100, kMotorFailed05 = 0x40;
 constexpr std::uint32_t kVelocityLimit06 = 0x8000, kControllerFailed05 = 0x200, kOverspeed05 = 0x1;
@@ -164,7 +163,8 @@ void OdriveDevice::receive_request(const can_frame& frame) {
   if (requests<v06::Error>(frame)) send(v06::Error{.active = error_, .disarm_reason = disarm_reason_});
   if (requests<v06::Torques>(frame)) send_torques();
   if (requests<v06::Temperature>(frame)) {
-    send(v06::Temperature{.transistors = kCool, .motor = fault() == DeviceFault::kHot ? kHotMotor : kCool});
+    send(v06::Temperature{.transistors = kAmbientTemperature,
+                          .motor = fault() == DeviceFault::kHot ? kHotMotor : kAmbientTemperature});
   }
 }
 

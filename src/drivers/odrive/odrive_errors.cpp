@@ -1,7 +1,6 @@
 #include "drivers/odrive/odrive_errors.h"
 
-#include <cstdio>
-#include <span>
+#include "signals/formatted_text.h"
 
 namespace robot_control::odrive {
 namespace {
@@ -113,11 +112,7 @@ std::string error_names(ErrorKind kind, std::uint64_t error) {
     text += text.empty() ? named.name : std::string(" ") + named.name;
     error &= ~named.bit;
   }
-  if (error != 0) {
-    char rest[32];
-    std::snprintf(rest, sizeof rest, "%s0x%llX", text.empty() ? "" : " ", static_cast<unsigned long long>(error));
-    text += rest;
-  }
+  if (error != 0) text += formatted("%s0x%llX", text.empty() ? "" : " ", static_cast<unsigned long long>(error));
   return text;
 }
 

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <sstream>
 
 namespace robot_control {
 namespace {
@@ -75,7 +74,7 @@ void RoboclawDriver::take_bytes() noexcept {
   pending_ = false;
   unanswered_ = pauses ? 0 : unanswered_ + 1;
   if (unanswered_ == kRepeats) ordered_ = false;
-  if (std::ranges::find(kSlow, command_) != kSlow.end()) ++turn_;  // a board may lack it
+  if (std::ranges::find(kSlowReadings, command_) != kSlowReadings.end()) ++turn_;  // a board may lack it
   ++link_.lost;
   if (received_.size() == 0) return;
   ++link_.errors;
@@ -187,7 +186,8 @@ bool RoboclawDriver::counts_are_trusted() const noexcept {
 RoboclawDriver::Command RoboclawDriver::next() const noexcept {
   if (!ordered_) return counts_are_trusted() ? Command::kSpeeds : Command::kDuties;
   if (status().state == DrivePhase::kStarting) return setup_ < kSetup.size() ? kSetup[setup_] : Command::kEncoders;
-  return turn_ % kSlowEvery == kSlowEvery - 1 ? kSlow[turn_ / kSlowEvery % kSlow.size()] : Command::kEncoders;
+  return turn_ % kSlowEvery == kSlowEvery - 1 ? kSlowReadings[turn_ / kSlowEvery % kSlowReadings.size()]
+                                              : Command::kEncoders;
 }
 
 void RoboclawDriver::request(Command command) noexcept {
@@ -214,10 +214,9 @@ void RoboclawDriver::write(std::span<const JointCommand> commands) noexcept {
 }
 
 std::string RoboclawDriver::description() const {
-  std::ostringstream text;
-  text << "RoboClaw on " << line_->name() << ", takes speeds, its serial timeout is " << kTimeoutNs / 1'000'000
-       << " ms; on silence it " << described(parameters_.line.on_silence) << " (stated in the drive file)";
-  return text.str();
+  return "RoboClaw on " + line_->name() + ", takes speeds, its serial timeout is " +
+         std::to_string(kTimeoutNs / 1'000'000) + " ms; on silence it " + described(parameters_.line.on_silence) +
+         " (stated in the drive file)";
 }
 
 std::string RoboclawDriver::warning() const {

@@ -72,7 +72,7 @@ class RoboclawDriver final : public SerialDriver<RoboclawWheel> {
   static constexpr std::array kSetup{Command::kVersion,    Command::kVelocityPid1, Command::kVelocityPid2,
                                      Command::kSetTimeout, Command::kGetTimeout,   Command::kEncoders,
                                      Command::kEncoders};
-  static constexpr std::array kSlow{Command::kBattery, Command::kTemperature, Command::kStatus};
+  static constexpr std::array kSlowReadings{Command::kBattery, Command::kTemperature, Command::kStatus};
 
   void begin() noexcept override;
   bool receive() noexcept override;

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 #include "drivers/wrapped_count.h"
+#include "signals/formatted_text.h"
 
 namespace robot_control::vesc {
 namespace {
@@ -155,9 +155,7 @@ can_frame VescDrive::brake(const DriveCommand& command) const noexcept {
 
 std::string VescDrive::code_words(const DriveStatus& status) const {
   if (status.cause != DriveCause::kForeignCommander) return "";
-  char text[16];
-  std::snprintf(text, sizeof text, "0x%llX", static_cast<unsigned long long>(status.code));
-  return text;
+  return formatted("0x%llX", static_cast<unsigned long long>(status.code));
 }
 
 }  // namespace robot_control::vesc

@@ -44,7 +44,7 @@ struct Tuning {
 
   // These constants are time scales.
 
-  static constexpr std::array<double, 4> kResidualSpans{0.1, 0.2, 0.4, 0.8};  ///< s: T of slip_residual.h
+  static constexpr std::array<double, 4> kResidualSpans{0.1, 0.2, 0.4, 0.8};  ///< s: T of slip_detector.h
   static constexpr double kPointInterval = 0.05;  ///< s between two points of the differences: half the shortest T
   static constexpr double kBlock = 1.0;           ///< s between comparisons of wheels and gyro; memory of confidences
   static constexpr std::uint64_t kMaxHeld = 4;    ///< cycles or readings, the life of a command (gate/gate.h)

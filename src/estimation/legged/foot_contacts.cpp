@@ -33,18 +33,18 @@ FootContacts::FootContacts(const LegModel& robot) : dynamics_(robot), share_(dyn
 
 void FootContacts::step(const SensorFrame& sensors, const FeetMotion& feet, const Vector3d& rate, const Vector3d& force,
                         const Vector3d& up, double dt, State& state) const noexcept {
-  const double gain = state.begun != 0 ? dt / (kObserve + dt) : 1;
+  const double gain = state.begun != 0 ? dt / (kObserverTime + dt) : 1;
   state.begun = 1;
   LeggedMotion motion{.angles = feet.angles, .angular = rate};
   LeggedAcceleration change;
   for (std::size_t i = 0; i < kLegsJoints; ++i) {
     state.rates[i] += gain * (feet.rates[i] - state.rates[i]);
     state.efforts[i] += gain * (valid_effort(sensors.joints[i]) - state.efforts[i]);
-    change.joints[i] = (feet.rates[i] - state.rates[i]) / kObserve;
+    change.joints[i] = (feet.rates[i] - state.rates[i]) / kObserverTime;
   }
   Map(state.angular.data()) += gain * (rate - ConstMap(state.angular.data()));
   Map(state.force.data()) += gain * (force - ConstMap(state.force.data()));
-  change.angular = (rate - ConstMap(state.angular.data())) / kObserve;
+  change.angular = (rate - ConstMap(state.angular.data())) / kObserverTime;
   motion.rates = state.rates;
   motion.gravity = -ConstMap(state.force.data());
   const bool measured = all_measured(sensors);

@@ -2,12 +2,12 @@
 /// Estimates what each foot bears, and whether it bears.
 ///
 /// load   fᵢ = u·Fᵢ, u upwards, F the measured force where all feet have force sensors. Else F follows from the joints'
-///        efforts. With the needed efforts M a + h of a leg in the air, and the low pass L of kObserve,
+///        efforts. With the needed efforts M a + h of a leg in the air, and the low pass L of kObserverTime,
 ///
-///          Fᵢ = Jᵢ⁻ᵀ (M a + h − L τ)ᵢ,    q̈ = (q̇ − L q̇)/kObserve, and the same of ω;   Rᵀp̈ − g = L (specific force)
+///          Fᵢ = Jᵢ⁻ᵀ (M a + h − L τ)ᵢ,    q̈ = (q̇ − L q̇)/kObserverTime, and the same of ω;   Rᵀp̈ − g = L (specific force)
 ///
-///        (q̇ − L q̇)/kObserve is L of the derivative. So this is the observer of the legs' momentum for legs whose mass
-///        matrix hardly changes within kObserve (A. De Luca, R. Mattone, ICRA 2005).
+///        (q̇ − L q̇)/kObserverTime is L of the derivative. So this is the observer of the legs' momentum for legs whose mass
+///        matrix hardly changes within kObserverTime (A. De Luca, R. Mattone, ICRA 2005).
 /// bears  the probability pᵢ of a contact, with the share of the load x = fᵢ/(m g/4):
 ///
 ///          p = ½ + (x − bound)/kBlur within 0 … 1
@@ -16,7 +16,7 @@
 ///        kNotAsked where it asked none. While others are asked to, a foot that no longer is does not bear for kLift,
 ///        because its load ends in the low pass alone.
 ///
-/// kObserve follows from encoders of 4096 counts per turn, whose speed has steps of 1.5 rad/s.
+/// kObserverTime follows from encoders of 4096 counts per turn, whose speed has steps of 1.5 rad/s.
 
 #include <Eigen/Core>
 #include <array>
@@ -33,8 +33,8 @@ bool feet_asked(const SensorFrame& sensors) noexcept;
 
 class FootContacts {
  public:
-  static constexpr double kObserve = 0.012;  ///< s
-  static constexpr double kLift = 0.04;      ///< s
+  static constexpr double kObserverTime = 0.012;  ///< s
+  static constexpr double kLift = 0.04;           ///< s
   static constexpr double kAsked = 0.15;
   static constexpr double kNotAsked = 0.35;
   static constexpr double kSwings = 0.8;

@@ -133,7 +133,7 @@ void LeggedEstimator::step(const SensorFrame& sensors, StateFrame& out) noexcept
     }
     const PlainLegs::Input input{.rate = ConstMap(state_.rate.data()),
                                  .force = ConstMap(state_.force.data()),
-                                 .at_rest = state_.still > kRest,
+                                 .at_rest = state_.still > kRestTime,
                                  .asked = feet_asked(sensors),
                                  .dt = dt};
     PlainLegs::turn(input, state_.plain);
@@ -156,12 +156,12 @@ bool LeggedEstimator::read(const SensorFrame& sensors, double dt) noexcept {
   if (gyro) Map(state_.rate.data()) = rate;
   if (gyro) mean += std::min(1.0, dt / kMeanTime) * (rate - mean);
   const bool measured = joints_have(sensors, kLegsJoints, kValidMotion);
-  bool moves = !gyro || !measured || (rate - mean).cwiseAbs().maxCoeff() > kStill ||
+  bool moves = !gyro || !measured || (rate - mean).cwiseAbs().maxCoeff() > kRestRate ||
                (mean - ConstMap(state_.filter.rate_bias.data())).cwiseAbs().maxCoeff() > kMaxBias;
   for (std::size_t i = 0; i < kLegsJoints; ++i) {
     double& joint = state_.mean_rates[i];
     joint += std::min(1.0, dt / kMeanTime) * (valid_velocity(sensors.joints[i]) - joint);
-    moves = moves || std::abs(joint) > kStill;
+    moves = moves || std::abs(joint) > kRestRate;
   }
   state_.still = moves ? 0 : state_.still + dt;
   if (accelerometer) Map(state_.force.data()) = force;
@@ -192,7 +192,7 @@ void LeggedEstimator::filter(const SensorFrame& sensors, const FeetMotion& feet,
     state_.bears[leg] = stand[leg] ? 1 : 0;
   }
   const double once = std::sqrt(0.001 / dt);
-  if (state_.still > kRest) {
+  if (state_.still > kRestTime) {
     filter.rest(ConstMap(state_.rate.data()), kRestRate * once);
     filter.stop(kRestSpeed * once);
   } else if (stand == std::array<bool, kLegs>{} && joints_have(sensors, kLegsJoints, kValidMotion) &&
@@ -211,7 +211,7 @@ void LeggedEstimator::settle(const SensorFrame& sensors) noexcept {
   }
   if (count == 0 && !feet_asked(sensors)) {
     state_.lay = 1;
-    if (state_.still > kRest) set_height(0);
+    if (state_.still > kRestTime) set_height(0);
   }
   if (count == 0 || state_.lay == 0) return;
   state_.lay = 0;
@@ -223,9 +223,9 @@ void LeggedEstimator::settle(const SensorFrame& sensors) noexcept {
 void LeggedEstimator::compare(double dt) noexcept {
   const Vector3d plain = ConstMap(state_.plain.velocity.data());
   state_.degraded = std::max(0.0, state_.degraded - dt);
-  const bool apart = (velocity() - plain).norm() > kApart;
+  const bool apart = (velocity() - plain).norm() > kMaxDivergence;
   state_.apart = apart ? state_.apart + dt : 0;
-  if (state_.apart < kApartTime) return;
+  if (state_.apart < kDivergenceTime) return;
   state_.apart = 0;
   state_.degraded = kDegraded;
   const Quaterniond turn(
@@ -251,7 +251,7 @@ void LeggedEstimator::write(const SensorFrame& sensors, const FeetMotion& feet, 
   base.distance = state_.distance;
   if (state_.degraded > 0) base.degraded = kDegradedPosition;
   base.flags = (state_.begun != 0 ? std::uint64_t{kStateValid} : 0) | (good ? 0 : std::uint64_t{kStateBadSample}) |
-               (state_.still > kRest ? std::uint64_t{kStateStandstill} : 0) |
+               (state_.still > kRestTime ? std::uint64_t{kStateStandstill} : 0) |
                (state_.degraded > 0 ? std::uint64_t{kStateDegraded} : 0);
   out.contact_count = kLegs;
   for (std::size_t leg = 0; leg < kLegs; ++leg) {

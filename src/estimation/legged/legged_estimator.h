@@ -3,12 +3,12 @@
 /// state.
 ///
 ///   contacts   foot_contacts.h: what each foot bears, and how probably
-///   rest       nothing moves: joints slower than kStill in the mean over kMeanTime, and a gyro within kStill about it,
-///              for kRest
+///   rest       nothing moves: joints slower than kRestRate in the mean over kMeanTime, and a gyro within kRestRate about it,
+///              for kRestTime
 ///   filter     leg_filter.h: feet that bear are landmarks. At rest the gyro measures its bias, and the velocity is
 ///              zero. A robot whose feet neither bear nor are asked to lies, or falls on its body: its velocity
 ///              vanishes
-///   plain      plain_legs.h. Where both velocities differ by more than kApart for kApartTime, the filter begins again
+///   plain      plain_legs.h. Where both velocities differ by more than kMaxDivergence for kDivergenceTime, the filter begins again
 ///              with roll, pitch and velocity of the plain estimate, and the state is degraded for kDegraded
 ///   height     the ground is level where the robot lies: feet that bear after it lay stand where the first ones of the
 ///              run stood. While nothing moves and no foot bears, it lies, at zero. A restarted estimator takes its
@@ -33,13 +33,13 @@ namespace robot_control {
 
 class LeggedEstimator {
  public:
-  static constexpr double kRest = 0.3;       ///< s without motion
-  static constexpr double kStill = 0.05;     ///< rad/s, of gyro and joints
-  static constexpr double kMaxBias = 0.1;    ///< rad/s
-  static constexpr double kMeanTime = 0.1;   ///< s, of the means of gyro and joints
-  static constexpr double kApart = 0.15;     ///< m/s
-  static constexpr double kApartTime = 0.1;  ///< s
-  static constexpr double kDegraded = 1.0;   ///< s
+  static constexpr double kRestTime = 0.3;        ///< s without motion
+  static constexpr double kRestRate = 0.05;       ///< rad/s, of gyro and joints
+  static constexpr double kMaxBias = 0.1;         ///< rad/s
+  static constexpr double kMeanTime = 0.1;        ///< s, of the means of gyro and joints
+  static constexpr double kMaxDivergence = 0.15;  ///< m/s
+  static constexpr double kDivergenceTime = 0.1;  ///< s
+  static constexpr double kDegraded = 1.0;        ///< s
 
   /// `period` is in s.
   LeggedEstimator(const LegModel& robot, double period);

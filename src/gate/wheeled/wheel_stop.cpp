@@ -9,8 +9,8 @@
 namespace robot_control {
 namespace {
 
-constexpr double kPartOfLifting = 0.5;
-constexpr double kAlmostLifting = 0.9;
+constexpr double kLiftingShare = 0.5;
+constexpr double kMaxLiftingShare = 0.9;
 constexpr double kMinPart = 0.1;
 constexpr double kSlopeHeld = 10 * M_PI / 180;
 constexpr double kSlopeBraked = 5 * M_PI / 180;
@@ -24,10 +24,10 @@ Brake wheel_brake(const DriveTrain& robot, std::size_t index, double motor_frict
   double moved = robot.mass;
   for (const WheelModel& other : robot.wheels) moved += other.inertia / (other.radius * other.radius);
   const double lifting = lifting_deceleration(robot);
-  const double half = moved * kPartOfLifting * lifting;
+  const double half = moved * kLiftingShare * lifting;
   const double weight = robot.mass * kGravity;
   const double slope = weight * std::sin(kSlopeHeld);
-  const double almost = std::min(slope, kAlmostLifting * moved * lifting);
+  const double almost = std::min(slope, kMaxLiftingShare * moved * lifting);
   const double friction = joint.friction + motor_friction;
   const auto effort = [&](double force) {
     const double share = force * wheel.radius / static_cast<double>(robot.wheels.size());
@@ -41,9 +41,10 @@ Brake wheel_brake(const DriveTrain& robot, std::size_t index, double motor_frict
 }
 
 std::vector<Brake> brakes_of_slow_drives(const DriveTrain& robot, double period) {
-  constexpr double kLonger = 4.0 / 3;  // 0.4 J/h of wheel_brake becomes 0.3 J/period
+  constexpr double kPeriodFactor = 4.0 / 3;  // 0.4 J/h of wheel_brake becomes 0.3 J/period
   std::vector<Brake> brakes;
-  for (std::size_t i = 0; i < robot.wheels.size(); ++i) brakes.push_back(wheel_brake(robot, i, 0, kLonger * period));
+  for (std::size_t i = 0; i < robot.wheels.size(); ++i)
+    brakes.push_back(wheel_brake(robot, i, 0, kPeriodFactor * period));
   return brakes;
 }
 

@@ -1,10 +1,19 @@
 #include "log/bag/bag_chunk.h"
 
+#include <fcntl.h>
 #include <lz4frame.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
+#include <cstring>
 #include <memory>
 #include <new>
+#include <stdexcept>
+
+#include "files/input_file.h"
+#include "log/bag/bag_error.h"
 
 namespace robot_control {
 namespace {
@@ -22,7 +31,7 @@ std::unique_ptr<LZ4F_dctx, FreeContext> make_context() {
 }  // namespace
 
 void read_bag_chunk(BagFile& file, const BagChunk& chunk, std::string& content) {
-  constexpr std::size_t kPiece = std::size_t{1} << 16U;
+  constexpr std::size_t kReadSize = std::size_t{1} << 16U;
   constexpr std::size_t kGrowth = std::size_t{1} << 20U;
   const auto context = make_context();
   std::uint64_t at = chunk.begin;
@@ -34,7 +43,7 @@ void read_bag_chunk(BagFile& file, const BagChunk& chunk, std::string& content) 
     throw BagError({.offset = place}, field, problem);
   };
   for (bool ended = false; !ended;) {
-    const std::string_view from = file.read(at, std::min<std::uint64_t>(kPiece, end - at), "data");
+    const std::string_view from = file.read(at, std::min<std::uint64_t>(kReadSize, end - at), "data");
     char surplus = 0;
     const bool full = made == chunk.size;
     if (!full && made == content.size()) content.resize(std::min<std::size_t>(chunk.size, made + kGrowth));
@@ -75,6 +84,48 @@ void parse_bag_chunk(std::string_view content, const BagChunk& chunk, const BagC
     }
     at += record.size;
   }
+}
+
+BagFile::BagFile(const std::string& path) {
+  if (const std::string problem = input_file_problem(path, kMaxBag); !problem.empty()) {
+    throw std::runtime_error(problem);
+  }
+  file_ = Descriptor(open(path.c_str(), O_RDONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC));
+  if (!file_.open()) throw std::runtime_error(std::strerror(errno));
+  struct stat status {};
+  if (fstat(file_.number(), &status) != 0 || !S_ISREG(status.st_mode))
+    throw std::runtime_error("is no regular file any more");
+  size_ = static_cast<std::uint64_t>(status.st_size);
+}
+
+std::string_view BagFile::read(std::uint64_t offset, std::size_t count, const std::string& field) {
+  const std::uint64_t available = offset < size_ ? size_ - offset : 0;
+  if (count > available) {
+    throw BagError({.offset = offset}, field,
+                   std::to_string(count) + " bytes, but the file ends after " + std::to_string(available), true);
+  }
+  if (offset < begin_ || offset + count > begin_ + window_.size()) {
+    constexpr std::size_t kReadAhead = std::size_t{4} << 20U;  // a whole bag of a black box, which may be overwritten
+    const std::size_t got =
+        fill(offset, static_cast<std::size_t>(std::min<std::uint64_t>(std::max(count, kReadAhead), available)));
+    if (got < count) throw BagError({.offset = offset + got}, field, "the file became shorter while it was read", true);
+  }
+  return std::string_view(window_).substr(offset - begin_, count);
+}
+
+std::size_t BagFile::fill(std::uint64_t offset, std::size_t count) {
+  begin_ = offset;
+  window_.resize(count);
+  std::size_t got = 0;
+  while (got < count) {
+    const ssize_t more = pread(file_.number(), window_.data() + got, count - got, static_cast<off_t>(offset + got));
+    if (more < 0 && errno == EINTR) continue;
+    if (more < 0) throw BagError({.offset = offset + got}, "data", std::strerror(errno));
+    if (more == 0) break;
+    got += static_cast<std::size_t>(more);
+  }
+  window_.resize(got);
+  return got;
 }
 
 }  // namespace robot_control

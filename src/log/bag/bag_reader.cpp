@@ -157,10 +157,10 @@ std::uint64_t BagReader::read_record(const End& end, std::uint64_t at) {
 /// Returns the begin of the first chunk of a log at `at` or behind it; the size of the file: there is none.
 std::uint64_t BagReader::next_chunk(std::uint64_t at) {
   // log/packed_chunk.cpp writes these fields; the size follows.
-  static constexpr std::string_view kBegin("\x28\0\0\0\x04\0\0\0op=\x05\x0f\0\0\0compression=lz4", 31);
+  static constexpr std::string_view kChunkBegin("\x28\0\0\0\x04\0\0\0op=\x05\x0f\0\0\0compression=lz4", 31);
   constexpr std::uint64_t kWindow = 1 << 16;
-  for (; at + kBegin.size() <= file_.size(); at += kWindow - kBegin.size() + 1) {
-    const std::size_t found = file_.read(at, std::min(kWindow, file_.size() - at), "data").find(kBegin);
+  for (; at + kChunkBegin.size() <= file_.size(); at += kWindow - kChunkBegin.size() + 1) {
+    const std::size_t found = file_.read(at, std::min(kWindow, file_.size() - at), "data").find(kChunkBegin);
     if (found != std::string_view::npos) return at + found;
   }
   return file_.size();

@@ -3,13 +3,11 @@
 #include <sys/resource.h>
 
 #include <algorithm>
-#include <array>
 #include <chrono>
-#include <cstdio>
 #include <filesystem>
 
-#include "log/black_box/saved_black_box.h"
 #include "log/log_error.h"
+#include "signals/formatted_text.h"
 #include "signals/names.h"
 
 namespace robot_control {
@@ -62,12 +60,10 @@ void BlackBoxKeeper::check_size() {
   if (size_checked_ || box_ == nullptr || box_->seconds_added() < kRateKnown) return;
   size_checked_ = true;
   const double held = box_->seconds_held();
-  if (held >= kPromised) return;
-  std::array<char, 200> text{};
-  std::snprintf(
-      text.data(), text.size(), "telemetry.black_box of %.3g GB holds %.0f s of this robot; %.0f s need %.2g GB",
-      static_cast<double>(bytes_) * 1e-9, held, kPromised, static_cast<double>(bytes_) * 1e-9 * 1.1 * kPromised / held);
-  notes_.emplace_back(text.data());
+  if (held >= kMinHeldTime) return;
+  const double gigabytes = static_cast<double>(bytes_) * 1e-9;
+  notes_.push_back(formatted("telemetry.black_box of %.3g GB holds %.0f s of this robot; %.0f s need %.2g GB",
+                             gigabytes, held, kMinHeldTime, gigabytes * 1.1 * kMinHeldTime / held));
 }
 
 BlackBoxKeeper::Outcome BlackBoxKeeper::save(const std::string& ring, IncidentKind kind, const std::string& why,
@@ -90,8 +86,8 @@ BlackBoxKeeper::Outcome BlackBoxKeeper::save(const std::string& ring, IncidentKi
 void BlackBoxKeeper::begin(const std::string& ring, IncidentKind kind, const std::string& why) {
   saving_ = kind == IncidentKind::kStop ? why : "";
   outcome_ = std::async(std::launch::async, [this, ring, kind, why] {
-    constexpr int kLowest = 19;
-    setpriority(PRIO_PROCESS, 0, kLowest);  // this applies to the calling thread alone
+    constexpr int kLowestPriority = 19;
+    setpriority(PRIO_PROCESS, 0, kLowestPriority);  // this applies to the calling thread alone
     return save(ring, kind, why, [this] { return ends_.load(); });
   });
 }
@@ -146,7 +142,7 @@ bool IncidentWatch::update(std::uint64_t causes, std::int64_t now_ns) noexcept {
   causes_ = causes;
   if (stop) {
     if (!pending()) latest_ns_ = now_ns + kMaxDelay;
-    due_ns_ = std::min(now_ns + kAfter, latest_ns_);
+    due_ns_ = std::min(now_ns + kTimeAfterStop, latest_ns_);
   }
   if (stop || pending()) causes_to_save_ |= causes;
   return stop;

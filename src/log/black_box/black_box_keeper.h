@@ -18,14 +18,14 @@
 
 namespace robot_control {
 
-/// A black box is saved `kAfter` after a latched stop. A further stop before that time is saved with it. The delay is
-/// at most `kMaxDelay` after the first stop, so that the rows before that one are still present.
+/// A black box is saved `kTimeAfterStop` after a latched stop. A further stop before that time is saved with it. The
+/// delay is at most `kMaxDelay` after the first stop, so that the rows before that one are still present.
 ///
 /// A stop is latched when causes appear and there were none. Causes in the first update were latched before.
 class IncidentWatch {
  public:
-  static constexpr std::int64_t kAfter = 5'000'000'000;      ///< ns; the oscillation after the stop has ended
-  static constexpr std::int64_t kMaxDelay = 30'000'000'000;  ///< ns; a black box holds a minute or more
+  static constexpr std::int64_t kTimeAfterStop = 5'000'000'000;  ///< ns; the oscillation after the stop has ended
+  static constexpr std::int64_t kMaxDelay = 30'000'000'000;      ///< ns; a black box holds a minute or more
 
   /// `causes` are the present Permit::causes; true: there is a new stop.
   bool update(std::uint64_t causes, std::int64_t now_ns) noexcept;
@@ -49,8 +49,8 @@ class IncidentWatch {
 class BlackBoxKeeper {
  public:
   static constexpr std::int64_t kRetryNs = 10'000'000'000;
-  static constexpr double kPromised = 60;   ///< s of rows; a smaller black box is reported
-  static constexpr double kRateKnown = 10;  ///< s of rows after which the rate is known
+  static constexpr double kMinHeldTime = 60;  ///< s of rows; a smaller black box is reported
+  static constexpr double kRateKnown = 10;    ///< s of rows after which the rate is known
 
   /// Makes a black box of `bytes` in `folder` and keeps the newest `keep` incidents of each kind. Throws LogError.
   BlackBoxKeeper(const std::string& folder, std::size_t bytes, std::size_t keep, LogHeader header);

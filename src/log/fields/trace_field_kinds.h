@@ -7,7 +7,6 @@
 #include <array>
 #include <limits>
 #include <type_traits>
-#include <utility>
 
 #include "log/fields/trace_fields.h"
 #include "log/packed_chunk.h"

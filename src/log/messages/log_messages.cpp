@@ -1,8 +1,6 @@
 #include "log/messages/log_messages.h"
 
 #include <algorithm>
-#include <array>
-#include <cstdio>
 #include <cstring>
 #include <sstream>
 
@@ -10,6 +8,7 @@
 #include "log/messages/message_checksum.h"
 #include "log/messages/trace_message.h"
 #include "log/packed_chunk.h"
+#include "signals/formatted_text.h"
 
 namespace robot_control {
 namespace {
@@ -87,9 +86,7 @@ void each_header_field(Header& header, Visit visit) {
 constexpr std::size_t kChecksumDigits = 8;
 
 std::string checksum_text(std::string_view bytes) {
-  std::array<char, kChecksumDigits + 1> text{};
-  std::snprintf(text.data(), text.size(), "%08x", message_checksum(bytes, 0));
-  return text.data();
+  return formatted("%08x", message_checksum(bytes, 0));
 }
 
 /// These functions name the type of a member in a .msg.

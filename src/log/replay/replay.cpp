@@ -4,9 +4,7 @@
 #include <initializer_list>
 #include <span>
 #include <utility>
-#include <vector>
 
-#include "log/replay/field_differences.h"
 #include "loop/gate_setup.h"
 #include "signals/gate_digest.h"
 

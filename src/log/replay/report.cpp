@@ -1,7 +1,6 @@
 #include "log/replay/report.h"
 
 #include <algorithm>
-#include <utility>
 
 namespace robot_control {
 

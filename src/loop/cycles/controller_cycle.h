@@ -25,7 +25,7 @@ class ControllerCycle {
     FrameWriter<CommandFrame> command;
   };
 
-  /// `robot_hash` is that of the machine (machine_identity.h).
+  /// `robot_hash` is that of the machine (process.h).
   ControllerCycle(std::unique_ptr<ControllerLaw> controller, std::uint64_t robot_hash, const Channels& channels,
                   CommandScript script, Now now);
 

@@ -21,7 +21,7 @@ class EstimatorCycle {
   };
 
  public:
-  /// `robot_hash` is that of the machine (machine_identity.h).
+  /// `robot_hash` is that of the machine (process.h).
   EstimatorCycle(std::unique_ptr<EstimatorLaw> estimator, std::uint64_t robot_hash,
                  const FrameReader<SensorFrame>& sensors, FrameWriter<StateFrame> state, Now now);
 

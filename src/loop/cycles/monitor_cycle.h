@@ -32,7 +32,7 @@ class MonitorCycle {
   };
 
   /// Inherits the latch of the permit in the channel and of `latch`, another record of an earlier stop. `robot_hash` is
-  /// that of the machine (machine_identity.h), `loss_ns` the length of loss_cycles periods.
+  /// that of the machine (process.h), `loss_ns` the length of loss_cycles periods.
   MonitorCycle(std::unique_ptr<MonitorLaw> monitor, std::uint64_t robot_hash, std::int64_t loss_ns,
                const Channels& channels, CommandScript script, Now now, InheritedLatch latch = {});
 

@@ -1,11 +1,11 @@
 #include "loop/processes/process.h"
 
+#include <cmath>
 #include <utility>
 
-#include "loop/machine_identity.h"
+#include "signals/checksum.h"
 
 namespace robot_control {
-
 Process::Process(const Parameters& parameters, const Robot& robot, LoopPriority priority, std::string thread_name)
     : robot_(identified(robot.machine(), parameters.loop)),
       programs_(programs_of(parameters, robot.kind())),
@@ -49,6 +49,17 @@ void Process::stop() noexcept {
 
 std::vector<std::string> Process::realtime_messages() const {
   return thread_ == nullptr ? std::vector<std::string>{} : thread_->report().refusals;
+}
+
+MachineModel identified(MachineModel machine, const LoopParameters& loop) {
+  const bool lockstep = loop.clock == ClockMode::kLockstep;
+  Checksum sum;
+  sum.mix(machine.hash);
+  sum.mix(static_cast<std::uint64_t>(loop.period_ns()));
+  sum.mix(lockstep ? 1 : 2);
+  machine.hash = sum.sum();
+  machine.source += " at " + std::to_string(std::lround(loop.rate)) + " Hz, clock " + (lockstep ? "lockstep" : "wall");
+  return machine;
 }
 
 }  // namespace robot_control

@@ -14,8 +14,10 @@
 
 #include "bus/bus.h"
 #include "bus/latest_frames.h"
+#include "configuration/loop_parameters.h"
 #include "configuration/parameters.h"
 #include "loop/cycles/cycle_clock.h"
+#include "machine/machine_model.h"
 #include "robots/robot.h"
 #include "rt/clock.h"
 #include "rt/realtime_thread.h"
@@ -112,5 +114,9 @@ struct Output {
   FrameWriter<Frame> writer;
   FrameReader<Frame> reader;
 };
+
+/// Returns the machine with rate and clock in its hash and source. The driver announces the hash in the head of the
+/// sensors channel, and every other node compares it with its own. So a node of another rate or clock refuses to start.
+MachineModel identified(MachineModel machine, const LoopParameters& loop);
 
 }  // namespace robot_control

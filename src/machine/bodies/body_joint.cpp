@@ -84,7 +84,7 @@ BodyJoint read_joint(const urdf::Joint& joint, const std::string& source, double
   if (!finite(result)) {
     refuse(source, joint_element(joint.name), "a number in it is not finite", "Give numbers that a double can hold");
   }
-  if (const double loss = std::max(result.damping, result.friction); loss > kBeyondRobots) {
+  if (const double loss = std::max(result.damping, result.friction); loss > kMaxPlausible) {
     refuse(source, joint_element(joint.name), "<dynamics> of " + number(loss),
            "Give damping in N·m·s/rad or N·s/m, and friction in N·m or N");
   }

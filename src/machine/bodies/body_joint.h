@@ -15,7 +15,7 @@ namespace robot_control {
 /// velocities that are not above zero are unknown: 0.
 ///
 /// Throws RobotError for an axis without length, for numbers that are not finite, for lower above upper, and for
-/// damping or friction beyond kBeyondRobots.
+/// damping or friction beyond kMaxPlausible.
 BodyJoint read_joint(const urdf::Joint& joint, const std::string& source, double endless,
                      std::vector<RobotNote>& notes);
 

@@ -5,10 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <limits>
-#include <set>
-#include <string>
-#include <vector>
 
 #include "machine/bodies/body_joint.h"
 #include "machine/bodies/gyration.h"
@@ -276,7 +272,7 @@ class Lumper {
 
 template <typename Matrix>
 bool of_this_world(const Matrix& m) {
-  return (m.array().abs() < kBeyondRobots).all();  // also false for not-a-number
+  return (m.array().abs() < kMaxPlausible).all();  // also false for not-a-number
 }
 
 bool of_this_world(const RigidBody& body) {
@@ -286,7 +282,7 @@ bool of_this_world(const RigidBody& body) {
     return of_this_world(shape.in_body.matrix()) && of_this_world(sizes) &&
            std::all_of(shape.points.begin(), shape.points.end(), point_is);
   };
-  return std::abs(body.mass) < kBeyondRobots && of_this_world(body.centre_of_gravity) && of_this_world(body.inertia) &&
+  return std::abs(body.mass) < kMaxPlausible && of_this_world(body.centre_of_gravity) && of_this_world(body.inertia) &&
          of_this_world(body.in_root.matrix()) && std::all_of(body.shapes.begin(), body.shapes.end(), shape_is);
 }
 

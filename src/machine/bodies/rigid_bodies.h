@@ -97,9 +97,9 @@ struct RigidBodies {
 };
 
 inline constexpr double kMasslessShare = 0.01;
-inline constexpr double kBeyondRobots = 1e9;  ///< kg, m, kg·m²: larger numbers are refused
+inline constexpr double kMaxPlausible = 1e9;  ///< kg, m, kg·m²: larger numbers are refused
 
-/// Throws RobotError for a moving body or a base with a stated mass of zero and for numbers beyond kBeyondRobots. It
+/// Throws RobotError for a moving body or a base with a stated mass of zero and for numbers beyond kMaxPlausible. It
 /// also throws what parse_urdf, inertia_of, shapes_of and read_joint refuse. A revolute joint that may turn by more
 /// than `endless` rad is taken as continuous.
 RigidBodies read_rigid_bodies(const RobotDescription& description,

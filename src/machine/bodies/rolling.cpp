@@ -14,7 +14,7 @@ constexpr int kDirections = 64;
 constexpr double kSameReach = 0.98;
 constexpr double kCorners = 0.9;
 constexpr double kRim = 0.97;
-constexpr double kLevel = 5 * M_PI / 180;
+constexpr double kMaxAxleTilt = 5 * M_PI / 180;
 
 double angle_between_lines(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
   return std::atan2(a.cross(b).norm(), std::abs(a.dot(b)));
@@ -170,7 +170,7 @@ const Shape* rolling_shape(const RigidBody& body) {
 
 bool turns_upright(const RigidBody& body) {
   const bool turns = body.joint.type == JointType::kContinuous || body.joint.type == JointType::kRevolute;
-  return turns && std::abs((body.in_root.linear() * body.joint.axis).z()) < std::sin(kLevel);
+  return turns && std::abs((body.in_root.linear() * body.joint.axis).z()) < std::sin(kMaxAxleTilt);
 }
 
 double axle_tilt(const RollingMeasure& measure) {

@@ -121,8 +121,8 @@ rlim_t address_space() {
   // A crash ends the process, without a handler of a sanitizer or of this program.
   for (const int signal_number : {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT}) std::signal(signal_number, SIG_DFL);
   limit(RLIMIT_CORE, 0);
-  limit(RLIMIT_CPU, kApartSeconds);
-  limit(RLIMIT_AS, address_space() + kApartMemory);
+  limit(RLIMIT_CPU, kChildSeconds);
+  limit(RLIMIT_AS, address_space() + kChildMemory);
   try {
     const std::string text = work();
     if (output.writer.write(text) != 0) _exit(1);
@@ -151,7 +151,7 @@ ProcessResult run_apart(const std::function<std::string()>& work) {
   const pid_t child = fork();
   if (child < 0) return {};
   if (child == 0) work_apart(work, output, errors);
-  return watched(child, output, errors, 2 * kApartSeconds);
+  return watched(child, output, errors, 2 * kChildSeconds);
 }
 
 }  // namespace robot_control

@@ -30,11 +30,11 @@ ProcessResult run_program(const std::vector<std::string>& arguments, const std::
                           int silence);
 
 /// Runs `work` in a copy of this process (fork) and returns its result as `output`. Its effects stay in the copy, a
-/// crash included. The copy has kApartMemory, kApartSeconds of processor time and no core file. It must not wait for
+/// crash included. The copy has kChildMemory, kChildSeconds of processor time and no core file. It must not wait for
 /// other threads, which are not copied. An exception ends it with code 1.
 ProcessResult run_apart(const std::function<std::string()>& work);
 
-inline constexpr std::size_t kApartMemory = std::size_t{1} << 30U;  ///< bytes beyond those of this process
-inline constexpr int kApartSeconds = 20;
+inline constexpr std::size_t kChildMemory = std::size_t{1} << 30U;  ///< bytes beyond those of this process
+inline constexpr int kChildSeconds = 20;
 
 }  // namespace robot_control

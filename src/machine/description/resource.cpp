@@ -12,7 +12,6 @@
 
 #include "files/input_file.h"
 #include "machine/description/environment.h"
-#include "machine/description/robot_description.h"
 
 namespace robot_control {
 namespace {

@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <initializer_list>
-#include <numbers>
 
 namespace robot_control {
 
@@ -12,8 +10,8 @@ namespace {
 constexpr double kInside = 0.2;                         // largest f_in over the bandwidth
 constexpr double kCounts = 40;                          // counts in 1/f_in
 constexpr double kMinPart = 0.1;                        // smallest f over the bandwidth
-constexpr double kQuick = 1.5;                          // rad/s
-constexpr double kDoubt = 0.25;                         // share of q'
+constexpr double kMinQuickSpeed = 1.5;                  // rad/s
+constexpr double kUncertainShare = 0.25;                // share of q'
 constexpr double kCoarse = 2 * std::numbers::pi / 512;  // rad, size of a count
 
 double pole(double bandwidth, double dt) noexcept {
@@ -41,7 +39,7 @@ TrackingLoop::TrackingLoop(double bandwidth, double period) : bandwidth_(bandwid
 void TrackingLoop::derive() noexcept {
   nominal_ = gains(pole(bandwidth_, period_), period_);
   const double quantum = quantum_.value();
-  doubt_ = quantum * std::min(1.0, quantum / kCoarse);
+  uncertainty_ = quantum * std::min(1.0, quantum / kCoarse);
   slowest_ = kCounts * quantum * kInside * bandwidth_;
 }
 
@@ -66,10 +64,10 @@ void TrackingLoop::tune(double bandwidth) noexcept {
 
 double TrackingLoop::part_of_bandwidth(double pace, double beyond, double silent) const noexcept {
   const double quantum = quantum_.value();
-  const double quick = std::max(kQuick, std::abs(velocity_));       // rad/s
-  const double loud = 2 * std::numbers::pi * bandwidth_ * quantum;  // rad/s
-  const double limit = loud > quick ? quick / loud : 1;             // m of the header
-  const double evidence = beyond < doubt_ ? beyond / doubt_ : 1;
+  const double quick = std::max(kMinQuickSpeed, std::abs(velocity_));  // rad/s
+  const double loud = 2 * std::numbers::pi * bandwidth_ * quantum;     // rad/s
+  const double limit = loud > quick ? quick / loud : 1;                // m of the header
+  const double evidence = beyond < uncertainty_ ? beyond / uncertainty_ : 1;
   return std::max({pace, limit * evidence, silent, kMinPart});
 }
 
@@ -103,7 +101,7 @@ void TrackingLoop::step(double position_measured, double known_acceleration, dou
   const double innovation = beyond + ratio * ratio * centre;
   position_ += gain.position * innovation;
   velocity_ += gain.velocity * innovation;
-  const double trust = doubt_ > 0 ? std::abs(beyond) / (std::abs(beyond) + kDoubt * doubt_) : 1;
+  const double trust = uncertainty_ > 0 ? std::abs(beyond) / (std::abs(beyond) + kUncertainShare * uncertainty_) : 1;
   residual_ += gain.residual * std::max(trust, silent) * beyond;
 }
 

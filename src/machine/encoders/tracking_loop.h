@@ -110,9 +110,9 @@ class TrackingLoop {
 
   double bandwidth_;
   double period_;
-  Gains nominal_;       ///< for the bandwidth and one period
-  double doubt_ = 0;    ///< rad, q'
-  double slowest_ = 0;  ///< rad/s above which f_in is bandwidth/5
+  Gains nominal_;           ///< for the bandwidth and one period
+  double uncertainty_ = 0;  ///< rad, q'
+  double slowest_ = 0;      ///< rad/s above which f_in is bandwidth/5
   EncoderQuantum quantum_;
   double measured_ = 0;   ///< rad, last sample
   double travelled_ = 0;  ///< rad, predicted since the angle changed

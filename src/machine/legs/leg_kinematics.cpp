@@ -10,9 +10,9 @@ namespace robot_control {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
-constexpr double kRounding = 1e-12;  // relative, of lengths at the border of reach
-constexpr double kAtLimit = 1e-9;    // rad by which rounding may exceed a range
-constexpr double kNoBend = 1e-6;     // rad, of a knee that is not to pass the straight leg
+constexpr double kReachTolerance = 1e-12;  // relative, of lengths at the border of reach
+constexpr double kRangeTolerance = 1e-9;   // rad by which rounding may exceed a range
+constexpr double kNoBend = 1e-6;           // rad, of a knee that is not to pass the straight leg
 
 /// Returns the vector (x, z) turned by `angle` about y.
 struct Plane {
@@ -29,7 +29,7 @@ double into(double angle, const JointRange& range) noexcept {
 }
 
 bool within(double angle, const JointRange& range) noexcept {
-  return angle >= range.lower - kAtLimit && angle <= range.upper + kAtLimit;
+  return angle >= range.lower - kRangeTolerance && angle <= range.upper + kRangeTolerance;
 }
 
 }  // namespace
@@ -118,7 +118,7 @@ LegKinematics::Branch LegKinematics::branch(const Eigen::Vector3d& from_hip, dou
   const double across = from_hip.y() * from_hip.y() + from_hip.z() * from_hip.z();
   double height = across - offset_ * offset_;
   if (height < 0) {
-    result.reached = height >= -kRounding * across;
+    result.reached = height >= -kReachTolerance * across;
     height = 0;
   }
   const double z = side * std::sqrt(height);
@@ -126,7 +126,7 @@ LegKinematics::Branch LegKinematics::branch(const Eigen::Vector3d& from_hip, dou
   const double a = upper_length_, b = lower_length_;
   double cosine = (along_x * along_x + along_z * along_z - a * a - b * b) / (2 * a * b);
   if (std::abs(cosine) > 1) {
-    result.reached = result.reached && std::abs(cosine) <= 1 + kRounding;
+    result.reached = result.reached && std::abs(cosine) <= 1 + kReachTolerance;
     cosine = std::clamp(cosine, -1.0, 1.0);
   }
   const double bend = geometry_.bend * std::acos(cosine);

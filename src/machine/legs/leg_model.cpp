@@ -6,18 +6,17 @@
 #include <limits>
 #include <numbers>
 #include <set>
-#include <sstream>
 #include <vector>
 
 #include "machine/bodies/rigid_bodies.h"
 #include "machine/bodies/rolling.h"
 #include "machine/bodies/shape_support.h"
 #include "machine/description/wording.h"
-#include "machine/legs/leg_kinematics.h"
 #include "machine/legs/lying_posture.h"
 #include "machine/machine_reading.h"
 #include "machine/model_hash.h"
 #include "machine/suspicions.h"
+#include "signals/formatted_text.h"
 
 namespace robot_control {
 namespace {
@@ -107,9 +106,9 @@ Foot foot_of(const RigidBodies& robot, const RigidBody& body) {
   return {body.in_root * (reach * out), 0};
 }
 
-constexpr double kBothWays = 0.5;   // rad by which a knee must bend to either side to bend both ways
-constexpr double kStanding = 0.7;   // of the leg length, as high as most robots stand (leg_tuning.h)
-constexpr double kShortest = 1e-4;  // m, of thigh and shank
+constexpr double kMinBendBothWays = 0.5;  // rad by which a knee must bend to either side to bend both ways
+constexpr double kStanding = 0.7;         // of the leg length, as high as most robots stand (leg_tuning.h)
+constexpr double kShortest = 1e-4;        // m, of thigh and shank
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 constexpr double kTurns = 4 * std::numbers::pi;  // rad, at most either way, of a joint of a leg that has end stops
 
@@ -229,12 +228,12 @@ double bend_of(const RigidBodies& robot, const LegGeometry& geometry, const Chai
   const double middle = front ? -1 : 1;
   if (wanted == KneeBend::kDerived) {
     const double forward = room(geometry, 1), backward = room(geometry, -1);
-    if (std::min(forward, backward) < kBothWays) return forward >= backward ? 1 : -1;
+    if (std::min(forward, backward) < kMinBendBothWays) return forward >= backward ? 1 : -1;
     return !stands(geometry, middle) && stands(geometry, -middle) ? -middle : middle;
   }
   const bool forward = wanted == KneeBend::kForward || wanted == (front ? KneeBend::kOutwards : KneeBend::kMiddle);
   const double bend = forward ? 1 : -1;
-  if (room(geometry, bend) >= kBothWays) return bend;
+  if (room(geometry, bend) >= kMinBendBothWays) return bend;
   refuse(robot.source, joint_element(robot.bodies[chain[2]].joint.name),
          std::string("robot/knee_bend lets this knee point ") + (forward ? "forward" : "backward") +
              ", which its range does not allow",
@@ -261,10 +260,7 @@ const char* name_of(LegPlace place) noexcept {
 }
 
 std::string LegModel::parts() const {
-  std::ostringstream text;
-  text.precision(4);
-  text << "four legs of " << leg_length() << " m";
-  return text.str();
+  return formatted("four legs of %.4g m", leg_length());
 }
 
 double LegModel::leg_length() const noexcept {

@@ -16,11 +16,11 @@
 namespace robot_control {
 namespace {
 
-constexpr double kShort = 0.5;        // share of the drive wheels' radius
-constexpr double kSuspension = 2;     // share of the drive wheels' radius
-constexpr double kAside = 0.005;      // m, on either side of a balanced joint's axis
-constexpr double kWorthNaming = 0.1;  // share of the allowed depth
-constexpr int kSteps = 64;            // steps of a turn, to find its highest place
+constexpr double kMaxDepthShare = 0.5;  // share of the drive wheels' radius
+constexpr double kSuspension = 2;       // share of the drive wheels' radius
+constexpr double kMinOffset = 0.005;    // m, on either side of a balanced joint's axis
+constexpr double kNamedShare = 0.1;     // share of the allowed depth
+constexpr int kSteps = 64;              // steps of a turn, to find its highest place
 
 /// Describes a support of the robot, as seen from the body in question.
 struct Support {
@@ -40,7 +40,7 @@ double lift(const RigidBody& body, const std::vector<Eigen::Vector3d>& points) {
   const Eigen::Vector3d axis = axis_of(body), at = body.in_root.translation();
   const bool ends = joint.lower < joint.upper;
   if (joint.type == JointType::kPrismatic) {
-    if (!ends) return std::abs(axis.z()) > kShort ? std::numeric_limits<double>::infinity() : 0;
+    if (!ends) return std::abs(axis.z()) > kMaxDepthShare ? std::numeric_limits<double>::infinity() : 0;
     return std::max({0.0, axis.z() * joint.lower, axis.z() * joint.upper});
   }
   const double lower = ends ? std::max(joint.lower, -std::numbers::pi) : -std::numbers::pi;
@@ -99,7 +99,7 @@ class Load {
     return gap < std::numbers::pi;
   }
 
-  double allowed() const { return kShort * radius_; }
+  double allowed() const { return kMaxDepthShare * radius_; }
 
   /// Returns the joints of these supports that let the body down by a relevant part.
   std::vector<std::string> names(const std::vector<Support>& sinking) const {
@@ -137,7 +137,7 @@ class Load {
       reach = std::max(reach, arm.cross(axis).norm());
     }
     if (is_held(body, reach)) return;
-    const bool balanced = least < -kAside && largest > kAside;
+    const bool balanced = least < -kMinOffset && largest > kMinOffset;
     for (Support& support : supports) {
       if (balanced) {
         support.point = at + axis * axis.dot(support.point - at);
@@ -160,7 +160,7 @@ class Load {
     const double distance =
         lift(body, support.body == index ? ground_points(robot_, body) : std::vector<Eigen::Vector3d>{support.point});
     support.sink += distance;
-    if (distance > kWorthNaming * allowed()) support.joints.push_back(index);
+    if (distance > kNamedShare * allowed()) support.joints.push_back(index);
   }
 
   const DriveTrain& robot_;

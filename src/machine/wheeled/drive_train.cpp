@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <sstream>
 
 #include "machine/bodies/posed_bodies.h"
 #include "machine/description/wording.h"
@@ -16,6 +15,7 @@
 #include "machine/wheeled/wheels/drive_wheels.h"
 #include "machine/wheeled/wheels/suspension.h"
 #include "machine/wheeled/wheels/wheel_drive.h"
+#include "signals/formatted_text.h"
 
 namespace robot_control {
 namespace {
@@ -146,11 +146,11 @@ void read_yaw_inertia(const RigidBodies& robot, DriveTrain& model) {
 /// A wheel of the robot on its wheels is accelerated by all wheels together, straight or turning. The factor admits a
 /// robot of half the described mass.
 void set_acceleration_limits(DriveTrain& model) {
-  constexpr double kLighter = 2;
+  constexpr double kMassFactor = 2;
   for (const WheelModel& wheel : model.wheels) {
     const double inertia = std::min(straight_inertia(model, wheel), turning_inertia(model, wheel));
     JointModel& joint = model.joints[wheel.joint];
-    joint.acceleration_limit = kLighter * joint.effort_limit / inertia;
+    joint.acceleration_limit = kMassFactor * joint.effort_limit / inertia;
   }
 }
 
@@ -216,12 +216,10 @@ std::string DriveTrain::parts() const {
     }
     return names;
   };
-  std::ostringstream text;
-  text.precision(4);
-  text << "left wheels " << names_of(Side::kLeft) << ", right wheels " << names_of(Side::kRight) << ", radius "
-       << wheels.front().radius << " m, wheel base " << wheel_base << " m";
-  if (wheel_base_multiplier != 1) text << " (effective " << effective_wheel_base() << " m)";
-  return text.str();
+  std::string text = "left wheels " + names_of(Side::kLeft) + ", right wheels " + names_of(Side::kRight) +
+                     formatted(", radius %.4g m, wheel base %.4g m", wheels.front().radius, wheel_base);
+  if (wheel_base_multiplier != 1) text += formatted(" (effective %.4g m)", effective_wheel_base());
+  return text;
 }
 
 const DriveTrain& drive_train_of(const MachineModel& machine) {

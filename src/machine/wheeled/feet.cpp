@@ -10,7 +10,7 @@
 namespace robot_control {
 namespace {
 
-constexpr double kWorthANote = 1e-6;  // m
+constexpr double kNotedHeight = 1e-6;  // m
 
 struct Extent {
   double low = 0, high = 0;  ///< m
@@ -39,7 +39,7 @@ bool is_footprint(const RigidBodies& robot, const RigidBody& body, const Shape& 
     if (origin[axis] < side.low || origin[axis] > side.high) return false;
   }
   const Extent height = extent(body, shape, Eigen::Vector3d::UnitZ());
-  return height.low <= floor + kLevel && height.high <= floor + kThin && height.high - height.low <= kThin;
+  return height.low <= floor + kHeightTolerance && height.high <= floor + kThin && height.high - height.low <= kThin;
 }
 
 void leave_out_footprints(RigidBodies& robot, const RunningGear& gear, double floor, std::vector<RobotNote>& notes) {
@@ -56,7 +56,7 @@ void leave_out_footprints(RigidBodies& robot, const RunningGear& gear, double fl
 }
 
 void note_levelled(const std::string& link, double gap, std::vector<RobotNote>& notes) {
-  if (std::abs(gap) < kWorthANote) return;
+  if (std::abs(gap) < kNotedHeight) return;
   notes.push_back({RobotNote::Kind::kAssumed, link_element(link),
                    "it ends " + number(std::abs(gap) * 1000) + " mm " + (gap < 0 ? "below" : "above") +
                        " the drive wheels: taken as level with them"});
@@ -88,14 +88,14 @@ void set_feet(RigidBodies& robot, RunningGear& gear, std::vector<RobotNote>& not
     if (rolls(gear, i)) continue;
     for (Shape& shape : body.shapes) {
       const double gap = extent(body, shape, Eigen::Vector3d::UnitZ()).low - floor;
-      if (std::abs(gap) > kLevel) continue;
+      if (std::abs(gap) > kHeightTolerance) continue;
       shape.in_body.translation() -= gap * (body.in_root.linear().transpose() * Eigen::Vector3d::UnitZ());
       note_levelled(shape.link, gap, notes);
     }
   }
   for (RollingBody& caster : gear.casters) {
     const double gap = caster.wheel.centre_base[2] - caster.wheel.radius - floor;
-    if (std::abs(gap) > kLevel) continue;
+    if (std::abs(gap) > kHeightTolerance) continue;
     caster.wheel.centre_base[2] -= gap;
     raise(robot, caster.body, -gap);
     note_levelled(robot.bodies[caster.body].name, gap, notes);

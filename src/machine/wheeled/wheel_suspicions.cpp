@@ -73,7 +73,7 @@ void note_weak_wheels(DriveTrain& robot) {
     friction = joint.friction;
   }
   const double acceleration = force / robot.mass;
-  if (acceleration >= kWeak) return;
+  if (acceleration >= kMinAcceleration) return;
   note(robot, joint_element(robot.joints[robot.wheels.back().joint].name),
        "an effort limit of " + number(effort) + " N·m and a friction of " + number(friction) +
            " N·m: the wheels accelerate the robot by no more than " + number(acceleration) +
@@ -116,7 +116,7 @@ void note_far_root(DriveTrain& robot) {
   for (const RigidBody& body : robot.bodies->bodies) {
     for (const Shape& shape : body.shapes) box.extend(box_of(body, shape));
   }
-  if (box.isEmpty() || nearest <= kFar * box.sizes().norm()) return;
+  if (box.isEmpty() || nearest <= kMaxRootDistance * box.sizes().norm()) return;
   note(robot, link_element(robot.base_link),
        "it lies " + number(nearest) +
            " m from the next wheel, farther than the robot is large: odom and cmd_vel are "

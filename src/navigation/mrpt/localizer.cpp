@@ -27,7 +27,7 @@ constexpr double kFreeFrom = 0.7;                // probability from which a cel
 const mrpt::maps::TMatchingRatioParams kAtWall;  // 0.1 m: a point that near to a wall is explained by the map
 constexpr double kFits = 0.75;        // part of the points that must be explained; a fifth of them may be moved
 constexpr double kSmoothing = 0.05;   // of each new part of explained points, per scan: 2 s at 10 Hz
-constexpr int kProof = 60;            // scans within which a place that a search found must fit, else it goes on
+constexpr int kMaxProofScans = 60;    // scans within which a place that a search found must fit, else it goes on
 constexpr double kSmallSpread = 0.3;  // m, below which a search has found the place
 // m, rad, between two updates: wheels that slip do more than the odometry knows.
 constexpr double kMinStep = 0.02, kMinTurn = 0.02;
@@ -121,7 +121,7 @@ struct Localizer::Parts {
     settled = spread < kSmallSpread ? settled + 1 : 0;
     if (state == Localization::kLocalized && !fits) state = Localization::kLost;
     if (state != Localization::kLocalized && fits && settled > 0) state = Localization::kLocalized;
-    if (state == Localization::kSearching && settled > kProof) search();
+    if (state == Localization::kSearching && settled > kMaxProofScans) search();
   }
 
   void filter_step(const mrpt::obs::CObservation2DRangeScan& scan, const UncertainPose& to) {

@@ -19,8 +19,8 @@ using mrpt::poses::CPose2D;
 constexpr float kResolution = 0.05f;                                    // m
 constexpr double kMatchDistance = 0.05, kMatchTurn = 2 * M_PI / 180;    // m, rad between two matches
 constexpr double kInsertDistance = 0.6, kInsertTurn = 15 * M_PI / 180;  // m, rad between two scans of the map
-constexpr float kKnown = 0.03f;      // m; nearer to a point of the map another one adds size alone
-constexpr double kMinMatched = 0.4;  // part of the points, below which a match is no match
+constexpr float kMinPointDistance = 0.03f;  // m; nearer to a point of the map another one adds size alone
+constexpr double kMinMatched = 0.4;         // part of the points, below which a match is no match
 
 /// Returns whether the robot has moved by so much between two poses.
 bool moved(const CPose2D& from, const CPose2D& to, double distance, double turn) {
@@ -61,7 +61,7 @@ struct Mapper::Parts {
     for (std::size_t i = 0; i < known.size() && !points.empty(); ++i) {
       float x = 0, y = 0;
       seen.getPoint(i, x, y);
-      known[i] = points.squareDistanceToClosestCorrespondence(x, y) < kKnown * kKnown;
+      known[i] = points.squareDistanceToClosestCorrespondence(x, y) < kMinPointDistance * kMinPointDistance;
     }
     seen.applyDeletionMask(known);
     points += seen;

@@ -1,13 +1,13 @@
 #include "robots/wheeled/retuning.h"
 
 #include <algorithm>
-#include <sstream>
 
 #include "control/wheeled/control_problems.h"
 #include "control/wheeled/derived_tuning.h"
 #include "parameters/problem_list.h"
 #include "robots/wheeled/safety_limits.h"
 #include "safety/derived_limits.h"
+#include "signals/formatted_text.h"
 #include "signals/roles.h"
 
 namespace robot_control {
@@ -62,16 +62,14 @@ std::string Retuning::monitor_problem(const DriveControllerParameters& wanted) c
   const double needed = least_wheel_speed_limit(asked);
   if (!stops(wheel_speed_) || asked <= commanded_at_start_) return "";
   if (needed <= *wheel_speed_.limit) return "";
-  std::ostringstream text;
-  text.precision(4);
-  text << kBlock << ": max_linear_speed " << wanted.max_linear_speed << " m/s with max_angular_speed "
-       << wanted.max_angular_speed << " rad/s turns a wheel at " << asked << " rad/s; " << program_of(Role::kMonitor)
-       << ", whose wheel_speed limit was fixed at its start, stops the robot beyond " << *wheel_speed_.limit
-       << " rad/s, and would have to bear " << needed << ". Keep max_linear_speed + "
-       << robot_.effective_wheel_base() / 2 << " m·max_angular_speed at or below "
-       << smallest_radius(robot_) * fastest_within(*wheel_speed_.limit)
-       << " m/s, or set both in the YAML file and start all nodes again.";
-  return text.str();
+  return formatted(
+      "%s: max_linear_speed %.4g m/s with max_angular_speed %.4g rad/s turns a wheel at %.4g rad/s; %s, whose "
+      "wheel_speed limit was fixed at its start, stops the robot beyond %.4g rad/s, and would have to bear %.4g. Keep "
+      "max_linear_speed + %.4g m·max_angular_speed at or below %.4g m/s, or set both in the YAML file and start all "
+      "nodes again.",
+      kBlock.c_str(), wanted.max_linear_speed, wanted.max_angular_speed, asked,
+      std::string(program_of(Role::kMonitor)).c_str(), *wheel_speed_.limit, needed, robot_.effective_wheel_base() / 2,
+      smallest_radius(robot_) * fastest_within(*wheel_speed_.limit));
 }
 
 Retuned Retuning::set(const std::string& request) {

@@ -1,26 +1,15 @@
 #include "robots/wheeled/slow_loop.h"
 
 #include <algorithm>
-#include <array>
-#include <cstdio>
 
 #include "configuration/rate_notes.h"
 #include "control/wheeled/wheel_loops/feed_forward.h"
 #include "control/wheeled/wheel_loops/wheel_loop_gains.h"
 #include "gate/wheeled/wheel_stop.h"
 #include "robots/wheeled/safety_limits.h"
+#include "signals/formatted_text.h"
 
 namespace robot_control {
-namespace {
-
-template <class... Values>
-std::string text(const char* format, Values... values) {
-  std::array<char, 400> room{};
-  std::snprintf(room.data(), room.size(), format, values...);
-  return room.data();
-}
-
-}  // namespace
 
 double correction_time(const Parameters& parameters, const DriveTrain& robot) {
   double slowest = 0;
@@ -43,27 +32,27 @@ std::vector<std::string> wheeled_rate_notes(const Parameters& parameters, const 
   const LoopParameters& loop = parameters.loop;
   if (!is_slow(loop)) return {};
   if (role == Role::kController) {
-    return {
-        text("at robot.rate = %g Hz, the wheel loops correct friction, load, slopes and pushes that their plan does "
-             "not contain with a time constant of %.2g s: describe mass and friction well (feed_forward), or raise "
-             "robot.rate",
-             loop.rate, correction_time(parameters, robot))};
+    return {formatted(
+        "at robot.rate = %g Hz, the wheel loops correct friction, load, slopes and pushes that their plan does "
+        "not contain with a time constant of %.2g s: describe mass and friction well (feed_forward), or raise "
+        "robot.rate",
+        loop.rate, correction_time(parameters, robot))};
   }
   if (role == Role::kMonitor) {
     const SafetyParameters limits = safety_limits(parameters, robot);
-    return {
-        text("at robot.rate = %g Hz, a blocked wheel is recognised after %.2g rad, motion without a command after "
-             "%.2g s and a wheel that runs away above %.2g rad/s: set the limits of stall, not_stopping and runaway, "
-             "or raise robot.rate",
-             loop.rate, *limits.stall.limit, *limits.not_stopping.limit, *limits.runaway.limit)};
+    return {formatted(
+        "at robot.rate = %g Hz, a blocked wheel is recognised after %.2g rad, motion without a command after "
+        "%.2g s and a wheel that runs away above %.2g rad/s: set the limits of stall, not_stopping and runaway, "
+        "or raise robot.rate",
+        loop.rate, *limits.stall.limit, *limits.not_stopping.limit, *limits.runaway.limit)};
   }
   const bool direct = parameters.driver == DriverName::kMujoco && parameters.drives.empty();
   if (role != Role::kDriver || direct) return {};
   const double time = brake_time(robot, loop.period());
-  return {
-      text("at robot.rate = %g Hz, drives that take torques brake the robot with a time constant of %.2g s: at %.2g "
-           "m/s it needs up to %.2g m. Lower the speed limits, or raise robot.rate",
-           loop.rate, time, parameters.controller.max_linear_speed, parameters.controller.max_linear_speed * time)};
+  return {formatted(
+      "at robot.rate = %g Hz, drives that take torques brake the robot with a time constant of %.2g s: at %.2g "
+      "m/s it needs up to %.2g m. Lower the speed limits, or raise robot.rate",
+      loop.rate, time, parameters.controller.max_linear_speed, parameters.controller.max_linear_speed * time)};
 }
 
 }  // namespace robot_control

@@ -1,13 +1,11 @@
 #include "robots/wheeled/start_check.h"
 
-#include <array>
 #include <cmath>
-#include <cstdio>
 #include <numbers>
-#include <string>
 
 #include "control/wheeled/control_problems.h"
 #include "control/wheeled/smooth_speed.h"
+#include "signals/formatted_text.h"
 #include "signals/roles.h"
 
 namespace robot_control {
@@ -28,12 +26,10 @@ std::string note_on_slow_driving(const Parameters& parameters, const DriveTrain&
   const double count = encoder_count(parameters.estimator);
   const double speed = smooth_speed(parameters.controller, robot, count, parameters.loop.period());
   if (speed <= kSlowRim) return {};
-  std::array<char, 300> text{};
-  std::snprintf(text.data(), text.size(),
-                "encoders of %.0f counts a turn (%s.encoder_noise): below about %.2g m/s of their rims, wheels "
-                "may start and creep in jerks where friction, ground or load is not as described",
-                2 * std::numbers::pi / count, std::string(program_of(Role::kEstimator)).c_str(), speed);
-  return text.data();
+  return formatted(
+      "encoders of %.0f counts a turn (%s.encoder_noise): below about %.2g m/s of their rims, wheels "
+      "may start and creep in jerks where friction, ground or load is not as described",
+      2 * std::numbers::pi / count, std::string(program_of(Role::kEstimator)).c_str(), speed);
 }
 
 }  // namespace robot_control

@@ -1,7 +1,6 @@
 #include "robots/wheeled/within_drives.h"
 
 #include <limits>
-#include <utility>
 
 #include "drivers/table/read_drive_file.h"
 #include "machine/wheeled/drive_train.h"

@@ -1,13 +1,12 @@
 #include "ros/inputs/command_input.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdio>
 #include <cstdlib>
 #include <utility>
 
 #include "ros/reports/name_list.h"
+#include "signals/formatted_text.h"
 
 namespace robot_control {
 namespace {
@@ -19,9 +18,7 @@ std::int64_t nanoseconds(double seconds) {
 }
 
 std::string seconds(double value) {
-  std::array<char, 48> text{};
-  std::snprintf(text.data(), text.size(), std::abs(value) < 100 ? "%.3g s" : "%.0f s", value);
-  return text.data();
+  return formatted(std::abs(value) < 100 ? "%.3g s" : "%.0f s", value);
 }
 
 }  // namespace

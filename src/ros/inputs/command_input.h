@@ -3,7 +3,7 @@
 /// about them. It is pure.
 ///
 /// A message passes these checks:
-///   1. its stamp (command_stamp.h): a message that is too old or in the future is refused. The last command stays in
+///   1. its stamp (judge_stamp): a message that is too old or in the future is refused. The last command stays in
 ///      force until its timeout, and the sender of the refused message does not count as a sender;
 ///   2. its sender: with `one_sender`, two or more senders within cmd_vel_timeout, but at least
 ///      within kSenderWindow, exclude each other: all their messages are refused, and the robot ramps to rest until one
@@ -25,6 +25,7 @@
 /// One warning is reported per sender with wrong stamps, per revoked sender and per set of competing senders. A warning
 /// is repeated after kRepeatAfter at the earliest, in the loop's time.
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <map>
@@ -33,12 +34,38 @@
 #include <vector>
 
 #include "ros/inputs/command_intake.h"
-#include "ros/inputs/command_stamp.h"
 #include "ros/inputs/motion_requests.h"
 #include "ros/reports/report_line.h"
 #include "signals/velocity_command.h"
 
 namespace robot_control {
+
+/// ns, the largest accepted difference of two clocks. It is far above that of machines synchronised by NTP (RFC 5905,
+/// abstract: down to tens of microseconds). It is far below any usual cmd_vel_timeout. So only clocks that are not
+/// synchronised are reported.
+inline constexpr std::int64_t kClockSkew = 100'000'000;
+
+enum class StampVerdict { kUsable, kTooOld, kFuture };
+
+/// The stamp of a command is checked once, when the command arrives.
+///
+///   age = arrival − stamp   both on the sender's clock, the time of day or /clock; a stamp of 0 is none: age 0
+///
+/// A command is usable if −kClockSkew ≤ age ≤ timeout. An age below zero counts as zero, so that no command outlives
+/// the timeout. An older command timed out in transport. A stamp in the future means that the two clocks differ and the
+/// age is not known. With timeout 0 stamps are not checked, and no command is too old.
+struct JudgedStamp {
+  StampVerdict verdict = StampVerdict::kUsable;
+  std::int64_t age_ns = 0;  ///< ≥ 0 if usable, else as measured
+};
+
+constexpr JudgedStamp judge_stamp(std::int64_t stamp_ns, std::int64_t arrival_ns, std::int64_t timeout_ns) noexcept {
+  if (stamp_ns == 0 || timeout_ns <= 0) return {};
+  const std::int64_t age_ns = arrival_ns - stamp_ns;
+  if (age_ns > timeout_ns) return {StampVerdict::kTooOld, age_ns};
+  if (age_ns < -kClockSkew) return {StampVerdict::kFuture, age_ns};
+  return {StampVerdict::kUsable, std::max<std::int64_t>(0, age_ns)};
+}
 
 /// s, the default of cmd_vel_timeout. A shorter timeout may be below the senders' periods, so that two of them would
 /// never be counted at the same time.

@@ -1,6 +1,5 @@
 #include "ros/inputs/motion_requests.h"
 
-#include <algorithm>
 #include <cstdlib>
 #include <set>
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "parameters/problem_list.h"
+#include "parameters/block.h"
 
 namespace robot_control {
 

@@ -14,6 +14,14 @@
 
 namespace robot_control {
 
+/// Accepted live values are written to the parameter server as overrides of this node. `rosparam get` then shows the
+/// values in force, and the node reads them when it is started again (overlays.h). They stay in roscore after the end
+/// of the node, as all overrides do.
+///
+/// Writes "pid_kp" to ~pid_kp, "feed_forward.mass" to ~feed_forward/mass. Returns "", or which values could not be
+/// written and why. It waits for the master.
+std::string write_overrides(const std::vector<LiveValue>& values);
+
 /// `parameters` are the ones in force, with derived values filled in (robots/wheeled/retuning.h).
 dynamic_reconfigure::Config config_of(const std::vector<LiveParameter>& parameters);
 

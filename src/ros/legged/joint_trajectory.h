@@ -17,8 +17,6 @@
 
 #include <trajectory_msgs/JointTrajectory.h>
 
-#include <array>
-#include <cstddef>
 #include <string>
 #include <vector>
 

@@ -3,7 +3,6 @@
 #include <ros/ros.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <optional>
 #include <utility>

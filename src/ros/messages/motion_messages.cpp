@@ -179,8 +179,8 @@ sensor_msgs::Imu imu_data(const SensorFrame& sensors, const StateFrame& state, c
 
 bool has_imu_data(const SensorFrame& sensors, const StateFrame& state) {
   constexpr std::uint64_t kMeasured = kValidGyro | kValidAccelerometer;
-  constexpr std::uint64_t kNotBelieved = kStateNoGyro | kStateNoAccelerometer;
-  return (sensors.valid & kMeasured) == kMeasured && (state.base.flags & kNotBelieved) == 0 &&
+  constexpr std::uint64_t kUnusedImu = kStateNoGyro | kStateNoAccelerometer;
+  return (sensors.valid & kMeasured) == kMeasured && (state.base.flags & kUnusedImu) == 0 &&
          (state.base.flags & kStateValid) != 0;
 }
 

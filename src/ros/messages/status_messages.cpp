@@ -1,18 +1,15 @@
 #include "ros/messages/status_messages.h"
 
 #include <algorithm>
-#include <array>
-#include <cstdio>
 #include <limits>
 #include <span>
 #include <string_view>
 
 #include "files/ascii.h"
 #include "machine/fault_names.h"
-#include "machine/machine_model.h"
 #include "ros/reports/name_list.h"
+#include "signals/formatted_text.h"
 #include "signals/names.h"
-#include "signals/robot_kinds.h"
 
 namespace robot_control {
 namespace {
@@ -28,9 +25,7 @@ std::vector<std::string> sentences(std::span<const BitName> table, std::uint64_t
 
 /// Returns "17.3 rad/s".
 std::string quantity(double value, std::string_view unit) {
-  std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "%.4g ", value);
-  return std::string(text.data()).append(unit);
+  return formatted("%.4g ", value).append(unit);
 }
 
 /// Returns "free the wheel, then call e_stop_reset".

@@ -4,7 +4,6 @@
 #include <std_srvs/Empty.h>
 
 #include <algorithm>
-#include <memory>
 #include <stdexcept>
 #include <vector>
 

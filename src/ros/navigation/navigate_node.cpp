@@ -6,26 +6,24 @@
 #include <std_srvs/Empty.h>
 
 #include <cmath>
-#include <memory>
-#include <stdexcept>
 
 #include "navigation/footprint.h"
 #include "navigation/map_consistency.h"
 #include "navigation/map_file.h"
-#include "navigation/text.h"
 #include "ros/navigation/goal_servers.h"
 #include "ros/navigation/navigation_messages.h"
 #include "ros/navigation/path_client.h"
 #include "ros/navigation/scan_guard.h"
 #include "ros/nodes/service_node.h"
 #include "ros/reports/diagnostics.h"
+#include "signals/formatted_text.h"
 
 namespace robot_control::navigation {
 namespace {
 
 constexpr double kPeriod = 0.1;      // s
-constexpr double kTfPatience = 0.3;  // s for which a scan waits for tf
-constexpr double kOldPlace = 1.0;    // s; a localisation is as slow as its scans
+constexpr double kTfTimeout = 0.3;   // s for which a scan waits for tf
+constexpr double kMaxPoseAge = 1.0;  // s; a localisation is as slow as its scans
 
 constexpr const char* kDescription = "robot_description";
 constexpr std::uint32_t kMapOverhead = 1024;  // bytes of a message beside its cells
@@ -100,22 +98,22 @@ class NavigateService {
     consistency_ = MapConsistency();
   }
 
-  /// Takes a scan into the costmap, and compares it with the map. A scan waits until tf knows the place at its stamp.
+  /// Inserts a scan into the costmap, and compares it with the map. A scan waits until tf has the pose at its stamp.
   void process_scan(const ros::Time& time) {
-    if (!waiting_ || (time - waiting_->seen.stamp).toSec() > kTfPatience) {
+    if (!waiting_ || (time - waiting_->seen.stamp).toSec() > kTfTimeout) {
       if (auto scan = guard_.next_scan()) waiting_ = std::move(scan);
     }
     if (!waiting_ || !costmap_) return;
     const PlacedScan& seen = waiting_->seen;
     const auto base = frames_.lookup(parameters_.map_frame, guard_.input().base_frame(), seen.stamp, scan_problem_);
     if (!base) return;
-    costmap_->foresee(placed(waiting_->ahead, base->pose));
+    costmap_->set_predicted(from_base_axes(waiting_->predicted, base->pose));
     consistency_.update(costmap_->insert(seen.scan, composed(base->pose, seen.laser), now()));
     waiting_.reset();
     seen_at_ = time;
   }
 
-  /// Returns why nothing can be driven now, and sets the robot's place if it is known.
+  /// Returns why nothing can be driven now, and sets the robot's pose if it is known.
   std::string problem(const ros::Time& time) {
     if (!costmap_) return map_problem_;
     if (const std::string why = guard_.input().problem(); !why.empty()) return why;
@@ -127,9 +125,9 @@ class NavigateService {
     if (!place) return "the robot is not localised: " + why;
     pose_ = place->pose;
     const double age = time.toSec() - place->stamp;
-    if (place->stamp > 0 && age > kOldPlace)
-      return text("the robot is not localised: tf from %s is %.1f s old", parameters_.map_frame.c_str(), age);
-    if ((time - seen_at_).toSec() > kOldPlace)
+    if (place->stamp > 0 && age > kMaxPoseAge)
+      return formatted("the robot is not localised: tf from %s is %.1f s old", parameters_.map_frame.c_str(), age);
+    if ((time - seen_at_).toSec() > kMaxPoseAge)
       return "tf does not give the place of the scans in the map: " + scan_problem_;
     if (!consistency_.problem().empty()) return consistency_.problem();
     return path_client_.connected() ? "" : "follow_path does not run: rosrun robot_control follow_path.py";

@@ -1,5 +1,5 @@
 #pragma once
-/// The node navigate plans a way to a goal and watches it. Topics, actions and services: docs/interfaces.md.
+/// The node navigate plans a path to a goal and monitors it. Topics, actions and services: docs/interfaces.md.
 
 #include <memory>
 

@@ -7,7 +7,7 @@
 namespace robot_control::navigation {
 namespace {
 
-constexpr std::size_t kOf[] = {0, 1, 5};  // x, y, yaw among x y z roll pitch yaw
+constexpr std::size_t kPlanarAxes[] = {0, 1, 5};  // x, y, yaw among x y z roll pitch yaw
 
 }  // namespace
 
@@ -34,7 +34,7 @@ UncertainPose uncertain_of(const geometry_msgs::PoseWithCovariance& message) {
   UncertainPose result{planar_of(message.pose)};
   for (int row = 0; row < 3; ++row)
     for (int column = 0; column < 3; ++column)
-      result.covariance(row, column) = message.covariance[6 * kOf[row] + kOf[column]];
+      result.covariance(row, column) = message.covariance[6 * kPlanarAxes[row] + kPlanarAxes[column]];
   return result;
 }
 
@@ -43,7 +43,7 @@ geometry_msgs::PoseWithCovariance covariance_message(const UncertainPose& pose) 
   message.pose = pose_message(pose.mean);
   for (int row = 0; row < 3; ++row)
     for (int column = 0; column < 3; ++column)
-      message.covariance[6 * kOf[row] + kOf[column]] = pose.covariance(row, column);
+      message.covariance[6 * kPlanarAxes[row] + kPlanarAxes[column]] = pose.covariance(row, column);
   return message;
 }
 

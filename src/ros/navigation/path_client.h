@@ -6,7 +6,7 @@
 
 #include <string>
 
-#include "navigation/guard.h"
+#include "navigation/motion_clearance.h"
 #include "navigation/navigator.h"
 #include "ros/navigation/bounded_inputs.h"
 

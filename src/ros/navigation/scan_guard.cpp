@@ -5,14 +5,14 @@
 #include <limits>
 #include <utility>
 
-#include "navigation/text.h"
+#include "signals/formatted_text.h"
 
 namespace robot_control::navigation {
 namespace {
 
-constexpr double kTick = 0.1;       // s
-constexpr double kStanding = 0.02;  // m/s, rad/s
-constexpr int kStood = 10;          // ticks
+constexpr double kWatchPeriod = 0.1;       // s
+constexpr double kStandstillSpeed = 0.02;  // m/s, rad/s
+constexpr int kStandstillTicks = 10;       // ticks
 
 ros::NodeHandle with_queue(ros::NodeHandle handle, ros::CallbackQueue& queue) {
   handle.setCallbackQueue(&queue);
@@ -30,7 +30,7 @@ ScanGuard::ScanGuard(const ros::NodeHandle& handle, Footprint footprint)
             const std::lock_guard lock(mutex_);
             measured_ = {odometry.twist.twist.linear.x, odometry.twist.twist.angular.z};
           }) {
-  timer_ = handle_.createWallTimer(ros::WallDuration(kTick), [this](const ros::WallTimerEvent&) { watch(); });
+  timer_ = handle_.createWallTimer(ros::WallDuration(kWatchPeriod), [this](const ros::WallTimerEvent&) { watch(); });
   spinner_.start();
 }
 
@@ -48,27 +48,29 @@ std::optional<GuardedScan> ScanGuard::next_scan() {
 std::string ScanGuard::reason() {
   const std::lock_guard lock(mutex_);
   if (!guards_ || published_ > 0.3) return "";
-  return text("the laser sees something %.2f m before the outline", published_ + kStopShort + kBeside);
+  return formatted("the laser sees something %.2f m before the outline", published_ + kRemainingGap + kLaserNoise);
 }
 
 void ScanGuard::use(const PlacedScan& scan) {
   const std::lock_guard lock(mutex_);
   const PlanarPose& base = scan.odometry.mean;
   const std::vector<MovingObject> objects =
-      objects_seen_from(objects_.update(scan.scan, composed(base, scan.laser), scan.stamp.toSec()), base);
-  newest_ = {scan, places_ahead(objects, footprint_)};
-  const bool moves = std::abs(measured_.linear) > kStanding || std::abs(measured_.angular) > 2 * kStanding;
-  const double free = free_way(footprint_, points_of(scan.scan, scan.laser), moves ? measured_ : intended_, objects);
-  const double age = std::clamp((ros::Time::now() - scan.stamp).toSec(), 0.0, kSilence);
+      in_base_axes(objects_.update(scan.scan, composed(base, scan.laser), scan.stamp.toSec()), base);
+  newest_ = {scan, predicted_points(objects, footprint_)};
+  const bool moves =
+      std::abs(measured_.linear) > kStandstillSpeed || std::abs(measured_.angular) > 2 * kStandstillSpeed;
+  const double free =
+      clearance_along(footprint_, points_of(scan.scan, scan.laser), moves ? measured_ : intended_, objects);
+  const double age = std::clamp((ros::Time::now() - scan.stamp).toSec(), 0.0, kScanTimeout);
   if (guards_) publish(std::max(0.0, free - std::abs(measured_.linear) * age));
 }
 
 void ScanGuard::watch() {
   const bool trusted = input_.problem().empty();
   const std::lock_guard lock(mutex_);
-  const bool stands = std::abs(measured_.linear) < kStanding && std::abs(measured_.angular) < kStanding;
-  stood_ = stands ? stood_ + 1 : 0;
-  if (!active_ && guards_ && stood_ >= kStood) {
+  const bool stands = std::abs(measured_.linear) < kStandstillSpeed && std::abs(measured_.angular) < kStandstillSpeed;
+  standstill_ticks_ = stands ? standstill_ticks_ + 1 : 0;
+  if (!active_ && guards_ && standstill_ticks_ >= kStandstillTicks) {
     guards_ = false;
     publish(std::numeric_limits<double>::infinity());
   }

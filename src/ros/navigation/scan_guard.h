@@ -1,9 +1,9 @@
 #pragma once
 /// Publishes `clearance` from the laser while a goal is driven, in a thread of its own: planning delays it by nothing.
 ///
-/// With a scan that does not count the clearance is 0, and the robot stands. After the goal, once the robot has stood
-/// for 1 s, it is infinite, so that the robot can be driven by hand. The start is as the end of a goal. A navigate that
-/// ended while it drove has left the clearance 0 and a path. That goes on until follow_path hears that it is cancelled.
+/// While no scan is accepted the clearance is 0, and the robot stands. After the goal, once the robot has stood still
+/// for 1 s, it is infinite, so that the robot can be driven manually. The node starts in the same state. If it ended
+/// while driving, the clearance is still 0 and follow_path still has a path, until that path is cancelled.
 
 #include <ros/callback_queue.h>
 #include <std_msgs/Float64.h>
@@ -12,14 +12,14 @@
 #include <optional>
 #include <string>
 
-#include "navigation/guard.h"
+#include "navigation/motion_clearance.h"
 #include "ros/navigation/scan_input.h"
 
 namespace robot_control::navigation {
 
 struct GuardedScan {
   PlacedScan seen;
-  std::vector<Point> ahead;  ///< in base axes: places that things in motion will take
+  std::vector<Point> predicted;  ///< in base axes: points that moving objects will occupy
 };
 
 class ScanGuard {
@@ -29,13 +29,13 @@ class ScanGuard {
 
   const ScanInput& input() const noexcept { return input_; }
 
-  /// `intended` is the motion that begins next, where the robot stands.
+  /// `intended` is the motion that begins next, used while the robot stands.
   void guard(bool active, const PlanarMotion& intended);
 
   /// Returns the newest scan, once.
   std::optional<GuardedScan> next_scan();
 
-  /// Returns what slows the robot, in words; "" if the way ahead is free.
+  /// Returns what slows the robot, in words; "" if the path ahead is free.
   std::string reason();
 
  private:
@@ -54,7 +54,7 @@ class ScanGuard {
   MovingObjects objects_;
   double published_ = 0;  // m
   bool active_ = false, guards_ = true;
-  int stood_ = 0;  // ticks
+  int standstill_ticks_ = 0;  // ticks
 
   ScanInput input_;
   ros::WallTimer timer_;

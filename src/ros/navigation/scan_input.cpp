@@ -21,7 +21,7 @@ std::string ScanInput::problem() const {
   const std::lock_guard lock(mutex_);
   const double now = ros::Time::now().toSec();
   const std::string scan = watch_.problem(now);
-  return scan.empty() && now - used_at_ > kSilence ? place_problem_ : scan;
+  return scan.empty() && now - used_at_ > kScanTimeout ? place_problem_ : scan;
 }
 
 std::string ScanInput::base_frame() const {
@@ -61,7 +61,7 @@ void ScanInput::use_pending() {
   if (!pending_ || odometry_.child_frame_id.empty()) return;
   const ros::Time stamp = pending_->header.stamp;
   if (const double wait = (stamp - odometry_.header.stamp).toSec(); wait > 0) {
-    if (wait > kSilence)
+    if (wait > kScanTimeout)
       place_problem_ = "there is no odom at the stamp of the scan: synchronise the clocks of laser and robot";
     return;
   }

@@ -3,7 +3,7 @@
 /// robot. Both are from tf, the covariance from `odom`.
 ///
 /// A scan waits for a message of `odom` that is not older. One is not used that ScanWatch refuses or does not count,
-/// or whose place is not in tf; `problem` says why after kSilence without a scan that is used.
+/// or whose place is not in tf; `problem` says why after kScanTimeout without a scan that is used.
 
 #include <functional>
 #include <mutex>

@@ -4,8 +4,6 @@
 #include <elf.h>
 #include <link.h>
 
-#include <cstring>
-
 namespace robot_control {
 namespace {
 

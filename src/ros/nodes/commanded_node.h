@@ -2,16 +2,40 @@
 /// A CommandedNode is the controller's node of any kind of robot. It gives the requests of its senders to the loop, by
 /// the safety monitor's permission (ros/inputs/command_intake.h). It follows the commands of the loop.
 
+#include <cstdint>
 #include <mutex>
 #include <string>
 #include <vector>
 
+#include "bus/latest_frames.h"
 #include "loop/processes/controller_process.h"
 #include "ros/inputs/command_input.h"
 #include "ros/nodes/process_node.h"
-#include "ros/reports/reason_history.h"
+#include "signals/command_frame.h"
 
 namespace robot_control {
+
+/// A ReasonHistory collects the CommandReason bits of every cycle for a slower thread.
+class ReasonHistory {
+ public:
+  /// Returns the bits of all cycles after that of the last call up to `newest`, as far as the channel still has them.
+  /// In a new run it returns those of `newest` alone.
+  std::uint64_t collect(const FrameReader<CommandFrame>& channel, const CommandFrame& newest) noexcept {
+    const bool same_run = newest.head.run == run_;
+    std::uint64_t bits = newest.reasons;
+    CommandFrame frame;
+    for (std::uint64_t back = 1; same_run && back < kFrameSlots && cycle_ + back < newest.head.cycle; ++back) {
+      if (channel.at(run_, newest.head.cycle - back, frame) == Lookup::kFrame) bits |= frame.reasons;
+    }
+    run_ = newest.head.run;
+    cycle_ = newest.head.cycle;
+    return bits;
+  }
+
+ private:
+  std::uint64_t run_ = 0;
+  std::uint64_t cycle_ = 0;
+};
 
 class CommandedNode : public ProcessNode<ControllerProcess> {
  protected:

@@ -1,14 +1,12 @@
 #include "ros/reports/diagnostics.h"
 
 #include <algorithm>
-#include <array>
-#include <cstdio>
 #include <numbers>
-#include <span>
 
 #include "files/ascii.h"
 #include "machine/fault_names.h"
 #include "ros/reports/name_list.h"
+#include "signals/formatted_text.h"
 #include "signals/names.h"
 #include "signals/wheeled/slip_detection.h"
 
@@ -33,9 +31,7 @@ void DiagnosticReport::value(const std::string& key, const std::string& text) {
 }
 
 void DiagnosticReport::value(const std::string& key, double number) {
-  std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "%.6g", number);
-  value(key, std::string(text.data()));
+  value(key, formatted("%.6g", number));
 }
 
 void DiagnosticReport::reasons(const std::string& subject, std::span<const BitName> table, std::uint64_t bits,

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "machine/machine_model.h"
-#include "signals/bit_name.h"
 #include "signals/command_frame.h"
+#include "signals/names.h"
 #include "signals/permit.h"
 #include "signals/robot_kinds.h"
 #include "signals/sensor_frame.h"

@@ -1,14 +1,11 @@
 #include "ros/reports/robot_report.h"
 
-#include <sstream>
+#include "signals/formatted_text.h"
 
 namespace robot_control {
 
 std::string summary(const MachineModel& robot) {
-  std::ostringstream text;
-  text.precision(4);
-  text << "robot '" << robot.name << "' of " << robot.source << ": " << robot.parts() << ", " << robot.mass << " kg";
-  return text.str();
+  return "robot '" + robot.name + "' of " + robot.source + ": " + robot.parts() + formatted(", %.4g kg", robot.mass);
 }
 
 std::string sentence(const RobotNote& note) {

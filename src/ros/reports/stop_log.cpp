@@ -1,10 +1,9 @@
 #include "ros/reports/stop_log.h"
 
 #include <algorithm>
-#include <array>
-#include <cstdio>
 #include <limits>
 
+#include "signals/formatted_text.h"
 #include "signals/names.h"
 
 namespace robot_control {
@@ -24,12 +23,6 @@ std::string cause_text(const SafetyStatus& status, std::size_t i) {
 /// Some warnings are of the machine or its files. Those of conditions limit the speed.
 bool limits_speed(const std::string& warning) {
   return std::ranges::any_of(kStopCauseNames, [&](const BitName& row) { return row.name == warning; });
-}
-
-std::string speed_text(double speed) {
-  std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "%.3g m/s", speed);
-  return text.data();
 }
 
 }  // namespace
@@ -86,10 +79,8 @@ void StopLog::look_at_start(const SafetyStatus& status, std::vector<ReportLine>&
   awaiting_ = awaiting;
   if (!awaiting || awaiting_since_ < 0 || now - awaiting_since_ < zero_silence_ + kReserve) return;
   awaiting_since_ = -1;
-  std::array<char, 128> text{};
-  std::snprintf(text.data(), text.size(), "%s: waits for a zero request; stop the sender for %g s or send zero",
-                status.state_name.c_str(), zero_silence_);
-  lines.push_back({true, text.data()});
+  lines.push_back({true, formatted("%s: waits for a zero request; stop the sender for %g s or send zero",
+                                   status.state_name.c_str(), zero_silence_)});
 }
 
 bool StopLog::due(const std::string& name, bool present, double now) {
@@ -114,7 +105,7 @@ void StopLog::look_at_warnings(const SafetyStatus& status, std::vector<ReportLin
     if (!due(status.warnings[i], true, now)) continue;
     std::string text = "warning: " + status.warnings[i] + ": " + status.warning_sentences[i];
     if (limits_speed(status.warnings[i]) && status.speed_limit < std::numeric_limits<double>::infinity()) {
-      text += "; no faster than " + speed_text(status.speed_limit);
+      text += "; no faster than " + formatted("%.3g m/s", status.speed_limit);
     }
     lines.push_back({true, text});
   }

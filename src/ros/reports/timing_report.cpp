@@ -1,7 +1,6 @@
 #include "ros/reports/timing_report.h"
 
-#include <array>
-#include <cstdio>
+#include "signals/formatted_text.h"
 
 namespace robot_control {
 namespace {
@@ -11,12 +10,10 @@ constexpr std::int64_t kReadingPeriod = 1'000'000'000;  // ns
 }  // namespace
 
 std::string in_words(const DurationFigures& figures) {
-  std::array<char, 160> text{};
   const auto us = [](std::int64_t duration_ns) { return static_cast<double>(duration_ns) * 1e-3; };
-  std::snprintf(text.data(), text.size(), "min %.1f p50 %.1f p99 %.1f p99.9 %.1f max %.1f n %llu", us(figures.min),
-                us(figures.p50), us(figures.p99), us(figures.p999), us(figures.max),
-                static_cast<unsigned long long>(figures.samples));
-  return text.data();
+  return formatted("min %.1f p50 %.1f p99 %.1f p99.9 %.1f max %.1f n %llu", us(figures.min), us(figures.p50),
+                   us(figures.p99), us(figures.p999), us(figures.max),
+                   static_cast<unsigned long long>(figures.samples));
 }
 
 std::string violations_in_words(const RealtimeCounts& counts, bool memory_locked) {

@@ -1,31 +1,23 @@
 #include "ros/wheeled/command_report.h"
 
-#include <array>
 #include <cmath>
-#include <cstdio>
 
 #include "control/wheeled/limits/drive_limits.h"
+#include "signals/formatted_text.h"
 #include "signals/names.h"
 
 namespace robot_control {
 namespace {
 
-constexpr std::uint64_t kNoWish = kReasonNoCommand | kReasonTimedOut | kReasonRefused | kReasonManySenders;
+constexpr std::uint64_t kNoRequestInForce = kReasonNoCommand | kReasonTimedOut | kReasonRefused | kReasonManySenders;
 constexpr std::uint64_t kNoEffect = kReasonNoPermit | kReasonPermitBrake | kReasonPermitRamp | kReasonBadSensors;
 constexpr std::uint64_t kHindrances = kNoEffect | kReasonPermitSlow | kReasonPartIgnored;
 
-template <class... Values>
-std::string format(const char* pattern, Values... values) {
-  std::array<char, 300> text{};
-  std::snprintf(text.data(), text.size(), pattern, values...);
-  return text.data();
-}
-
-/// Returns the text of the request. Speeds below kRounding, remains of a sender's arithmetic, are shown as zero.
+/// Returns the text of the request. Speeds below kShownAsZero, remains of a sender's arithmetic, are shown as zero.
 std::string requested_text_of(const PlanarTwist& requested) {
-  constexpr double kRounding = 1e-6;  // m/s and rad/s
-  const auto shown = [](double speed) { return std::abs(speed) < kRounding ? 0.0 : speed; };
-  return format("cmd_vel %.4g m/s, %.4g rad/s", shown(requested.linear), shown(requested.angular));
+  constexpr double kShownAsZero = 1e-6;  // m/s and rad/s
+  const auto shown = [](double speed) { return std::abs(speed) < kShownAsZero ? 0.0 : speed; };
+  return formatted("cmd_vel %.4g m/s, %.4g rad/s", shown(requested.linear), shown(requested.angular));
 }
 
 std::string sentence_of(std::uint64_t reasons) {
@@ -81,9 +73,9 @@ std::string CommandReport::text(const Report& report, const CommandFrame& comman
   if (report.limited) {
     const double scale = kinematics_.wheel_speed_scale(requested);
     const PlanarTwist twist = within_speed({scale * requested.linear, scale * requested.angular}, limits_);
-    requested_text += format(", limited to %.3g m/s, %.3g rad/s", twist.linear, twist.angular);
+    requested_text += formatted(", limited to %.3g m/s, %.3g rad/s", twist.linear, twist.angular);
   }
-  return format("left %.2f m/s, right %.2f m/s (%s)", report.rims.left, report.rims.right, requested_text.c_str());
+  return formatted("left %.2f m/s, right %.2f m/s (%s)", report.rims.left, report.rims.right, requested_text.c_str());
 }
 
 std::vector<ReportLine> CommandReport::update(const CommandFrame& command) {
@@ -97,13 +89,13 @@ std::vector<ReportLine> CommandReport::update(const CommandFrame& command) {
   if (timed_out) {
     const bool moved = reported_ && !reported_->zero && !stands;
     if (moved && timeout_gap_.over(now_ns)) {
-      lines.push_back({true, format("cmd_vel is silent for %g s: ramping down to standstill", timeout_)});
+      lines.push_back({true, formatted("cmd_vel is silent for %g s: ramping down to standstill", timeout_)});
       timeout_gap_.begin(now_ns);
     }
     reported_.reset();
   }
   if ((command.reasons & kReasonRefused) != 0) reported_.reset();
-  if ((command.reasons & kNoWish) != 0 || command.requests_received == 0) return lines;
+  if ((command.reasons & kNoRequestInForce) != 0 || command.requests_received == 0) return lines;
 
   const Report made = made_of(command);
   if (made.hindrance != hindrance_) hindered_since_ns_ = now_ns;

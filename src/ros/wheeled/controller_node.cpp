@@ -14,7 +14,6 @@
 #include "ros/inputs/command_input.h"
 #include "ros/inputs/command_mux.h"
 #include "ros/inputs/input_topic.h"
-#include "ros/inputs/live_overrides.h"
 #include "ros/inputs/reconfigure.h"
 #include "ros/messages/motion_messages.h"
 #include "ros/messages/service_answer.h"

@@ -14,7 +14,7 @@ constexpr double kUpright = 1e-9;  // rad; below it no direction of tilting is k
 }  // namespace
 
 void Attitude::step(const Eigen::Vector3d* rate, const Eigen::Vector3d* force, double dt) noexcept {
-  uncorrected_ = std::min(uncorrected_ + dt, 2 * kTrust);
+  uncorrected_ = std::min(uncorrected_ + dt, 2 * kTrustTime);
   if (rate != nullptr) carry(*rate, dt);
   if (force != nullptr) pull(force_time_ > 0 ? smooth(*force, dt) : *force, dt);
   horizontal_ = std::hypot((*up_).x(), (*up_).y());

@@ -22,8 +22,8 @@
 /// T balances the first two: b T = Δv/(g T) for b = 0.05 rad/s and Δv = 1 m/s gives T = 1.4 s. kBand: three standard
 /// deviations of an offset of 0.2 m/s² and of noise of 0.05 m/s², and 1 m/s² of braking, which adds 0.05 m/s² to |a|.
 ///
-/// After kTrust without a correction u is unknown, because of the gyro's bias, until the next correction, which sets u
-/// = â.
+/// After kTrustTime without a correction u is unknown, because of the gyro's bias, until the next correction, which
+/// sets u = â.
 ///
 /// (Complementary filter: R. Mahony, T. Hamel, J.-M. Pflimlin, IEEE TAC 53 (2008) 1203, for the vertical only.)
 
@@ -37,7 +37,7 @@ class Attitude {
  public:
   static constexpr double kTimeConstant = 1.5;  ///< s, T
   static constexpr double kBand = 1.0;          ///< m/s²
-  static constexpr double kTrust = 3.0;         ///< s, 0.15 rad of a bias of 0.05 rad/s
+  static constexpr double kTrustTime = 3.0;     ///< s, 0.15 rad of a bias of 0.05 rad/s
 
   /// `force_time`: s, of the low pass of a − c; 0: none.
   explicit Attitude(double force_time = 0) noexcept : force_time_(force_time) {}
@@ -48,7 +48,7 @@ class Attitude {
   /// `dt` s since the last step.
   void step(const Eigen::Vector3d* rate, const Eigen::Vector3d* force, double dt) noexcept;
 
-  bool known() const noexcept { return uncorrected_ <= kTrust; }
+  bool known() const noexcept { return uncorrected_ <= kTrustTime; }
 
   /// u; while it is not known, the base's z axis or the last one known.
   Eigen::Vector3d up() const noexcept { return *up_; }
@@ -69,8 +69,8 @@ class Attitude {
   double force_time_;
   Stored<Eigen::Vector3d> force_;  ///< m/s², the low pass; zero before the first sample
   Stored<Eigen::Vector3d> up_{Eigen::Vector3d::UnitZ()};
-  double horizontal_ = 0;            ///< length of u's part across the base's z axis
-  double uncorrected_ = 2 * kTrust;  ///< s since the last correction
+  double horizontal_ = 0;                ///< length of u's part across the base's z axis
+  double uncorrected_ = 2 * kTrustTime;  ///< s since the last correction
   double tilt_rate_ = 0;
 };
 

@@ -11,16 +11,57 @@
 /// valid or not finite is not used.
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <array>
+#include <cmath>
+#include <cstddef>
 #include <cstdint>
 
 #include "machine/machine_model.h"
 #include "machine/stored.h"
 #include "safety/measurements/attitude.h"
-#include "safety/measurements/rate_change.h"
+#include "signals/geometry.h"
 #include "signals/sensor_frame.h"
 
 namespace robot_control {
+
+/// How much a gyro's rates change from sample to sample.
+///
+///   change = median of |ω_k − ω_{k−1}| over the last kSamples changes, rad/s
+///
+/// ω_k are the samples that differ from the one before: a gyro that is slower than the loop repeats its samples. A
+/// median, because a single wrong sample causes two changes, and a foot that lands few: neither is an IMU that fails.
+/// Before kSamples changes the missing ones are 0.
+class RateChange {
+ public:
+  static constexpr std::size_t kSamples = 9;  ///< at 1 kHz the fifth jump in a row is found within 5 ms
+
+  void reset() noexcept { *this = {}; }
+
+  /// `rate`: ω, rad/s, finite, in any fixed axes of the body.
+  void step(const Vector3& rate) noexcept {
+    const double change = std::hypot(rate[0] - rate_[0], rate[1] - rate_[1], rate[2] - rate_[2]);
+    rate_ = rate;
+    if (!known_ || change == 0) {
+      known_ = true;
+      return;
+    }
+    changes_[next_] = change;
+    next_ = (next_ + 1) % kSamples;
+    std::array<double, kSamples> sorted = changes_;
+    std::nth_element(sorted.begin(), sorted.begin() + kSamples / 2, sorted.end());
+    value_ = sorted[kSamples / 2];
+  }
+
+  double value() const noexcept { return value_; }  ///< rad/s
+
+ private:
+  bool known_ = false;  ///< rate_
+  Vector3 rate_{};      ///< rad/s, the last one
+  std::array<double, kSamples> changes_{};
+  std::size_t next_ = 0;
+  double value_ = 0;
+};
 
 class BodyMotion {
  public:
@@ -44,7 +85,7 @@ class BodyMotion {
   bool felt() const noexcept { return felt_; }                ///< The accelerometer brought a sample.
   Eigen::Vector3d rate() const noexcept { return *rate_; }    ///< rad/s, base axes; NaN without a sample
   double force() const noexcept { return (*force_).norm(); }  ///< m/s², |a|, of the last good sample
-  /// rad/s, between samples (rate_change.h); 0 without a sample in this cycle.
+  /// rad/s, between samples (RateChange); 0 without a sample in this cycle.
   double rate_change() const noexcept { return turned_ ? rate_change_.value() : 0; }
   /// s for which the samples stayed bit for bit the same while the machine moved.
   double gyro_repeated() const noexcept { return gyro_.repeated; }

@@ -16,9 +16,9 @@ WheelMotion::WheelMotion(std::size_t wheels, double period) noexcept
 
 void WheelMotion::enter_run() noexcept {
   sampled_ = speed_known_ = acceleration_known_ = stepped_ = false;
-  newest_ = kNever;
+  newest_ = kNoCycle;
   angle_ = last_step_ = speed_ = acceleration_ = quantum_ = speed_tolerance_ = acceleration_tolerance_ = {};
-  for (Sample& sample : samples_) sample.cycle = kNever;
+  for (Sample& sample : samples_) sample.cycle = kNoCycle;
 }
 
 void WheelMotion::step(const SensorFrame& sensors) noexcept {
@@ -48,7 +48,7 @@ bool WheelMotion::read_angles(const SensorFrame& sensors) noexcept {
     all_finite = all_finite && std::isfinite(angle[i]);
   }
   if (!all_finite) return false;
-  if (newest_ != kNever) refine_quanta(angle);
+  if (newest_ != kNoCycle) refine_quanta(angle);
   newest_ = sensors.head.cycle;
   angle_ = angle;
   samples_[newest_ % kSlots] = {newest_, angle};

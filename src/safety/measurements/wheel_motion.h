@@ -56,10 +56,10 @@ class WheelMotion {
   using Values = std::array<double, kMaxWheels>;
 
   struct Sample {
-    std::uint64_t cycle = kNever;
+    std::uint64_t cycle = kNoCycle;
     Values angle{};
   };
-  static constexpr std::uint64_t kNever = ~std::uint64_t{0};
+  static constexpr std::uint64_t kNoCycle = ~std::uint64_t{0};
   static constexpr std::size_t kSlots = 256;  // two windows of twice the length, and more
 
   bool read_angles(const SensorFrame& sensors) noexcept;
@@ -75,7 +75,7 @@ class WheelMotion {
   bool speed_known_ = false;
   bool acceleration_known_ = false;
   bool stepped_ = false;  ///< `last_step_` is valid
-  std::uint64_t newest_ = kNever;
+  std::uint64_t newest_ = kNoCycle;
   Values angle_{};
   Values last_step_{};
   Values speed_{};

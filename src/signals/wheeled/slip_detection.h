@@ -4,9 +4,7 @@
 /// With an IMU such as the BMI088, slip above 0.025 m/s times the level is detected within 0.2 s
 /// (estimation/wheeled/slip/slip_detector.h). From kSlowDetection on this is 0.08 m/s, from kNoDetection on 1 m/s.
 
-#include <array>
-#include <cstdio>
-#include <string>
+#include "signals/formatted_text.h"
 
 namespace robot_control {
 
@@ -17,10 +15,8 @@ inline constexpr double kNoDetection = 40;
 inline std::string slip_detection(double residual_level) {
   if (residual_level == 0) return "unknown: nothing was compared yet";
   if (residual_level < kSlowDetection) return "on";
-  std::array<char, 80> text{};
-  std::snprintf(text.data(), text.size(), "%s: residuals %.0f × the sensors' noise",
-                residual_level < kNoDetection ? "slow" : "off", residual_level);
-  return text.data();
+  return formatted("%s: residuals %.0f × the sensors' noise", residual_level < kNoDetection ? "slow" : "off",
+                   residual_level);
 }
 
 }  // namespace robot_control

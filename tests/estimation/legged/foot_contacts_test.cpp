@@ -58,7 +58,7 @@ TEST(FootContacts, AreNotFoundInLegsThatSwing) {
     legs.step(0);
     if (k < 20) continue;
     for (std::size_t leg = 0; leg < kLegs; ++leg) {
-      // The swing needs up to 25 N. Masses and angles of the leg change within kObserve.
+      // The swing needs up to 25 N. Masses and angles of the leg change within kObserverTime.
       EXPECT_NEAR(legs.state.loads[leg], 0, 6) << leg;
       EXPECT_EQ(legs.state.probability[leg], 0) << leg;
     }

@@ -2,8 +2,8 @@
 
 #include <filesystem>
 
+#include "log/bag_writer.h"
 #include "log/log_error.h"
-#include "log/log_file.h"
 #include "support/matchers.h"
 #include "support/temporary_folder.h"
 

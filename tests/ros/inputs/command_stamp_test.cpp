@@ -1,7 +1,6 @@
-#include "ros/inputs/command_stamp.h"
-
 #include <gtest/gtest.h>
 
+#include "ros/inputs/command_input.h"
 #include "ros/nanoseconds.h"
 
 namespace robot_control {

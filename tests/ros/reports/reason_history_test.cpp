@@ -1,8 +1,8 @@
-#include "ros/reports/reason_history.h"
-
 #include <gtest/gtest.h>
 
 #include <memory>
+
+#include "ros/nodes/commanded_node.h"
 
 namespace robot_control {
 namespace {

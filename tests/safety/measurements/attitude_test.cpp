@@ -144,10 +144,10 @@ TEST_F(AttitudeTest, LivesOnTheAccelerometerWithoutAGyro) {
 
 TEST_F(AttitudeTest, IsNotKnownForLongWithoutAnAccelerometer) {
   const Vector3d rate(0.05, 0, 0);
-  const int trusted = static_cast<int>(std::lround(Attitude::kTrust / kStep));
+  const int trusted = static_cast<int>(std::lround(Attitude::kTrustTime / kStep));
   for (int i = 0; i < trusted - 1; ++i) attitude_.step(&rate, nullptr, kStep);
   EXPECT_TRUE(attitude_.known());
-  EXPECT_NEAR(attitude_.tilt(), 0.05 * (Attitude::kTrust - kStep), 1e-9);
+  EXPECT_NEAR(attitude_.tilt(), 0.05 * (Attitude::kTrustTime - kStep), 1e-9);
   for (int i = 0; i < 3; ++i) attitude_.step(&rate, nullptr, kStep);
   EXPECT_FALSE(attitude_.known());
   step({0, 0, 0}, rest());

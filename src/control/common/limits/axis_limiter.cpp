@@ -6,7 +6,7 @@
 namespace robot_control {
 namespace {
 
-constexpr double kRounding = 1e-12;
+constexpr double kJerkTolerance = 1e-12;
 
 /// Returns the largest a with F(a) ≤ distance.
 double max_acceleration_to_reach(double distance, double step, double dt) noexcept {
@@ -63,7 +63,7 @@ AxisStep axis_step(const AxisState& state, double target, const AxisLimits& limi
   step.state.speed = next == arriving ? target : state.speed + ahead * next * dt;
   const bool arrives = step.state.speed == target;  // Arrival by rounding counts, too.
   // An acceleration that rounding lifted above the jerk of one step would lead beyond the target.
-  const bool faster = next > release_jerk * dt * (1 + kRounding);
+  const bool faster = next > release_jerk * dt * (1 + kJerkTolerance);
   step.state.acceleration = ahead * (arrives && !faster ? std::min(next, release_jerk * dt) : next);
   const bool beyond_zero = state.speed == 0 ? step.state.speed != 0 : opposite(state.speed, step.state.speed);
   const bool stops = beyond_zero && (target == 0 || opposite(step.state.speed, target));

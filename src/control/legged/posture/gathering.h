@@ -3,7 +3,6 @@
 /// there. On a slope that is too steep the robot does not stand up (ground_slope.h).
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "control/legged/leg_tuning.h"

@@ -14,11 +14,11 @@
 namespace robot_control {
 namespace {
 
-constexpr double kPart = 0.5;
+constexpr double kUsedShare = 0.5;
 constexpr double kFriction = 0.5;
-constexpr double kMinimum = 0.1;  // m/s² and rad/s²
-constexpr double kSmall = 0.01;   // m/s² and rad/s², at which no foot lifts
-constexpr double kSettle = 0.05;  // s, of an axis that arrives
+constexpr double kMinimum = 0.1;             // m/s² and rad/s²
+constexpr double kSmallAcceleration = 0.01;  // m/s² and rad/s², at which no foot lifts
+constexpr double kSettle = 0.05;             // s, of an axis that arrives
 
 using Feet = std::array<Eigen::Vector3d, kLegs>;
 using Axes = Eigen::Matrix<double, 6, 1>;
@@ -48,15 +48,15 @@ std::array<AxisBounds, 6> body_bounds(const LegModel& robot) {
   const double time = std::sqrt(robot.leg_length() / kReferenceLeg);
   std::array<AxisBounds, 6> bounds;
   for (std::size_t axis = 0; axis < bounds.size(); ++axis) {
-    const Feet moved = forces(robot, stance, kSmall * Axes::Unit(axis));
+    const Feet moved = forces(robot, stance, kSmallAcceleration * Axes::Unit(axis));
     double least = std::numeric_limits<double>::infinity();
     for (std::size_t leg = 0; leg < kLegs; ++leg) {
-      const Eigen::Vector3d change = (moved[leg] - weight[leg]) / kSmall;
+      const Eigen::Vector3d change = (moved[leg] - weight[leg]) / kSmallAcceleration;
       const double carried = kFriction * weight[leg].z() / (change.head<2>().norm() + kFriction * std::abs(change.z()));
       least = std::min(least, std::isfinite(carried) ? carried : 0);
     }
     bounds[axis] = {.speed = axis < 3 ? 0.4 * time : 0.9 / std::max(1.0, time),
-                    .acceleration = std::max(kMinimum, kPart * least)};
+                    .acceleration = std::max(kMinimum, kUsedShare * least)};
   }
   return bounds;
 }

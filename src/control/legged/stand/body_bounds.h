@@ -3,10 +3,10 @@
 /// gravity above the middle of the feet, which stand where they lay. With the forces f₀ of the feet that carry the
 /// weight there, and fᵢ those that accelerate axis i by one unit,
 ///
-///   Aᵢ = kPart min over feet of μ f₀z / (|fᵢxy| + μ |fᵢz|),   μ = kFriction
+///   Aᵢ = kUsedShare min over feet of μ f₀z / (|fᵢxy| + μ |fᵢz|),   μ = kFriction
 ///
 /// f₀ is vertical. If the axes share their acceleration, Σ |aᵢ|/Aᵢ ≤ 1 (tracked_axis.h), every foot keeps the part
-/// 1 − kPart of its load and of its grip while all four stand, whatever is requested. This part is left for other
+/// 1 − kUsedShare of its load and of its grip while all four stand, whatever is requested. This part is left for other
 /// poses, for the times on three feet, and for disturbances. Aᵢ is at least 0.1 m/s² or rad/s².
 ///
 /// The speeds are 0.4 m/s and 0.9 rad/s of legs of 0.426 m, and change with √l and 1/√l. No angle is faster than

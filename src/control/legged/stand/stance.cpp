@@ -12,9 +12,9 @@
 namespace robot_control {
 namespace {
 
-constexpr double kMinBend = 0.3;   // rad, of the knee of a standing leg: a straight one turns without bound
-constexpr double kSmooth = 0.005;  // s, low pass of the accelerations
-constexpr double kShift = 0.6;     // of the way from the middle to the centroid of three feet
+constexpr double kMinBend = 0.3;             // rad, of the knee of a standing leg: a straight one turns without bound
+constexpr double kAccelerationTime = 0.005;  // s, low pass of the accelerations
+constexpr double kCentroidShare = 0.6;       // of the way from the middle to the centroid of three feet
 
 using Map = Eigen::Map<const Eigen::Vector3d>;
 using Efforts = Eigen::Matrix<double, kLeggedDofs, 1>;
@@ -110,7 +110,7 @@ Eigen::Vector2d Stance::above_support(const State& state) const noexcept {
     middle += place / kLegs;
     if (leg != state.lifted) three += place / (kLegs - 1);
   }
-  if (state.lifted != kLegs) middle += kShift * (three - middle);
+  if (state.lifted != kLegs) middle += kCentroidShare * (three - middle);
   const double height = nominal_ - ground_ + state.centre[2];  // of the centre of gravity
   return middle - Map(state.centre.data()).head<2>() + height / state.up[2] * Map(state.up.data()).head<2>();
 }
@@ -139,7 +139,7 @@ void Stance::accelerate(State& state, const LeggedMotion& motion) const noexcept
       Eigen::Map<const Eigen::Matrix<double, kLegsJoints, 1>>(motion.rates.data());
   for (std::size_t i = 0; i < velocity.size(); ++i) {
     const double change = (velocity[i] - state.velocity[i]) / period_;
-    state.acceleration[i] += std::min(1.0, period_ / kSmooth) * (change - state.acceleration[i]);
+    state.acceleration[i] += std::min(1.0, period_ / kAccelerationTime) * (change - state.acceleration[i]);
   }
   state.velocity = velocity;
 }

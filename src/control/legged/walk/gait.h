@@ -98,7 +98,7 @@ constexpr bool walkable(const Gait& gait) noexcept {
 /// bear where a leg's phase passes 0 or the duty; gaps of rounding errors between these are left out.
 template <class Each>
 void for_each_support(const Gait& gait, const Each& each) {
-  constexpr double kRounding = 1e-9;
+  constexpr double kMinInterval = 1e-9;
   std::array<double, 2 * kLegs + 1> changes{};
   for (std::size_t leg = 0; leg < kLegs; ++leg) {
     changes[2 * leg] = 1 - gait.leg_phase(leg, 0);
@@ -107,7 +107,7 @@ void for_each_support(const Gait& gait, const Each& each) {
   std::sort(changes.begin(), changes.end() - 1);
   changes.back() = changes.front() + 1;
   for (std::size_t i = 0; i + 1 < changes.size(); ++i) {
-    if (changes[i + 1] - changes[i] < kRounding) continue;
+    if (changes[i + 1] - changes[i] < kMinInterval) continue;
     std::bitset<kLegs> feet;
     for (std::size_t leg = 0; leg < kLegs; ++leg) feet[leg] = gait.bears(leg, (changes[i] + changes[i + 1]) / 2);
     each(changes[i + 1] - changes[i], feet);

@@ -9,17 +9,17 @@
 namespace robot_control {
 namespace {
 
-constexpr double kSlow = 0.3;         // m/s, of a body of legs of kReferenceLeg whose walk may end
-constexpr double kFastFrom = 0.4;     // m/s, of the feet (docs/evidence/derivations.md)
-constexpr double kFastUntil = 0.3;    // m/s, likewise
-constexpr double kPlaced = 0.1;       // of the leg length, of the feet at the end of a walk
-constexpr double kInPlace = 3;        // s, after which a walk ends wherever the feet are
-constexpr double kCarriedPart = 0.5;  // of the ranges and speeds of a standing body
-constexpr double kOnTheSpot = 0.75;   // of what the legs can, in a pose: the rest is for a twist
-constexpr double kLessLean = 0.7;     // of a pose that they do not carry on the spot
-constexpr double kNominal = 0.0005;   // m, rad: a body this near to the nominal pose is in it
-constexpr int kCarriedHalvings = 5;   // down to this part of a twist, 2⁻⁵
-constexpr int kUseSamples = 8;        // of a swing: joints are fastest after 2, 4 and 6 of them
+constexpr double kMaxEndSpeed = 0.3;    // m/s, of a body of legs of kReferenceLeg whose walk may end
+constexpr double kFastFrom = 0.4;       // m/s, of the feet (docs/evidence/derivations.md)
+constexpr double kFastUntil = 0.3;      // m/s, likewise
+constexpr double kMaxFootOffset = 0.1;  // of the leg length, of the feet at the end of a walk
+constexpr double kInPlace = 3;          // s, after which a walk ends wherever the feet are
+constexpr double kCarriedPart = 0.5;    // of the ranges and speeds of a standing body
+constexpr double kOnTheSpot = 0.75;     // of what the legs can, in a pose: the rest is for a twist
+constexpr double kLeanFactor = 0.7;     // of a pose that they do not carry on the spot
+constexpr double kNominal = 0.0005;     // m, rad: a body this near to the nominal pose is in it
+constexpr int kCarriedHalvings = 5;     // down to this part of a twist, 2⁻⁵
+constexpr int kUseSamples = 8;          // of a swing: joints are fastest after 2, 4 and 6 of them
 constexpr std::uint64_t kEmergencies = kReasonTimedOut | kReasonRefused | kReasonManySenders | kReasonPermitRamp;
 
 /// Returns which part of what the legs can is used: Σ |xᵢ|/cᵢ.
@@ -50,7 +50,7 @@ Walk::Walk(const LegModel& robot, const LegControllerParameters& parameters, dou
       walker_(robot, all_gaits(parameters.gaits), parameters.friction, period),
       leg_use_(robot, nominal_stance(robot)),
       time_scale_(walker_.gaits()[kFastGait].period / kGaits[kFastGait].period),
-      placed_(kPlaced * robot.legs[0].kinematics.length()) {
+      placed_(kMaxFootOffset * robot.legs[0].kinematics.length()) {
   const NominalStance stance = nominal_stance(robot);
   fastest_ = walking_speeds(robot, stance, walker_.gaits());
   for (const Eigen::Vector3d& foot : stance.feet)
@@ -118,7 +118,7 @@ bool Walk::step(State& state, const ControlInput& input, const Request& request,
 /// Returns true if the body is slow, and all feet are so near to their nominal places that the robot can lie down.
 bool Walk::may_end(const State& state, const ControlInput& input) const noexcept {
   const Vector3& moves = input.state->base.twist_base.linear;
-  const bool slow = std::hypot(moves[0], moves[1]) < kSlow * time_scale_;
+  const bool slow = std::hypot(moves[0], moves[1]) < kMaxEndSpeed * time_scale_;
   return slow &&
          (state.idle > kInPlace || walker_.farthest_foot(walker_.measure(*input.sensors, *input.state)) < placed_);
 }
@@ -154,8 +154,8 @@ WalkingTwist Walk::capable(const State& state, std::uint64_t wanted) const noexc
 
 /// Returns true if the legs carry the body at this twist, in this gait and the pose in force.
 bool Walk::carries(const State& state, std::uint64_t gait, const WalkingTwist& twist) const noexcept {
-  constexpr double kRounding = 1e-9;
-  if (used_part(twist, fastest_[gait]) > 1 + kRounding) return false;
+  constexpr double kTwistTolerance = 1e-9;
+  if (used_part(twist, fastest_[gait]) > 1 + kTwistTolerance) return false;
   return gait == state.walker.gait || nominal(place_of(state.carried)) ||
          used(state, twist, place_of(state.carried), gait) <= 1;
 }
@@ -223,7 +223,7 @@ void Walk::lean(State& state, const Posture& posture, std::uint64_t wanted, std:
     state.lean_wanted = state.lean_target = to;
     for (int i = 0; i < kCarriedHalvings && !nominal(state.lean_target); ++i) {
       if (used(state, {}, state.lean_target, wanted) <= kOnTheSpot) break;
-      for (double& axis : state.lean_target) axis *= kLessLean;
+      for (double& axis : state.lean_target) axis *= kLeanFactor;
     }
   }
   if (state.lean_target != to) reasons |= kReasonOutOfReach;

@@ -2,12 +2,10 @@
 
 #include <Eigen/Geometry>
 #include <Eigen/LU>
-#include <algorithm>
 #include <cmath>
 #include <optional>
 
 #include "control/legged/walk/foothold.h"
-#include "control/legged/walk/leg_use.h"
 #include "control/legged/walk/swing.h"
 #include "control/legged/walk/walking_speed.h"
 #include "machine/gravity.h"
@@ -15,14 +13,14 @@
 namespace robot_control {
 namespace {
 
-constexpr double kFarthest = 0.2;       // m, the target from the robot, of a leg of kReferenceLeg
-constexpr double kFarthestYaw = 0.3;    // rad
-constexpr double kGroundTime = 0.05;    // s, in which the ground follows the feet
-constexpr double kLevel = 0.1;          // of a leg length, by how much the feet have to be apart to show a slope
-constexpr double kEarly = 0.5;          // of the swing, from which on a foot may touch down
-constexpr double kTouches = 0.5;        // probability of a contact
-constexpr int kReachHalvings = 6;       // down to this part of a twist, 2⁻⁶
-constexpr double kTouchTime = 0.005;    // s, for which an early foot touches: the observed load is noisy in the air
+constexpr double kFarthest = 0.2;           // m, the target from the robot, of a leg of kReferenceLeg
+constexpr double kFarthestYaw = 0.3;        // rad
+constexpr double kGroundTime = 0.05;        // s, in which the ground follows the feet
+constexpr double kMinFootSpread = 0.1;      // of a leg length, by how much the feet have to be apart to show a slope
+constexpr double kEarliestTouchdown = 0.5;  // of the swing, from which on a foot may touch down
+constexpr double kTouches = 0.5;            // probability of a contact
+constexpr int kReachHalvings = 6;           // down to this part of a twist, 2⁻⁶
+constexpr double kTouchTime = 0.005;        // s, for which an early foot touches: the observed load is noisy in the air
 constexpr double kTouchRadius = 0.003;  // m, in which it stays meanwhile: a wrong angle of a joint looks like a load
 
 using Map = Eigen::Map<Eigen::Vector3d>;
@@ -164,7 +162,7 @@ void Walker::move(State& state, const WalkInput& input, const WalkingBody& body)
 /// Returns the plane on which the feet bore last: its height at the base's origin, and its slopes to the front and
 /// left.
 Eigen::Vector3d Walker::fit_ground(const State& state) const noexcept {
-  const double level = kLevel * length_;
+  const double level = kMinFootSpread * length_;
   Eigen::Matrix3d squares = Eigen::Vector3d(0, level * level, level * level).asDiagonal();
   Eigen::Vector3d heights = Eigen::Vector3d::Zero();
   for (std::size_t leg = 0; leg < kLegs; ++leg) {
@@ -225,7 +223,7 @@ bool Walker::choose_feet(State& state, const WalkInput& input, const WalkingBody
     } else if (state.swings[leg] == 0) {
       state.bears[leg] = 0;
       state.footprints[leg] = plain(body.feet[leg]);
-    } else if (gait.swung(leg, state.phase) > kEarly && state.touch_times[leg] >= kTouchTime) {
+    } else if (gait.swung(leg, state.phase) > kEarliestTouchdown && state.touch_times[leg] >= kTouchTime) {
       state.bears[leg] = 1;
     }
     state.swings[leg] = swings ? 1 : 0;

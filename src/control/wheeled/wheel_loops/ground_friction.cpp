@@ -1,6 +1,5 @@
 #include "control/wheeled/wheel_loops/ground_friction.h"
 
-#include <algorithm>
 #include <utility>
 
 namespace robot_control {
@@ -12,7 +11,7 @@ GroundFriction::GroundFriction(const DriveTrain& robot) noexcept
 
 void GroundFriction::search(const Turn& turn, double dt) noexcept {
   if (turns(strain_square()) <= 0) return;
-  const bool followed = std::exchange(state_.follows, turn.part >= kFollows);
+  const bool followed = std::exchange(state_.follows, turn.part >= kFollowedShare);
   if (followed) {
     state_.taken = turn.effort;
     state_.impulse = turn.momentum + kObserverTime * turn.effort;
@@ -20,7 +19,7 @@ void GroundFriction::search(const Turn& turn, double dt) noexcept {
   state_.impulse += (turn.effort - state_.taken) * dt;
   state_.taken = (state_.impulse - turn.momentum) / kObserverTime;
   if (!state_.follows) {
-    state_.friction = std::max(state_.friction, std::min(state_.friction + kSearch * dt, kMaxSearched));
+    state_.friction = std::max(state_.friction, std::min(state_.friction + kSearchRate * dt, kMaxSearched));
     return;
   }
   state_.found += state_.slid;

@@ -15,9 +15,9 @@
 /// friction. Treads that rest show nothing about the friction.
 ///
 /// A torque that is too much for the floor would throw the robot into its first turn. Therefore μ̂ begins with
-/// kInitialGroundFriction, which most floors exceed. It rises with kSearch, up to kMaxSearched, while the planned
-/// treads slide and the wheels turn the robot by less than kFollows of the plan. The integrators find more. The search
-/// ends when treads have slid by kLearningWay while the robot turned as planned.
+/// kInitialGroundFriction, which most floors exceed. It rises with kSearchRate, up to kMaxSearched, while the planned
+/// treads slide and the wheels turn the robot by less than kFollowedShare of the plan. The integrators find more. The
+/// search ends when treads have slid by kLearningWay while the robot turned as planned.
 ///
 /// The torque rises until the turn is seen, which would let the robot surge. Therefore an observer of the momentum
 /// finds the friction that the treads take. T is all torque but that for the joints, and P the momentum of the turn.
@@ -47,8 +47,8 @@ class GroundFriction {
  public:
   static constexpr double kReleaseTime = 0.5;     ///< s
   static constexpr double kLearningWay = 0.0025;  ///< m
-  static constexpr double kSearch = 2.0;          ///< 1/s
-  static constexpr double kFollows = 0.8;
+  static constexpr double kSearchRate = 2.0;      ///< 1/s
+  static constexpr double kFollowedShare = 0.8;
   static constexpr double kMaxSearched = 1.0;    ///< friction of rubber on dry concrete
   static constexpr double kObserverTime = 0.04;  ///< s
 
@@ -57,7 +57,7 @@ class GroundFriction {
     WheelValues strain{};                      ///< N·m, z
     double slid = 0;                           ///< m, in the last cycle; ρ·dt of scrub.h
     double found = 0;                          ///< m by which treads slid while the robot turned as planned
-    bool follows = true;                       ///< The robot follows the last plan by kFollows of it.
+    bool follows = true;                       ///< The robot follows the last plan by kFollowedShare of it.
     double impulse = 0;                        ///< s, ∫(T − r)·dt
     double taken = 0;                          ///< r
   };

@@ -7,7 +7,7 @@
 namespace robot_control {
 namespace {
 
-constexpr double kSlow = 5.0;                               // Hz
+constexpr double kCutoffFrequency = 5.0;                    // Hz
 constexpr double kRamp = 0.5, kFrom = 0.75, kUntil = 1.25;  // s
 constexpr double kCount = 2 * std::numbers::pi / kCounts;   // rad
 
@@ -16,7 +16,7 @@ constexpr double kCount = 2 * std::numbers::pi / kCounts;   // rad
 double quantisation_ripple(const WheelLoopGains& gains, const WheelLoad& load, double bandwidth, double effort_limit,
                            double speed, double period) {
   WheelLoop loop(gains, bandwidth, effort_limit, period);
-  const double follows = -std::expm1(-2 * std::numbers::pi * kSlow * period);
+  const double follows = -std::expm1(-2 * std::numbers::pi * kCutoffFrequency * period);
   double angle = 0, velocity = 0;
   double acting = 0, next = 0;  // N·m, in this cycle and the next one
   double slow = 0, square = 0, count = 0;

@@ -11,7 +11,7 @@ namespace robot_control {
 namespace {
 
 constexpr double kSwivelPart = 0.02;
-constexpr double kSupports = 4;
+constexpr double kSupportFactor = 4;
 
 std::string escaped(const std::string& text) {
   std::string result;
@@ -142,7 +142,7 @@ class Writer {
       const RigidBody& wheel = *robot_.moved_by(model_.joints[caster.joint].name);
       if (robot_.bodies[wheel.parent].name == body.name) radius = std::max(radius, caster.shape.radius);
     }
-    return body.joint.type == JointType::kPrismatic ? 0 : kSwivelPart * model_.mass / kSupports * radius * radius;
+    return body.joint.type == JointType::kPrismatic ? 0 : kSwivelPart * model_.mass / kSupportFactor * radius * radius;
   }
 
   void write_inertia(const RigidBody& body) {
@@ -175,7 +175,7 @@ class Writer {
         mesh = "robot_control/mesh/" + std::to_string(meshes_++);
         assets_ += mjcf_mesh(mesh, shape.points);
       }
-      bodies_ += mjcf_shape(shape, mesh, model_.wheels.empty() ? Grip::kOfGround : Grip::kNone, parameters_);
+      bodies_ += mjcf_shape(shape, mesh, model_.wheels.empty() ? Grip::kGround : Grip::kNone, parameters_);
     }
   }
 

@@ -9,7 +9,7 @@
 namespace robot_control {
 namespace {
 
-constexpr double kThinnest = 0.001;  // m
+constexpr double kMinThickness = 0.001;  // m
 
 const char* const kContact =
     R"( contype="2" conaffinity="1" solmix="1e6" solref=".004 1" solimp=".99 .999 .001 .5 2" margin="0" gap="0" mass="0")";
@@ -27,7 +27,7 @@ std::string rolling(const TrueWheel& wheel, const MujocoPlantParameters& paramet
   return standing(parameters);
 }
 
-// Returns the corners of a mesh that is at least kThinnest thick along each principal direction.
+// Returns the corners of a mesh that is at least kMinThickness thick along each principal direction.
 std::vector<Eigen::Vector3d> thickened(std::vector<Eigen::Vector3d> corners) {
   Eigen::Vector3d mean = Eigen::Vector3d::Zero();
   for (const Eigen::Vector3d& corner : corners) mean += corner / static_cast<double>(corners.size());
@@ -41,12 +41,12 @@ std::vector<Eigen::Vector3d> thickened(std::vector<Eigen::Vector3d> corners) {
       lowest = std::min(lowest, direction.dot(corner - mean));
       highest = std::max(highest, direction.dot(corner - mean));
     }
-    if (highest - lowest >= kThinnest) continue;
+    if (highest - lowest >= kMinThickness) continue;
     const std::size_t count = corners.size();
     for (std::size_t i = 0; i < count; ++i) {
       const Eigen::Vector3d corner = corners[i];
-      corners[i] = corner + kThinnest / 2 * direction;
-      corners.push_back(corner - kThinnest / 2 * direction);
+      corners[i] = corner + kMinThickness / 2 * direction;
+      corners.push_back(corner - kMinThickness / 2 * direction);
     }
   }
   return corners;

@@ -11,10 +11,8 @@
 #include <fstream>
 #include <iterator>
 #include <set>
-#include <string>
 #include <string_view>
 #include <system_error>
-#include <vector>
 
 #include "drivers/driver.h"
 #include "drivers/mujoco/model/mjcf.h"
@@ -283,7 +281,7 @@ std::string exported_mjcf(const MachineModel& robot, const MujocoPlantParameters
     const JointModel& held = whole.robot.joints[joint];
     if (held.role != JointRole::kHeld) continue;
     mjtNum& friction = whole.model->dof_frictionloss[whole.joint_velocity[joint]];
-    friction = std::max(friction, std::min(held.effort_limit, kBeyondRobots));
+    friction = std::max(friction, std::min(held.effort_limit, kMaxPlausible));
   }
   std::string path = (std::filesystem::temp_directory_path() / "robot_control_XXXXXX").string();
   const int file = mkstemp(path.data());

@@ -54,16 +54,16 @@ struct Errors {
   double foot_threshold = 10;  ///< N; a smaller force is measured as zero
 
   // These errors act only at kField.
-  double roughness = 1;                    ///< factor of the floor on both vibrations and the slow error (vibration.h)
+  double roughness = 1;  ///< factor of the floor on both vibrations and the slow error (sensor_errors.h)
   double accelerometer_vibration = 0.12;   ///< m/s²/√Hz at 1 m/s, proportional to the speed
   double gyro_vibration = 7e-4;            ///< rad/s/√Hz at 1 m/s, proportional to the speed
   double accelerometer_slow_error = 0.08;  ///< m/s², standard deviation along the path
-  /// s, of gyro and accelerometer behind the encoders (late_samples.h); none: that of the robot's kind
+  /// s, of gyro and accelerometer behind the encoders (sensor_errors.h); none: that of the robot's kind
   std::optional<double> imu_delay = std::nullopt;
   std::optional<double> imu_jitter = std::nullopt;  ///< s, standard deviation
   double encoder_jitter = 0;                        ///< s; zero because the wheels' loops use a synchronous bus
-  double wheel_slip_noise = 5e-3;                   ///< m/√m, for a side with wheels behind each other (slip_noise.h)
-  double centre_of_gravity_error = 0.03;            ///< part of the wheel base, ahead and to the left (true_robot.h)
+  double wheel_slip_noise = 5e-3;         ///< m/√m, for a side with wheels behind each other (wheel_contacts.h)
+  double centre_of_gravity_error = 0.03;  ///< part of the wheel base, ahead and to the left (true_robot.h)
 };
 
 /// The delay of an IMU and its standard deviation, s, where they are left out.

@@ -26,8 +26,8 @@
 /// 3D Attitude Estimation", 2005. The bias walks only every m = kWalkCycles cycles, because a step in each cycle would
 /// be 4·10⁻⁵ of the noise and double the work.
 ///
-/// In the field a moving robot shakes both devices (vibration.h). The samples of the IMU, and if configured those of
-/// the encoders, arrive late and at irregular times (late_samples.h). The IMU has measured the standing robot before a
+/// In the field a moving robot shakes both devices (Vibration). The samples of the IMU, and if configured those of
+/// the encoders, arrive late and at irregular times (LateSamples). The IMU has measured the standing robot before a
 /// run begins; its samples arrive in the first cycles.
 ///
 /// Finally all samples are delayed together by `sensor_delay` cycles, under the head of the present cycle. In the first
@@ -36,20 +36,123 @@
 /// Random numbers depend only on `seed`. Noise, bias and walk of each device have their own streams, so that setting
 /// one to zero does not change the others. `reset` restarts all streams with the same bits.
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
 
 #include "drivers/mujoco/mujoco_plant_parameters.h"
-#include "drivers/mujoco/sensors/late_samples.h"
 #include "drivers/mujoco/sensors/measurement.h"
 #include "drivers/mujoco/sensors/normal_stream.h"
-#include "drivers/mujoco/sensors/vibration.h"
 #include "machine/machine_model.h"
 #include "simulation/faults/delay_line.h"
 
 namespace robot_control {
+
+/// A wheel that rolls on the floor.
+struct Rim {
+  std::size_t joint = 0;
+  double radius = 0;  ///< m
+};
+
+/// Vibration adds the vibration of a moving robot to its IMU. With the mean speed v of the drive wheels' rims and the
+/// distance s that they have rolled,
+///
+///   measured = true + r·v·n(t) + r·b(s)
+///
+/// r  roughness
+/// n  accelerometer_vibration, gyro_vibration: noise that is white up to kBandwidth (first order), so that its integral
+///    over t has the variance (r v σ)²·t of white noise
+/// b  accelerometer_slow_error: the errors of the accelerometer from floor, suspension and scale, an Ornstein–Uhlenbeck
+///    process of the correlation length kLength along the path; it is constant while the robot stands
+///
+/// The axes are independent. The class is real-time safe.
+class Vibration {
+ public:
+  static constexpr double kBandwidth =
+      50;                                 ///< Hz; the recordings' IMUs sample at 100 Hz and show no higher frequencies
+  static constexpr double kLength = 0.5;  ///< m; in the recordings, slow errors fall to half in 0.5 … 2 s
+
+  /// `period` is in s. Without a rim nothing vibrates.
+  Vibration(std::vector<Rim> rims, const Errors& errors, double period);
+
+  void reset(std::uint64_t seed);
+
+  /// Is called once per period with the exact speeds of the wheels.
+  void step(Measurement& measurement) noexcept;
+
+ private:
+  std::vector<Rim> rims_;
+  double period_;
+  double follow_;                ///< gain of the low pass per period
+  double gyro_, accelerometer_;  ///< standard deviation of a white sample at 1 m/s, r σ/√T
+  double slow_;                  ///< m/s², r·accelerometer_slow_error
+  NormalStream vibration_stream_, slow_stream_;
+  Vector3 shaken_gyro_{}, shaken_accelerometer_{}, slow_error_{};
+};
+
+/// LateSamples simulates a device whose samples arrive after a varying delay, as over a serial line or a USB port.
+/// Sample i, taken in cycle i, arrives at
+///
+///   a(i) = max(a(i−1), i·T + delay + |jitter·w(i)|)      w independent standard normal numbers, at most 6
+///
+/// In cycle k the driver reports the newest sample that has arrived, or the first sample until one has. A sample may be
+/// reported in several cycles or in none; their order is kept. The frame's stamp is the time of the cycle, not of the
+/// sample, as with a driver that cannot measure the delay. The receiver has to estimate or to tolerate the age of a
+/// sample.
+///
+/// The class holds all samples that have not arrived yet itself and never allocates after construction.
+template <class Value>
+class LateSamples {
+ public:
+  /// `delay` ≥ 0, `jitter` ≥ 0 and `period` > 0 are in s.
+  LateSamples(double delay, double jitter, double period, ErrorStream stream)
+      : delay_(delay / period), jitter_(jitter / period), stream_(stream), on_the_way_(longest() + 2) {}
+
+  void reset(std::uint64_t seed) {
+    random_.seed(seed, stream_);
+    cycle_ = sent_ = arrived_ = 0;
+    last_arrival_ = 0;
+  }
+
+  /// Returns after how many cycles every sample has arrived; 0 if all are on time.
+  std::size_t longest() const noexcept {
+    return delay_ == 0 && jitter_ == 0 ? 0 : static_cast<std::size_t>(std::ceil(delay_ + kMaxDeviations * jitter_));
+  }
+
+  /// Replaces the sample of this cycle by the one that the driver reports.
+  void step(Value& value) noexcept {
+    if (delay_ == 0 && jitter_ == 0) return;
+    if (cycle_ == 0) reported_ = value;
+    const auto now = static_cast<double>(cycle_++);
+    const double late = jitter_ > 0 ? jitter_ * std::min(kMaxDeviations, std::abs(random_.next())) : 0;
+    last_arrival_ = std::max(last_arrival_, now + delay_ + late);
+    on_the_way_[sent_++ % on_the_way_.size()] = {value, last_arrival_};
+    while (arrived_ < sent_ && on_the_way_[arrived_ % on_the_way_.size()].arrival <= now + kSameTime) {
+      reported_ = on_the_way_[arrived_++ % on_the_way_.size()].value;
+    }
+    value = reported_;
+  }
+
+ private:
+  static constexpr double kMaxDeviations = 6;  ///< standard deviations
+  static constexpr double kSameTime = 1e-6;    ///< cycles
+
+  struct Sample {
+    Value value{};
+    double arrival = 0;  ///< cycles
+  };
+
+  double delay_, jitter_;  ///< cycles
+  ErrorStream stream_;
+  NormalStream random_;
+  std::uint64_t cycle_ = 0, sent_ = 0, arrived_ = 0;
+  double last_arrival_ = 0;
+  Value reported_{};
+  std::vector<Sample> on_the_way_;
+};
 
 inline constexpr double kHeldGear = 100;       ///< strain wave gears of arms have 50 … 160
 inline constexpr std::size_t kMaxDelay = 100;  ///< cycles, for sensors and actuators

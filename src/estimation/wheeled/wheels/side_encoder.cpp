@@ -4,8 +4,6 @@
 #include <cmath>
 #include <utility>
 
-#include "estimation/common/tuning.h"
-
 namespace robot_control {
 
 SideEncoder::Wheel::Wheel(const WheelModel& wheel, const DriveTrain& robot, double bandwidth, double period)

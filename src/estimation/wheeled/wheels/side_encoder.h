@@ -19,16 +19,36 @@
 /// offset, and the travel in between is lost. So do the first angles after a drive had a fault and no position.
 
 #include <array>
-#include <cstdint>
 
 #include "estimation/common/tuning.h"
-#include "machine/encoders/sample_time.h"
 #include "machine/encoders/tracking_loop.h"
 #include "machine/wheeled/drive_train.h"
 #include "signals/fixed_vector.h"
 #include "signals/sensor_frame.h"
 
 namespace robot_control {
+
+/// A SampleTime holds when a joint was sampled that a law used last, so that the law uses each sample once.
+class SampleTime {
+ public:
+  /// Returns whether the sample is younger than the accepted one. A sample without age is always new.
+  bool precedes(const SensorFrame& sensors, const JointSample& sample) const noexcept {
+    return sample.age_ns <= 0 || !known_ || time_of(sensors, sample) > accepted_ns_;
+  }
+
+  void accept(const SensorFrame& sensors, const JointSample& sample) noexcept {
+    accepted_ns_ = time_of(sensors, sample);
+    known_ = true;
+  }
+
+ private:
+  static std::int64_t time_of(const SensorFrame& sensors, const JointSample& sample) noexcept {
+    return sensors.head.stamp_ns - sample.age_ns;
+  }
+
+  std::int64_t accepted_ns_ = 0;
+  bool known_ = false;
+};
 
 enum class EncoderReading : std::uint8_t {
   kTravel,    ///< `travel` holds the travel

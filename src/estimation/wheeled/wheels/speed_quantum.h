@@ -1,9 +1,9 @@
 #pragma once
 /// Finds the step of wheel speeds that are reported in steps, of which travel over time of every reading is a multiple.
 ///
-/// The step is the greatest common divisor of the changes between readings (Euclid), to kRounding of the speed. Speeds
-/// without steps leave only that rounding. An encoder's counts are steps of the travel, whose error does not grow, so
-/// that a step that the count explains is ignored.
+/// The step is the greatest common divisor of the changes between readings (Euclid), to kStampRounding of the speed.
+/// Speeds without steps leave only that rounding. An encoder's counts are steps of the travel, whose error does not
+/// grow, so that a step that the count explains is ignored.
 ///
 /// A reading is off by up to half a step, as is each that repeats it. So n equal ones in a row are off by n times that.
 
@@ -23,7 +23,7 @@ class SpeedQuantum {
   /// Adds the travel of a reading (m) in `time` s, > 0.
   void add(double travel, double time) noexcept {
     const double speed = travel / time;
-    const double rounding = kRounding * std::max(std::abs(speed), std::abs(last_));
+    const double rounding = kStampRounding * std::max(std::abs(speed), std::abs(last_));
     double change = std::abs(speed - last_);
     if (change > rounding) repeated_ = 0;
     while (change > rounding) change = std::abs(std::remainder(std::exchange(step_, change), change));
@@ -37,7 +37,7 @@ class SpeedQuantum {
   double travel_variance() const noexcept { return (2 * repeated_ - 1) * square(step() * time_) / 12; }
 
  private:
-  static constexpr double kRounding = 1e-3;  ///< stamps in ms
+  static constexpr double kStampRounding = 1e-3;  ///< stamps in ms
 
   double count_;
   double step_ = 0;      ///< m/s

@@ -13,8 +13,8 @@
 namespace robot_control {
 namespace {
 
-constexpr double kCrosswise = 5 * M_PI / 180;
-constexpr double kAlike = 0.1;  // share of the radius
+constexpr double kCrossAngle = 5 * M_PI / 180;
+constexpr double kRadiusTolerance = 0.1;  // share of the radius
 
 const char* const kRemedy =
     "Only differential and skid-steer drives are supported; to drive it as one all the same, name the wheels by "
@@ -75,11 +75,11 @@ class Judge {
 
   bool is_crosswise(const RigidBody& body, const RollingMeasure& measure) const {
     const Shape* shape = rolling_shape(body);
-    if (axle_tilt(measure) <= kCrosswise) return false;
+    if (axle_tilt(measure) <= kCrossAngle) return false;
     if (body.joint.driven) return true;
     const bool ball = shape != nullptr && shape->type == ShapeType::kSphere;
     const double radius = gear_.wheels.front().wheel.radius;
-    const bool alike = std::abs(measure.radius - radius) <= kAlike * radius;
+    const bool alike = std::abs(measure.radius - radius) <= kRadiusTolerance * radius;
     return !ball && alike && no_drive_is_said();
   }
 
@@ -92,7 +92,7 @@ class Judge {
   void judge_rollers(const RigidBody& body, std::size_t rollers) {
     const double radius = gear_.wheels.front().wheel.radius;
     const double height = body.in_root.translation().z() - floor_height(gear_);
-    const bool alike = std::abs(height - radius) <= kAlike * radius;
+    const bool alike = std::abs(height - radius) <= kRadiusTolerance * radius;
     if (body.joint.driven) refuse_or_note(body, "the file says that it is driven, and " + rollers_objection(rollers));
     if (!body.joint.driven && alike && no_drive_is_said()) {
       refuse_or_note(body, "it stands as high as the drive wheels, nothing says that it is not driven, and " +

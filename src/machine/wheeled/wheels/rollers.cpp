@@ -8,10 +8,10 @@
 namespace robot_control {
 namespace {
 
-constexpr double kAcross = 0.985;  // cos 10°
-constexpr double kAlongRim = 0.5;  // cos 60°
-constexpr double kBeside = 0.5;    // share of the reach
-constexpr double kToTheRim = 0.9;
+constexpr double kMaxAlongAxle = 0.985;  // cos 10°
+constexpr double kMaxOutwards = 0.5;     // cos 60°
+constexpr double kMinOffsetShare = 0.5;  // share of the reach
+constexpr double kMinReachShare = 0.9;
 
 double distance(const Eigen::Vector3d& point, const Eigen::Vector3d& axle) {
   return point.cross(axle).norm();
@@ -38,8 +38,8 @@ bool is_roller(const Shape& shape, const Eigen::Vector3d& axle, double reach) {
   const Eigen::Vector3d along = shape.in_body.linear().col(2);
   const Eigen::Vector3d centre = shape.in_body.translation();
   const Eigen::Vector3d outwards = (centre - centre.dot(axle) * axle).normalized();
-  return std::abs(along.dot(axle)) < kAcross && distance(centre, axle) > kBeside * reach &&
-         std::abs(along.dot(outwards)) < kAlongRim && support(shape, outwards) > kToTheRim * reach;
+  return std::abs(along.dot(axle)) < kMaxAlongAxle && distance(centre, axle) > kMinOffsetShare * reach &&
+         std::abs(along.dot(outwards)) < kMaxOutwards && support(shape, outwards) > kMinReachShare * reach;
 }
 
 }  // namespace
@@ -56,7 +56,8 @@ std::size_t rollers_of(const RigidBodies& robot, std::size_t index) {
     if (child.parent != index || child.joint.type == JointType::kPrismatic) continue;
     const Eigen::Isometry3d in_body = body.in_root.inverse() * child.in_root;
     const Eigen::Vector3d axis = in_body.linear() * child.joint.axis;
-    rollers += std::abs(axis.dot(axle)) < kAcross && distance(in_body.translation(), axle) > kBeside * reach;
+    rollers +=
+        std::abs(axis.dot(axle)) < kMaxAlongAxle && distance(in_body.translation(), axle) > kMinOffsetShare * reach;
   }
   return rollers < kMinRollers ? 0 : rollers;
 }

@@ -11,7 +11,7 @@
 namespace robot_control {
 namespace {
 
-constexpr double kMostlyUpright = 0.7;  // |z| of the axis: within 45° of the vertical
+constexpr double kMinUpright = 0.7;  // |z| of the axis: within 45° of the vertical
 
 double upward(const RigidBody& body) {
   return (body.in_root.linear() * body.joint.axis).z();
@@ -31,7 +31,7 @@ double mass_on(const RigidBodies& robot, std::size_t body) {
 
 bool is_suspension(const RigidBodies& robot, std::size_t body) {
   const RigidBody& candidate = robot.bodies[body];
-  return body != 0 && candidate.joint.type == JointType::kPrismatic && std::abs(upward(candidate)) > kMostlyUpright;
+  return body != 0 && candidate.joint.type == JointType::kPrismatic && std::abs(upward(candidate)) > kMinUpright;
 }
 
 void assume_springs(RigidBodies& robot, const RunningGear& gear, std::vector<RobotNote>& notes) {

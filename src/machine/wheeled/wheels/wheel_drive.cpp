@@ -11,7 +11,7 @@ namespace robot_control {
 namespace {
 
 constexpr double kPlaceholder = 100;
-constexpr double kBeyondMotors = 1000;  // rad/s
+constexpr double kImplausibleVelocity = 1000;  // rad/s
 
 bool is_placeholder(const BodyJoint& joint) {
   return joint.effort_limit == kPlaceholder && joint.velocity_limit == kPlaceholder;
@@ -37,11 +37,11 @@ DriveLimits drive_limits(const RigidBodies& robot, const RunningGear& gear, cons
   };
   const double share = total_mass(robot) / static_cast<double>(gear.wheels.size());
   DriveLimits limits{joint.effort_limit, joint.velocity_limit};
-  if (limits.velocity >= kBeyondMotors || is_placeholder(joint)) limits.velocity = 0;
+  if (limits.velocity >= kImplausibleVelocity || is_placeholder(joint)) limits.velocity = 0;
   const double speed = kLossSpeed / wheel.wheel.radius;
   const double turning = limits.velocity > 0 ? std::min(limits.velocity, speed) : speed;
   const double useful = share * kGravity * wheel.wheel.radius + joint.friction + joint.damping * turning;
-  const bool implausible = joint.effort_limit > kImplausible * useful || is_placeholder(joint);
+  const bool implausible = joint.effort_limit > kImplausibleFactor * useful || is_placeholder(joint);
   if (!(limits.effort > 0) || implausible) {
     limits.effort = useful;
     if (!parameters.wheel_effort_limit) {

@@ -3,7 +3,7 @@
 ///
 ///   effort    τ_μ + τ_loss: the tyre transmits τ_μ = μ (m g / n) r with μ = 1, and τ_loss is the joint's own friction
 ///             and damping at kLossSpeed (or its lower velocity limit). A limit counts as unknown if it is missing or
-///             zero, above kImplausible · (τ_μ + τ_loss), or part of the pair 100 N·m, 100 rad/s that editors fill in
+///             zero, above kImplausibleFactor · (τ_μ + τ_loss), or part of the pair 100 N·m, 100 rad/s that editors fill in
 ///   velocity  unknown if it is missing, zero, of that pair, or 1000 rad/s and more
 ///   rotor     a wheel's inertia about its axle is at least kDriveShare of the robot's share, (m/n) r². The difference
 ///             counts as the drive's rotor, seen through its gear. A wheel of some grams alone would make every torque
@@ -16,7 +16,7 @@
 
 namespace robot_control {
 
-inline constexpr double kImplausible = 10;
+inline constexpr double kImplausibleFactor = 10;
 inline constexpr double kLossSpeed = 1;  ///< m/s at the rim
 inline constexpr double kDriveShare = 0.05;
 inline constexpr double kCasterShare = 0.02;

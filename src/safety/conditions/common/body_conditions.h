@@ -9,7 +9,7 @@
 ///              limit · kImpactWindow. The mean, because stiff bodies stop within milliseconds; the perpendicular
 ///              component, because bumps and landings accelerate upwards. It is not judged while a machine folds its
 ///              legs, and for `landing` after it: the blow is its own
-///   IMU jump   the change of the gyro's rates from sample to sample (rate_change.h) > limit. The accelerometer is not
+///   IMU jump   the change of the gyro's rates from sample to sample (RateChange) > limit. The accelerometer is not
 ///              judged: a robot that falls shakes it as much as random samples would (docs/evidence/derivations.md)
 ///   IMU stuck  all axes of gyro or of accelerometer are bit for bit equal to the last sample while the machine moves.
 ///              Noise changes the last bits of every new sample; an IMU that is slower than the loop repeats a sample

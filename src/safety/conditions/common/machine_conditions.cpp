@@ -16,7 +16,7 @@ MachineConditions::MachineConditions(const SafetyParameters& parameters, double 
       overruns_(kCauseOverruns, parameters.overruns, period),
       battery_low_(kCauseBatteryLow, parameters.battery_low, period),
       battery_empty_(kCauseBatteryEmpty, parameters.battery_empty, period),
-      mark_cycles_(std::max<std::uint64_t>(1, static_cast<std::uint64_t>(std::llround(1.0 / (kMarks * period))))) {}
+      mark_cycles_(std::max<std::uint64_t>(1, static_cast<std::uint64_t>(std::llround(1.0 / (kSlots * period))))) {}
 
 void MachineConditions::enter_run() noexcept {
   starting_ = 0;
@@ -34,10 +34,10 @@ std::uint64_t MachineConditions::overruns_of_the_last_second(std::uint64_t overr
     marked_ = true;
   }
   const std::uint64_t growth = overruns - std::min(overruns, marks_[oldest_]);
-  since_mark_ += std::min(elapsed, kMarks * mark_cycles_);
+  since_mark_ += std::min(elapsed, kSlots * mark_cycles_);
   for (; since_mark_ >= mark_cycles_; since_mark_ -= mark_cycles_) {
     marks_[oldest_] = overruns;
-    oldest_ = (oldest_ + 1) % kMarks;
+    oldest_ = (oldest_ + 1) % kSlots;
   }
   return growth;
 }

@@ -29,7 +29,7 @@ class MachineConditions {
   bool starting() const noexcept { return starting_ > 0; }
 
  private:
-  static constexpr std::size_t kMarks = 10;
+  static constexpr std::size_t kSlots = 10;
 
   std::uint64_t overruns_of_the_last_second(std::uint64_t overruns, std::uint64_t elapsed) noexcept;
 
@@ -46,7 +46,7 @@ class MachineConditions {
   std::uint64_t since_mark_ = 0;
   bool marked_ = false;
   std::size_t oldest_ = 0;
-  std::array<std::uint64_t, kMarks> marks_{};  ///< the counter, a tenth of a second apart
+  std::array<std::uint64_t, kSlots> marks_{};  ///< the counter, a tenth of a second apart
 };
 
 }  // namespace robot_control

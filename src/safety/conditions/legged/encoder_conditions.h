@@ -6,7 +6,7 @@
 ///   stuck  |c − c₀| > limit, while the robot is on its feet. c is the angle that q can show: the command demanded it
 ///          kAnswer cycles ago. c₀ was this angle when q changed for the last time. A joint that is blocked looks the
 ///          same. The command of a robot that walks demands angles of feet in the air alone. Its limit is kSwingFactor
-///          larger. q has to stay for kStays, and for two cycles: a noisy gyro moves the command at once, and no joint
+///          larger. q has to stay for kRepeatTime, and for two cycles: a noisy gyro moves the command at once, and no joint
 ///
 /// While c stays, a stuck encoder changes nothing: the joint is where it reports to be. An angle that is missing or not
 /// finite is not evaluated.
@@ -54,12 +54,12 @@ class EncoderJump {
 class EncoderStuck {
  public:
   static constexpr double kSwingFactor = 1.8;  ///< a foot leaves the ground late (docs/evidence/derivations.md)
-  static constexpr double kStays = 0.01;       ///< s
+  static constexpr double kRepeatTime = 0.01;  ///< s
   static constexpr std::size_t kAnswer = 2;    ///< cycles: command k − 1 moves the joint from cycle k to k + 1
 
   /// `period` s.
   EncoderStuck(const SafetyParameters&, const LegModel&, double period) noexcept
-      : stays_(std::max<std::uint64_t>(2, static_cast<std::uint64_t>(std::lround(kStays / period)))) {}
+      : stays_(std::max<std::uint64_t>(2, static_cast<std::uint64_t>(std::lround(kRepeatTime / period)))) {}
   void enter_run() noexcept { joints_ = {}; }
 
   ConditionMeasurement measure(const LeggedMeasurements& now, const ConditionWatch& watch) noexcept {

@@ -1,8 +1,5 @@
 #include "safety/conditions/legged/joint_conditions.h"
 
-#include <algorithm>
-#include <cmath>
-
 namespace robot_control {
 
 ConditionMeasurement JointFollowing::measure(const LeggedMeasurements& now, const ConditionWatch& watch,
@@ -26,7 +23,7 @@ ConditionMeasurement JointMismatch::measure(const LeggedMeasurements& now, const
   }
   return at_once(worst_of(kLegsJoints, [&](std::size_t i) {
     const double against = has_position(now.joint(i)) ? moved_against_command(now, i) : 0;
-    const double parts = std::max(against / kAgainst, wrong_torque(now, i) / kWrongTorqueShare);
+    const double parts = std::max(against / kMaxOpposition, wrong_torque(now, i) / kWrongTorqueShare);
     return beyond(i, parts * watch.limit(), watch.limit());
   }));
 }

@@ -10,7 +10,7 @@
 ///                 while it walks: the mean over kMeanTime, of the joints of feet in the air, > kSwingShare limit
 ///                 while it walks, without a persistence: one of
 ///                   part of the last cycles in which the torque was wrong (motor_torque.h) > kWrongTorqueShare
-///                   angle by which the joint moved against its command in this swing > kAgainst
+///                   angle by which the joint moved against its command in this swing > kMaxOpposition
 ///
 /// From kFarTimes the limit on, n times the limit counts n cycles: full torque throws a robot over within 0.1 s.
 /// Torques are not judged in cycles in which the driver brakes, or the gate clamps a command by more than the effort
@@ -66,7 +66,7 @@ class JointFollowing {
 class JointMismatch {
  public:
   static constexpr double kWrongTorqueShare = 0.2;  ///< docs/evidence/derivations.md
-  static constexpr double kAgainst = 0.2;           ///< rad (docs/evidence/derivations.md)
+  static constexpr double kMaxOpposition = 0.2;     ///< rad (docs/evidence/derivations.md)
   static constexpr double kStride = 0.01;           ///< s
 
   /// `period` s.

@@ -2,10 +2,10 @@
 /// A MotorTorque measures how often a motor gives another torque than its commands demand.
 ///
 /// Three commands demand torques at the measured angle and speed of this cycle and of the one before. They are those of
-/// now, of kLate and of 2 kLate ago, rounded to whole cycles but 0. They span a range. A torque is wrong if it is
-/// outside by more than kDemandShare of the range's end and kEffortShare of the effort limit. All of these torques are
-/// means over kMean, because measured speeds come in steps. The result w is the part of the last cycles in which the
-/// torque was wrong:
+/// now, of kMaxDelay and of 2 kMaxDelay ago, rounded to whole cycles but 0. They span a range. A torque is wrong if it
+/// is outside by more than kDemandShare of the range's end and kEffortShare of the effort limit. All of these torques
+/// are means over kMean, because measured speeds come in steps. The result w is the part of the last cycles in which
+/// the torque was wrong:
 ///
 ///   w += T/kTime (1 − w), or T/kTime (0 − w)      T: period
 ///
@@ -23,14 +23,14 @@ namespace robot_control {
 
 class MotorTorque {
  public:
-  static constexpr double kLate = 0.005;        ///< s: a late motor is none that fails
-  static constexpr std::size_t kCommands = 21;  ///< of 2 kLate at 2 kHz
+  static constexpr double kMaxDelay = 0.005;    ///< s: a late motor is none that fails
+  static constexpr std::size_t kCommands = 21;  ///< of 2 kMaxDelay at 2 kHz
   static constexpr double kDemandShare = 0.5;   ///< nor is a weak one
   static constexpr double kEffortShare = 0.04;  ///< docs/evidence/derivations.md
   static constexpr double kMean = 0.01;         ///< s
   static constexpr double kTime = 0.06;         ///< s
 
-  /// Commands before this cycle are not in force any more. It is not judged until those of 2 kLate are known again.
+  /// Commands before this cycle are not in force any more. It is not judged until those of 2 kMaxDelay are known again.
   void forget() noexcept { known_ = 0; }
 
   void reset() noexcept {
@@ -55,7 +55,7 @@ class MotorTorque {
   using Motion = std::array<double, 2>;  ///< rad, rad/s
 
   void compare(const JointSample& joint, double limit, double period) noexcept {
-    const auto late = static_cast<std::size_t>(std::max(1.0, std::round(kLate / period)));  // cycles
+    const auto late = static_cast<std::size_t>(std::max(1.0, std::round(kMaxDelay / period)));  // cycles
     if (known_ <= 2 * late) {
       given_ = joint.effort;
       demanded_.fill(joint.effort);

@@ -25,7 +25,7 @@ void Stall::enter_run() noexcept {
 
 bool Stall::Standing::builds_up(double torque, double held, double dt) noexcept {
   if (!(torque <= held)) return false;
-  if (torque > peak + kRise * std::abs(held)) {
+  if (torque > peak + kTorqueRise * std::abs(held)) {
     peak = torque;
     level = 0;
   }
@@ -52,16 +52,16 @@ ConditionMeasurement Stall::measure(const WheeledMeasurements& now, const Condit
     Standing& standing = standing_[i];
     const double towards = targets[i] < 0 ? -1 : 1, speed = towards * motion.speed(i);
     const double target = std::min(std::abs(wanted[i]), wheel.fastest), torque = now.input.sensors->joints[i].effort;
-    if (std::abs(speed) >= kTurns * target || speed > standing.mark + kProgress + motion.speed_tolerance(i)) {
+    if (std::abs(speed) >= kTurns * target || speed > standing.mark + kMinProgress + motion.speed_tolerance(i)) {
       standing = {.mark = speed};
     } else {
       standing.target_travel += target * now.dt;
       const bool overdue = standing.target_travel > motion.quantum(i);
       const bool pushes = overdue && std::min(std::abs(torque), std::abs(torque - planned_[i])) > wheel.pushed;
-      const bool excused = standing.excused < kExcused * watch.limit() &&
+      const bool excused = standing.excused < kMaxExcusedShare * watch.limit() &&
                            standing.builds_up(towards * torque, held(i, scrubbing[i]), now.dt);
       (excused ? standing.excused : standing.missed) +=
-          std::max({target, pushes ? kPushed : 0, yaw_excess * wheel.per_yaw}) * now.dt;
+          std::max({target, pushes ? kPushedSpeed : 0, yaw_excess * wheel.per_yaw}) * now.dt;
     }
     return beyond(i, standing.missed, watch.limit() + motion.quantum(i));
   });

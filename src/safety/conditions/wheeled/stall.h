@@ -4,13 +4,14 @@
 ///   stall    ∫ max(|q̇*|, w, u) dt since the wheel last turned > limit + 1 quantum, in rad
 ///
 /// q̇*  the target, at most the wheel's velocity limit, while it reaches the wheel (wheel_targets.h). The wheel turns
-///     while its speed is at least kTurns·|q̇*|, or when it gained kProgress + tolerance towards its target
-/// w   kPushed while the motor torque, and that torque less the planned one (planned_torque.h), are above `pushed`,
+///     while its speed is at least kTurns·|q̇*|, or when it gained kMinProgress + tolerance towards its target
+/// w   kPushedSpeed while the motor torque, and that torque less the planned one (planned_torque.h), are above
+/// `pushed`,
 ///     else 0. It counts after the target itself has moved by a quantum
 /// u   the rotation of a wheel by which gyro and wheels disagree beyond the limit of yaw_rate
 ///
-/// In a turn of treads that scrub, nothing counts while the torque is at most `held` and still grows by kRise of it
-/// within kBuildUp. At most kExcused of the limit is excused.
+/// In a turn of treads that scrub, nothing counts while the torque is at most `held` and still grows by kTorqueRise of
+/// it within kBuildUp. At most kMaxExcusedShare of the limit is excused.
 ///
 ///   pushed = max(kPushedPart·τ_max, min(kLargePart·τ_max, kFrictions·(f + S)))
 ///   held   = min(pushed, f + kGrounds·S*)
@@ -33,15 +34,15 @@ namespace robot_control {
 class Stall {
  public:
   static constexpr double kTurns = 0.2;
-  static constexpr double kProgress = 0.1;    ///< rad/s
-  static constexpr double kPushed = 2.0;      ///< rad/s
-  static constexpr double kPushedPart = 0.5;  ///< docs/evidence/derivations.md
+  static constexpr double kMinProgress = 0.1;  ///< rad/s
+  static constexpr double kPushedSpeed = 2.0;  ///< rad/s
+  static constexpr double kPushedPart = 0.5;   ///< docs/evidence/derivations.md
   static constexpr double kLargePart = 0.9;
   static constexpr double kFrictions = 1.2;
   static constexpr double kGrounds = 3.0;  ///< times friction 1: the best grip
-  static constexpr double kRise = 0.01;
+  static constexpr double kTorqueRise = 0.01;
   static constexpr double kBuildUp = 0.03;  ///< s
-  static constexpr double kExcused = 0.5;
+  static constexpr double kMaxExcusedShare = 0.5;
 
   Stall(const SafetyParameters& parameters, const DriveTrain& robot, double period);
 

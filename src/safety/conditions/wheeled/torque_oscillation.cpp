@@ -65,7 +65,7 @@ void TorqueOscillation::step(const WheeledMeasurements& now, ActiveCauses& out) 
 }
 
 TorqueOscillation::Weights TorqueOscillation::weights_of(double dt) noexcept {
-  return {.slow = -std::expm1(-2 * std::numbers::pi * kSlow * dt), .window = -std::expm1(-dt / kWindow)};
+  return {.slow = -std::expm1(-2 * std::numbers::pi * kCutoff * dt), .window = -std::expm1(-dt / kWindow)};
 }
 
 void TorqueOscillation::follow(std::size_t wheel, double measured, double commanded, double target,

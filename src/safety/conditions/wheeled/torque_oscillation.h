@@ -1,7 +1,7 @@
 #pragma once
 /// This condition finds a motor torque that oscillates although the planned motion does not require it.
 ///
-///   ripple     τ minus its low pass of kSlow; RMS over kWindow. The smaller of the ripples of measured and commanded
+///   ripple     τ minus its low pass of kCutoff; RMS over kWindow. The smaller of the ripples of measured and commanded
 ///              torque: a command that the gate clamps, and ripple that the motor adds, do not count
 ///   explained  J·α*, α* the planned acceleration of the wheel's target, filtered in the same way. J: inertia of the
 ///              loaded wheel, the larger of driving straight and turning (drive_train.h, robot as described)
@@ -25,7 +25,7 @@ namespace robot_control {
 
 class TorqueOscillation {
  public:
-  static constexpr double kSlow = 5.0;    ///< Hz; torque for driving is slower, oscillation is faster
+  static constexpr double kCutoff = 5.0;  ///< Hz; torque for driving is slower, oscillation is faster
   static constexpr double kWindow = 0.5;  ///< s
   static constexpr double kWarned = 0.5;
 
@@ -38,10 +38,10 @@ class TorqueOscillation {
  private:
   /// The parts of the two low passes' states that a step replaces, 1 − e^{−dt/T}.
   struct Weights {
-    double slow;    ///< low pass of kSlow
+    double slow;    ///< low pass of kCutoff
     double window;  ///< mean over kWindow
   };
-  /// RMS of the part that is faster than kSlow.
+  /// RMS of the part that is faster than kCutoff.
   struct Ripple {
     double slow = 0;
     double square = 0;

@@ -8,7 +8,7 @@
 /// They are evaluated only while a target reaches the wheel (wheel_targets.h). A runaway of kFarTimes the limit and
 /// more has a shorter persistence (condition_watch.h).
 ///
-/// The persistence restarts whenever the wheel has lost kProgress + δ of that speed since it began. A drive at its
+/// The persistence restarts whenever the wheel has lost kMinProgress + δ of that speed since it began. A drive at its
 /// torque limit, or a scrubbing skid steer, lags behind a target that changes sign, but slows down. A wheel that runs
 /// away does not. Beyond kFarBeyond times the limit the persistence is not restarted. No lag is that large, but a
 /// command that jumped, or an encoder that counts backwards, exceeds it at once.
@@ -25,7 +25,7 @@ template <StopCause kCause>
 class WheelExcess {
  public:
   static constexpr double kFarBeyond = 1.5;
-  static constexpr double kProgress = 0.1;  ///< rad/s
+  static constexpr double kMinProgress = 0.1;  ///< rad/s
 
   WheelExcess(const SafetyParameters& parameters, const DriveTrain& robot, double period)
       : wheels_(robot.wheels.size(), {.watch = ConditionWatch(kCause, condition_of<kCause>(parameters), period)}) {}
@@ -44,7 +44,7 @@ class WheelExcess {
         wheel.reset();
         continue;
       }
-      const bool slows = wheel.mark != 0 && speed < wheel.mark - (kProgress + tolerance) &&
+      const bool slows = wheel.mark != 0 && speed < wheel.mark - (kMinProgress + tolerance) &&
                          measurement.value <= kFarBeyond * measurement.limit;
       if (wheel.mark == 0 || slows) wheel.mark = speed;
       if (slows) {

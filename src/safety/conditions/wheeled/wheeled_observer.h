@@ -3,19 +3,74 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
 #include <limits>
 
 #include "machine/wheeled/drive_train.h"
 #include "safety/conditions/common/body_conditions.h"
 #include "safety/measurements/joint_standstill.h"
-#include "safety/measurements/rim_speed.h"
 #include "safety/measurements/slide.h"
-#include "safety/measurements/speed_limit_in_force.h"
 #include "safety/measurements/wheel_motion.h"
 #include "safety/measurements/wheel_targets.h"
 #include "safety/measurements/yaw_agreement.h"
+#include "signals/permit.h"
+#include "signals/sensor_frame.h"
 
 namespace robot_control {
+
+/// The largest speed limit of the last ramp_time to 2·ramp_time: every limit below it has been in force for long
+/// enough.
+class SpeedLimitInForce {
+ public:
+  SpeedLimitInForce(double ramp_time, double period) noexcept
+      : cycles_(static_cast<std::uint64_t>(std::llround(ramp_time / period))) {}
+
+  void enter_run() noexcept {
+    since_ = 0;
+    last_ = now_ = kNoSpeedLimit;
+  }
+
+  /// m/s
+  double step(double speed_limit, std::uint64_t elapsed) noexcept {
+    now_ = std::max(now_, speed_limit);
+    since_ += elapsed;
+    if (since_ >= cycles_) {
+      since_ = 0;
+      last_ = now_;
+      now_ = speed_limit;
+    }
+    return std::max(last_, now_);
+  }
+
+ private:
+  std::uint64_t cycles_;
+  std::uint64_t since_ = 0;
+  double last_ = kNoSpeedLimit;  ///< the largest of the last full ramp_time
+  double now_ = kNoSpeedLimit;   ///< the largest since then
+};
+
+/// The speed of the robot along its x axis, as the mean rim speed of its drive wheels. It belongs to the point in the
+/// middle of the axles. It is the drives' own velocity, so it needs no samples of earlier cycles.
+class RimSpeed {
+ public:
+  explicit RimSpeed(const DriveTrain& robot) noexcept : count_(std::min(robot.wheels.size(), kMaxWheels)) {
+    for (std::size_t i = 0; i < count_; ++i) rim_per_joint_[i] = robot.wheels[i].sign * robot.wheels[i].radius;
+  }
+
+  /// Returns the speed in m/s; 0 while the joint samples are not valid or not finite.
+  double value(const SensorFrame& sensors) const noexcept {
+    if (count_ == 0 || !joints_have(sensors, count_, kValidVelocity)) return 0;
+    double sum = 0;
+    for (std::size_t i = 0; i < count_; ++i) sum += rim_per_joint_[i] * sensors.joints[i].velocity;
+    return std::isfinite(sum) ? sum / static_cast<double>(count_) : 0;
+  }
+
+ private:
+  std::size_t count_;
+  std::array<double, kMaxWheels> rim_per_joint_{};  ///< m/s per rad/s, forwards
+};
 
 struct WheelNumbers {
   double radius = 0;        ///< m

@@ -8,12 +8,10 @@
 #include <vector>
 
 #include "drivers/mujoco/constants.h"
-#include "drivers/mujoco/contact/slip_noise.h"
+#include "drivers/mujoco/contact/wheel_contacts.h"
 #include "drivers/mujoco/mujoco_plant.h"
 #include "drivers/mujoco/plant_fixture.h"
-#include "drivers/mujoco/sensors/late_samples.h"
 #include "drivers/mujoco/sensors/sensor_errors.h"
-#include "drivers/mujoco/sensors/vibration.h"
 #include "drivers/mujoco/two_wheels.h"
 #include "support/allocation_guard.h"
 #include "support/robots/made_robot.h"

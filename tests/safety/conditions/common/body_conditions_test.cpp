@@ -12,7 +12,7 @@
 #include <random>
 
 #include "machine/gravity.h"
-#include "safety/measurements/rim_speed.h"
+#include "safety/conditions/wheeled/wheeled_observer.h"
 #include "support/allocation_guard.h"
 #include "support/constants.h"
 #include "support/measured_contacts.h"

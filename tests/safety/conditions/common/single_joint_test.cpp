@@ -7,10 +7,10 @@
 #include <limits>
 #include <string>
 
+#include "safety/conditions/common/frame_conditions.h"
 #include "safety/conditions/common/machine_conditions.h"
 #include "safety/conditions/common/sensor_presence.h"
 #include "safety/latch/active_causes.h"
-#include "safety/measurements/finite.h"
 #include "safety/monitor_fixture.h"
 
 namespace robot_control {

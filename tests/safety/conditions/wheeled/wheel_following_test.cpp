@@ -90,8 +90,8 @@ TEST_F(WheelFollowingTest, AWheelThatStaysBelowItsTargetButTurnsIsNotStalled) {
   EXPECT_EQ(permit_.causes, 0u);
 }
 
-// kStall at kPushed takes 0.25 s; a quantum and the window of the speed are less than 30 ms. The target alone would
-// take 2.5 s.
+// kStall at kPushedSpeed takes 0.25 s; a quantum and the window of the speed are less than 30 ms. The target alone
+// would take 2.5 s.
 TEST_F(WheelFollowingTest, AWheelThatStandsThoughItsMotorPushesIsStalledHoweverSlowItsTarget) {
   target(0.2);
   turn_wheels(0);
@@ -174,9 +174,9 @@ TEST_F(CoarseEncoderTest, AWheelThatTurnsFromCountToCountIsNotStalled) {
 }
 
 // The next count may be a whole one away, and the last one leaves the window late. Then kStall, with a quantum, passes
-// at kPushed.
+// at kPushedSpeed.
 TEST_F(CoarseEncoderTest, AWheelThatStandsIsStalledOnceItsCountIsOverdue) {
-  const double owed = kCount / kSlow, missed = (kStall + kCount) / Stall::kPushed;
+  const double owed = kCount / kSlow, missed = (kStall + kCount) / Stall::kPushedSpeed;
   steps(static_cast<std::uint64_t>(owed / kPeriod));
   turn_wheels(0);
   steps(static_cast<std::uint64_t>(missed / kPeriod) - 1);
@@ -303,8 +303,8 @@ TEST_F(ScrubbingTest, WheelsWhoseTorqueIsBelowTheirFrictionAndGrowsAreStalledLat
     step();
   }
   EXPECT_EQ(permit_.causes, std::uint64_t{kCauseStall});
-  EXPECT_GT(k * kPeriod, (1 + Stall::kExcused) * usual);
-  EXPECT_LT(k * kPeriod, (1 + Stall::kExcused) * usual + kSpeedWindow);
+  EXPECT_GT(k * kPeriod, (1 + Stall::kMaxExcusedShare) * usual);
+  EXPECT_LT(k * kPeriod, (1 + Stall::kMaxExcusedShare) * usual + kSpeedWindow);
 }
 
 TEST_F(ScrubbingTest, WheelsWhoseTorqueDoesNotGrowAreStalledAsAnyOther) {

@@ -93,7 +93,7 @@ struct Measured {
   }
 };
 
-/// The laws of wheel_limits.h, wheel_excess.h, stall.h, not_stopping.h and torque_oscillation.h in one run.
+/// The laws of wheel_limits.h, wheel_excess.h, stall.h, wheeled_conditions.h and torque_oscillation.h in one run.
 class Model {
  public:
   Model(const DriveTrain& robot, const SafetyParameters& parameters)

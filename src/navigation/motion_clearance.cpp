@@ -1,4 +1,4 @@
-#include "navigation/guard.h"
+#include "navigation/motion_clearance.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,25 +7,25 @@
 namespace robot_control::navigation {
 namespace {
 
-constexpr double kStep = 0.02;       // m of the way of the outline's widest place
-constexpr double kNearer = 0.001;    // m
-constexpr double kOnTheSpot = 0.02;  // m/s; a slower base turns on the spot, if it turns
-constexpr double kSlow = 0.1;        // m/s; with what moves, a slower base is taken to have that speed
+constexpr double kStep = 0.02;          // m of the path of the outline's widest point
+constexpr double kMinApproach = 0.001;  // m
+constexpr double kOnTheSpot = 0.02;     // m/s; a slower base turns on the spot, if it turns
+constexpr double kMinBaseSpeed = 0.1;   // m/s, for the time in which the base meets a moving object
 
-struct Watched {
+struct WatchedPoint {
   Point point;
   double at_start;  // m from the outline
   Point velocity;   // m/s
-  double until;     // s, for which the velocity is foreseen
+  double until;     // s, for which the velocity is predicted
 };
 
 }  // namespace
 
-double free_way(const Footprint& footprint, const std::vector<Point>& points, const PlanarMotion& motion,
-                const std::vector<MovingObject>& objects) {
+double clearance_along(const Footprint& footprint, const std::vector<Point>& points, const PlanarMotion& motion,
+                       const std::vector<MovingObject>& objects) {
   const bool spot = std::abs(motion.linear) < kOnTheSpot && motion.angular != 0;
-  const double reach = footprint.circumscribed + kBeside + (spot ? 0 : kLookAhead);
-  std::vector<Watched> watched;
+  const double reach = footprint.circumscribed + kLaserNoise + (spot ? 0 : kLookAhead);
+  std::vector<WatchedPoint> watched;
   const auto watch = [&](Point point, Point velocity, double until) {
     const double distance = footprint.distance(point);
     const double approach = std::isfinite(until) ? std::hypot(velocity.x, velocity.y) * until : 0;
@@ -33,10 +33,10 @@ double free_way(const Footprint& footprint, const std::vector<Point>& points, co
       watched.push_back({point, distance, velocity, until});
     }
   };
-  constexpr double kNever = std::numeric_limits<double>::infinity();
-  for (const Point point : points) watch(point, {}, kNever);
+  constexpr double kUnlimited = std::numeric_limits<double>::infinity();
+  for (const Point point : points) watch(point, {}, kUnlimited);
   for (const MovingObject& object : objects) {
-    for (const Point point : object.points) watch(point, object.velocity, kForesight);
+    for (const Point point : object.points) watch(point, object.velocity, kPredictionTime);
   }
   const double sign = std::copysign(1.0, spot ? motion.angular : motion.linear);
   const double turn = spot                 ? sign / footprint.half_width  // rad per m
@@ -44,7 +44,7 @@ double free_way(const Footprint& footprint, const std::vector<Point>& points, co
                                            : 0;
   const double end = spot ? 2 * M_PI * footprint.half_width : kLookAhead;
   const double speed =
-      std::max(kSlow, spot ? std::abs(motion.angular) * footprint.half_width : std::abs(motion.linear));
+      std::max(kMinBaseSpeed, spot ? std::abs(motion.angular) * footprint.half_width : std::abs(motion.linear));
   for (double along = kStep; along < end; along += kStep) {
     const double yaw = turn * along, half = yaw / 2;
     const double chord = spot ? 0 : sign * along * (std::abs(half) < 1e-9 ? 1 : std::sin(half) / half);
@@ -54,7 +54,8 @@ double free_way(const Footprint& footprint, const std::vector<Point>& points, co
       if (time > until) continue;
       const double dx = point.x + velocity.x * time - x, dy = point.y + velocity.y * time - y;
       const double distance = footprint.distance({c * dx + s * dy, c * dy - s * dx});
-      if (distance < kBeside && distance < at_start - kNearer) return std::max(0.0, along - kStep - kStopShort);
+      if (distance < kLaserNoise && distance < at_start - kMinApproach)
+        return std::max(0.0, along - kStep - kRemainingGap);
     }
   }
   return std::numeric_limits<double>::infinity();
