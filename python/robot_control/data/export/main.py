@@ -13,8 +13,8 @@ from robot_control.files.output_files import check_outputs
 EPILOG = """
 --csv     the table run.csv: a row per cycle, columns with the names of msg/Trace.msg; outputs with the precision of
           float32
---mcap    every message as it is, for Foxglove; of any ROS 1 bag. Of a run.bag also odom, tf, joint_states, cmd_vel and the
-          URDF. Needs PyPI's mcap
+--mcap    every message as it is, for Foxglove; of any ROS 1 bag. Of a run.bag also odom, tf, joint_states, cmd_vel and
+          the URDF. Needs PyPI's mcap
 --topics  odom, tf, joint_states and cmd_vel, for `rosbag play --clock` and RViz, of the last run
 """
 

@@ -48,7 +48,8 @@ def _add_topics(writer: Any, source: Path) -> None:  # noqa: ANN401 (of the pack
 
     def add(topic: str, message: Any, time_ns: int) -> None:  # noqa: ANN401 (genpy has no types)
         if topic not in channels:
-            schema = writer.register_schema(message._type, "ros1msg", message._full_text.encode())
+            kind, definition = message._type, message._full_text  # noqa: SLF001 (genpy's public names)
+            schema = writer.register_schema(kind, "ros1msg", definition.encode())
             channels[topic] = writer.register_channel(topic, "ros1", schema)
         data = io.BytesIO()
         message.serialize(data)
