@@ -5,8 +5,6 @@
 #include <gtest/gtest.h>
 
 #include <cstring>
-#include <limits>
-#include <vector>
 
 #include "gate/gate.h"
 

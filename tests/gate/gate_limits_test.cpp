@@ -1,7 +1,6 @@
 /// Tests the gate's limits on its joints, and its failure modes.
 
 #include <cstring>
-#include <stdexcept>
 
 #include "gate/gate_fixture.h"
 #include "gate/joint_clamp.h"

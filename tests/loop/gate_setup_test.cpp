@@ -1,8 +1,5 @@
 #include "loop/gate_setup.h"
 
-#include <functional>
-#include <limits>
-
 #include "loop/cycle_fixture.h"
 #include "robots/differential_drive.h"
 #include "support/matchers.h"

@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <bit>
-#include <vector>
 
 #include "cycle_fixture.h"
 #include "signals/names.h"

@@ -1,9 +1,5 @@
 // Every cause → the right permit in the exact cycle.
 
-#include <cmath>
-#include <limits>
-#include <stdexcept>
-
 #include "safety/measurements/finite.h"
 #include "safety/monitor_fixture.h"
 #include "support/allocation_guard.h"

@@ -5,11 +5,6 @@
 // facts are immediate. From then on its persistence counts.
 
 #include <cmath>
-#include <functional>
-#include <limits>
-#include <string>
-#include <tuple>
-#include <vector>
 
 #include "safety/latch/fixed_reactions.h"
 #include "safety/monitor_fixture.h"

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <optional>
-#include <ostream>
 
 #include "safety/monitor_fixture.h"
 

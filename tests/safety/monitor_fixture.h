@@ -9,7 +9,6 @@
 #include <cmath>
 #include <numbers>
 #include <span>
-#include <vector>
 
 #include "gate/gate.h"
 #include "safety/derived_limits.h"

@@ -3,12 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include <functional>
-#include <memory>
-#include <optional>
-#include <string>
-#include <vector>
-
 #include "drivers/cia402/cia402_device.h"
 #include "drivers/cia402/cia402_drive.h"
 #include "drivers/drive/drive_set.h"

@@ -3,7 +3,6 @@
 #include <cmath>
 #include <numbers>
 #include <random>
-#include <utility>
 
 #include "drivers/drive/device_rig.h"
 #include "drivers/odrive/odrive_messages_06.h"

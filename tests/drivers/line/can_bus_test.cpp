@@ -5,11 +5,8 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <cstring>
 #include <deque>
-#include <memory>
-#include <vector>
 
 #include "rt/clock.h"
 #include "support/allocation_guard.h"

@@ -5,7 +5,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 
 #include "drivers/mujoco/constants.h"
 #include "support/allocation_guard.h"

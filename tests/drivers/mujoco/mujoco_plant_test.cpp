@@ -1,9 +1,5 @@
 /// The behaviour of the simulated machine, observed through the driver's four calls.
 
-#include <gtest/gtest.h>
-
-#include <cstring>
-
 #include "drivers/mujoco/constants.h"
 #include "drivers/mujoco/plant_fixture.h"
 #include "support/allocation_guard.h"

@@ -2,7 +2,6 @@
 
 #include <cmath>
 #include <cstring>
-#include <vector>
 
 #include "drivers/mujoco/plant_fixture.h"
 #include "support/allocation_guard.h"

@@ -1,7 +1,5 @@
 #include <array>
 #include <cmath>
-#include <limits>
-#include <string>
 
 #include "drivers/board/mutated_stream.h"
 #include "drivers/roboclaw/roboclaw_machine.h"

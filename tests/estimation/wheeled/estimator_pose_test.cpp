@@ -2,7 +2,6 @@
 
 #include <array>
 #include <cstring>
-#include <vector>
 
 #include "estimation/wheeled/estimator_fixture.h"
 #include "support/allocation_guard.h"

@@ -4,10 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <boost/make_shared.hpp>
-#include <cmath>
-#include <limits>
-#include <map>
-#include <string>
 
 #include "ros/nanoseconds.h"
 

@@ -5,8 +5,6 @@
 
 #include <array>
 #include <boost/make_shared.hpp>
-#include <limits>
-#include <string>
 
 #include "control/common/command_watch.h"
 #include "ros/nanoseconds.h"

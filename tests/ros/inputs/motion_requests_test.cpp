@@ -4,8 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <boost/make_shared.hpp>
-#include <string>
-#include <vector>
 
 #include "ros/nanoseconds.h"
 

@@ -6,9 +6,6 @@
 #include <gtest/gtest.h>
 #include <robot_control/SafetyStatus.h>
 
-#include <limits>
-#include <vector>
-
 namespace robot_control {
 namespace {
 

@@ -4,8 +4,6 @@
 #include <gtest/gtest.h>
 #include <ros/time.h>
 
-#include <limits>
-
 namespace robot_control {
 namespace {
 

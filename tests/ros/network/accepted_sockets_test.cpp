@@ -7,10 +7,8 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
-#include <cerrno>
 #include <chrono>
 #include <thread>
-#include <vector>
 
 namespace robot_control {
 namespace {

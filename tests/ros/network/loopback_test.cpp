@@ -8,7 +8,6 @@
 #include <unistd.h>
 
 #include <cstdlib>
-#include <string>
 
 namespace robot_control {
 namespace {

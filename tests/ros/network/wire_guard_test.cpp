@@ -10,8 +10,6 @@
 
 #include <cstring>
 #include <random>
-#include <string>
-#include <vector>
 
 #include "ros/network/interposition.h"
 

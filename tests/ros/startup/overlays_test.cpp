@@ -3,8 +3,6 @@
 #include <gtest/gtest.h>
 #include <xmlrpcpp/XmlRpcValue.h>
 
-#include <limits>
-
 namespace robot_control {
 namespace {
 

@@ -1,7 +1,5 @@
 // Every cause with a fixed reaction (fixed_reactions.h) latches in its cycle, and the gate then acts.
 
-#include <string>
-
 #include "safety/latch/fixed_reactions.h"
 #include "safety/monitor_fixture.h"
 #include "signals/names.h"

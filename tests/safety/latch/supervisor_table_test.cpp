@@ -2,8 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <map>
-
 #include "safety/latch/fixed_reactions.h"
 #include "signals/names.h"
 

@@ -1,9 +1,5 @@
 #include "safety/measurements/clearance.h"
 
-#include <gtest/gtest.h>
-
-#include <limits>
-
 #include "safety/monitor_fixture.h"
 #include "support/constants.h"
 

@@ -5,8 +5,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <optional>
-#include <vector>
 
 #include "support/allocation_guard.h"
 

@@ -1,7 +1,5 @@
 /// The body of standing legs.
 
-#include <functional>
-
 #include "control/legged/ideal_legs.h"
 
 namespace robot_control {

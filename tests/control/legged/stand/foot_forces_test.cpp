@@ -4,7 +4,6 @@
 
 #include <Eigen/Geometry>
 #include <Eigen/QR>
-#include <limits>
 
 namespace robot_control {
 namespace {

@@ -1,7 +1,5 @@
 #include "control/legged/walk/leg_use.h"
 
-#include <gtest/gtest.h>
-
 #include "control/legged/ideal_legs.h"
 #include "control/legged/walk/walking_speed.h"
 

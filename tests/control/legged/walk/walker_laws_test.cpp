@@ -1,14 +1,11 @@
 /// The laws of a walk, each over random states whose sensors and estimate fit each other.
 
-#include <gtest/gtest.h>
-
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <random>
-#include <vector>
 
 #include "control/legged/ideal_legs.h"
 #include "control/legged/walk/foothold.h"

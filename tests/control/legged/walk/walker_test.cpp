@@ -2,10 +2,6 @@
 
 #include "control/legged/walk/walker.h"
 
-#include <gtest/gtest.h>
-
-#include <limits>
-
 #include "control/legged/walk/own_gaits.h"
 #include "control/legged/walk/walking_speed.h"
 #include "machine/legs/legs_corpus.h"

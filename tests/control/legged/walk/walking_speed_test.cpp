@@ -1,10 +1,7 @@
 #include "control/legged/walk/walking_speed.h"
 
-#include <gtest/gtest.h>
-
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "control/legged/ideal_legs.h"
 #include "control/legged/walk/swing.h"

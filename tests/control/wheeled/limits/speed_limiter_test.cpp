@@ -4,7 +4,6 @@
 
 #include <cmath>
 #include <random>
-#include <utility>
 
 #include "control/wheeled/limits/limiter_properties.h"
 #include "signals/command_frame.h"

@@ -5,7 +5,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <vector>
 
 #include "drivers/mujoco/constants.h"
 #include "drivers/mujoco/two_wheels.h"

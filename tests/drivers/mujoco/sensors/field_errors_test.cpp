@@ -1,11 +1,7 @@
 /// Checks the additional errors of the field, beyond the data sheet, against their theory. A sample variance of n
 /// independent normal numbers has the relative deviation √(2/n). Every bound is five of them, and the seeds are fixed.
 
-#include <gtest/gtest.h>
-
 #include <cmath>
-#include <set>
-#include <vector>
 
 #include "drivers/mujoco/constants.h"
 #include "drivers/mujoco/contact/slip_noise.h"

@@ -8,8 +8,6 @@
 
 #include <cmath>
 #include <numbers>
-#include <string>
-#include <vector>
 
 #include "drivers/driver.h"
 #include "drivers/mujoco/two_wheels.h"

@@ -1,7 +1,5 @@
 // The gate acts against the permits.
 
-#include <cmath>
-
 #include "safety/monitor_fixture.h"
 #include "support/constants.h"
 

@@ -2,9 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include <map>
 #include <random>
-#include <vector>
 
 #include "safety/conditions/common/gate_conditions.h"
 #include "safety/conditions/common/machine_conditions.h"

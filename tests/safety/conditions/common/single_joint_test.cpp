@@ -1,12 +1,5 @@
 // One joint of a machine fails. The cause names this joint, and the reaction comes as early as if all joints failed.
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <functional>
-#include <limits>
-#include <string>
-
 #include "safety/conditions/common/machine_conditions.h"
 #include "safety/conditions/common/sensor_presence.h"
 #include "safety/latch/active_causes.h"

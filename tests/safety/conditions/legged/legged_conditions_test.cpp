@@ -3,8 +3,6 @@
 #include "safety/conditions/legged/legged_conditions.h"
 
 #include <deque>
-#include <functional>
-#include <limits>
 #include <numbers>
 #include <random>
 

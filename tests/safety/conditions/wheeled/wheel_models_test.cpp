@@ -3,9 +3,7 @@
 // are.
 
 #include <cmath>
-#include <map>
 #include <numbers>
-#include <optional>
 #include <random>
 
 #include "machine/wheeled/scrub.h"
