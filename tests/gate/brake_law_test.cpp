@@ -4,8 +4,7 @@
 
 #include <gtest/gtest.h>
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 constexpr Brake kFirm{.effort = 3, .hold_effort = 5, .damping = 2, .stiffness = 40, .hold_speed = 0.1};
 constexpr double kTiny = 1e-12;  // rounding of numbers below 10
@@ -95,5 +94,4 @@ TEST_F(BrakeLawTest, ReleasedSlowsAgainAndCountsFromNothing) {
   EXPECT_EQ(holds_after(50, 0.45), 50);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

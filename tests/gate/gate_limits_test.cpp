@@ -6,8 +6,7 @@
 #include "gate/joint_clamp.h"
 #include "support/allocation_guard.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 // Gains.
 
@@ -583,5 +582,4 @@ TEST_F(GateRange, StepsWithoutAllocating) {
   EXPECT_EQ(guard.count(), 0u);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

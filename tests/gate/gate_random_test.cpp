@@ -7,8 +7,7 @@
 #include "gate/gate_fixture.h"
 #include "gate/joint_clamp.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 constexpr JointLimits kArm{
     .effort = kLimit, .effort_rate = 900, .velocity = 20, .lower = -1, .upper = 3, .soft_zone = 0.1};
@@ -218,5 +217,4 @@ TEST_F(GateRandomDrive, SameInputsGiveTheSameBits) {
   }
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -3,8 +3,7 @@
 #include "gate/gate_fixture.h"
 #include "support/allocation_guard.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 class GateTest : public GateFixture {};
 
@@ -372,5 +371,4 @@ TEST_F(GateTest, StepsWithoutAllocating) {
   EXPECT_EQ(guard.count(), 0u);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

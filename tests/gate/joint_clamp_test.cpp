@@ -6,8 +6,7 @@
 
 #include "signals/gate_report.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 constexpr double kClampRounding = 1e-14;  // of numbers of order ten
 
@@ -253,5 +252,4 @@ TEST(RateClamp, BringsTheEffortToTheNearerEnd) {
   EXPECT_EQ(clamp_rate(-1, 2, command), 0u);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -7,8 +7,7 @@
 
 #include "support/allocation_guard.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 constexpr double kPeriod = 1e-3;
 
@@ -156,5 +155,4 @@ TEST(JointSpeed, StepsWithoutAllocating) {
   EXPECT_EQ(guard.count(), 0u);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -6,8 +6,7 @@
 #include "support/constants.h"
 #include "support/measured_contacts.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 class CausesTest : public MonitorTest {
  protected:
@@ -437,5 +436,4 @@ TEST(SafetyMonitorConstruction, RefusesParametersOutOfRange) {
   refused([](SafetyParameters& p) { p.standstill_speed = 0; }, 1e-3);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

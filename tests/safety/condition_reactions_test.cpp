@@ -11,8 +11,7 @@
 #include "signals/names.h"
 #include "support/measured_contacts.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 constexpr std::uint64_t kWindow = 20;
 
@@ -276,5 +275,4 @@ TEST(ConditionTable, HasEveryCauseThatIsNotFixed) {
   EXPECT_EQ(all, 0u) << names_of(kStopCauseNames, all);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -5,8 +5,7 @@
 
 #include <gtest/gtest.h>
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 constexpr double kRounding = 1e-12;
 constexpr double kCommanded = 15;
@@ -122,5 +121,4 @@ TEST_F(DerivedLimits, InventNoBattery) {
   EXPECT_FALSE(limits().battery_empty.limit);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

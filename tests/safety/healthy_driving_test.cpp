@@ -6,8 +6,7 @@
 
 #include "safety/monitor_fixture.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 struct Machine {
   double rate;    ///< Hz
@@ -140,5 +139,4 @@ INSTANTIATE_TEST_SUITE_P(Machines, HealthyDriving,
                          testing::Values(Machine{100, 4096}, Machine{100, 64}, Machine{1000, 4096}, Machine{1000, 64},
                                          Machine{2000, 4096}, Machine{2000, 64}, Machine{1000, 0}));
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

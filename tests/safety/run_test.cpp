@@ -5,8 +5,7 @@
 #include "safety/monitor_fixture.h"
 #include "signals/names.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 class RunTest : public MonitorTest {
  protected:
@@ -415,5 +414,4 @@ TEST_F(RestartTest, SameFactsGiveTheSameBits) {
   EXPECT_EQ(first.state, SupervisorState::kReady);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

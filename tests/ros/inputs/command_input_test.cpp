@@ -7,8 +7,7 @@
 
 #include "ros/nanoseconds.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 using testing::HasSubstr;
 using testing::IsEmpty;
@@ -700,5 +699,4 @@ TEST_F(PoseInputTest, AChosenGaitEndsWithThePermissionToMove) {
   EXPECT_EQ(input_.chosen_mode(), Mode{});
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -9,8 +9,7 @@
 #include "control/common/command_watch.h"
 #include "ros/nanoseconds.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 using testing::ElementsAre;
 using testing::HasSubstr;
@@ -328,5 +327,4 @@ TEST_F(CommandMuxTest, EveryChangeOfTheCommanderIsOneLine) {
   EXPECT_EQ(lines[0].text, "commands come from cmd_vel");
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -3,8 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 using testing::ElementsAre;
 
@@ -113,5 +112,4 @@ TEST_F(EStopLevelsTest, UnderEverNewNamesTakeBoundedMemoryAndNoneIsLost) {
   EXPECT_TRUE(levels_.stopped()) << "/panel_4999 says true";
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

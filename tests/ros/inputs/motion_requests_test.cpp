@@ -7,8 +7,7 @@
 
 #include "ros/nanoseconds.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 using testing::ElementsAre;
 using testing::IsEmpty;
@@ -301,5 +300,4 @@ TEST_F(MotionRequestsTest, NothingIsRevokedWithoutARequest) {
   EXPECT_FALSE(requests_.revoked(teleop_));
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -5,8 +5,7 @@
 
 #include "machine/description/robot_description.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 using testing::HasSubstr;
 using testing::StartsWith;
@@ -130,5 +129,4 @@ std::vector<BrokenMessage> broken_messages() {
 INSTANTIATE_TEST_SUITE_P(Each, BrokenTrajectory, testing::ValuesIn(broken_messages()),
                          [](const testing::TestParamInfo<BrokenMessage>& one) { return std::string(one.param.name); });
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

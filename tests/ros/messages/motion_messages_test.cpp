@@ -5,8 +5,7 @@
 
 #include <cmath>
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 using testing::Each;
 using testing::ElementsAre;
@@ -225,5 +224,4 @@ TEST_F(MotionMessagesTest, AnImuOfAnotherNodeIsTakenWithItsAgeAndItsGaps) {
   EXPECT_EQ(imu_sample(message, 1'000'000'000, -5).time_ns, 1'000'000'000);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -4,8 +4,7 @@
 #include <gtest/gtest.h>
 #include <ros/time.h>
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 using testing::ElementsAre;
 using testing::HasSubstr;
@@ -213,5 +212,4 @@ TEST_F(SafetyStatusTest, ARemedyNamesTheProgramsOfTheRobot) {
               ElementsAre("look whether driver runs and gets its core", "look whether leg_controller runs"));
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -10,8 +10,7 @@
 #include <chrono>
 #include <thread>
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 constexpr rlim_t kLimit = 128;
 
@@ -177,5 +176,4 @@ TEST(Reserve, LeavesMostOfASmallLimit) {
   EXPECT_EQ(reserve_of(32), 8U);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

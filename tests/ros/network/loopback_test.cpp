@@ -9,8 +9,7 @@
 
 #include <cstdlib>
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 /// The healthy case is a process that has requested it, with ROS on the loopback.
 class LoopbackTest : public testing::Test {
@@ -75,5 +74,4 @@ TEST_F(LoopbackTest, ARefusalOfTheKernelIsPassedOn) {
   EXPECT_EQ(errno, EBADF);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -13,8 +13,7 @@
 
 #include "ros/network/interposition.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 std::string field(const std::string& text, std::uint32_t length) {
   std::string bytes(sizeof length, '\0');
@@ -142,5 +141,4 @@ TEST(WireGuard, ARequestHasAnEnd) {
   close(file);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

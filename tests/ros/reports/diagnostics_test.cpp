@@ -5,8 +5,7 @@
 
 #include "signals/names.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 using testing::HasSubstr;
 
@@ -237,5 +236,4 @@ TEST(GateReasons, NameTheControllerOfTheRobot) {
   EXPECT_EQ(value_of(report, "gate remedy: no_command"), "look whether leg_controller runs and gets its core");
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -2,8 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 /// A controller that publishes every cycle, and a thread that reads now and then.
 class ReasonHistoryTest : public testing::Test {
@@ -54,5 +53,4 @@ TEST_F(ReasonHistoryTest, RestartsWithARun) {
   EXPECT_EQ(poll(), kReasonHolding);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

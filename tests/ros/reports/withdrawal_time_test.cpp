@@ -2,8 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 /// Looks at times that grow by one.
 class WithdrawalTimeTest : public testing::Test {
@@ -56,5 +55,4 @@ TEST_F(WithdrawalTimeTest, IsTheLookAfterAStopThatWasReleasedBetweenTwo) {
   EXPECT_EQ(time_.last_ns(), 3);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

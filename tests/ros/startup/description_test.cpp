@@ -3,8 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 using testing::HasSubstr;
 using testing::Not;
@@ -54,5 +53,4 @@ TEST_F(ChosenDescription, NeedsNoFileWhereOneIsPublished) {
   EXPECT_THROW(chosen(false, ""), RobotError);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -5,8 +5,7 @@
 
 #include "signals/names.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 using testing::ElementsAre;
 
@@ -75,5 +74,4 @@ TEST_F(WheelMessagesTest, DriveStateReportsEveryReasonWithSentenceAndRemedy) {
   }
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

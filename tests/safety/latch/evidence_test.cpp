@@ -2,8 +2,7 @@
 
 #include "safety/monitor_fixture.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 class EvidenceTest : public MonitorTest {
  protected:
@@ -140,5 +139,4 @@ TEST_F(EvidenceTest, OutlivesANewRun) {
   EXPECT_EQ(reported(), Causes{kCauseEmergencyStopService});
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -4,8 +4,7 @@
 #include "safety/monitor_fixture.h"
 #include "signals/names.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 /// The robot drives at full speed, with a heartbeat in the last cycle.
 class FixedCauses : public MonitorTest, public testing::WithParamInterface<FixedCause> {
@@ -118,5 +117,4 @@ std::string name_of_rule(const testing::TestParamInfo<FixedCause>& info) {
 
 INSTANTIATE_TEST_SUITE_P(Every, FixedCauses, testing::ValuesIn(kFixedCauses), name_of_rule);
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

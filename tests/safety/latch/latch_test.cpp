@@ -6,8 +6,7 @@
 #include "safety/latch/supervisor.h"
 #include "safety/latch/warnings.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 constexpr double kTick = 0.01;  // s: a warning is held for 100 cycles
 
@@ -255,5 +254,4 @@ TEST(Warnings, EndWithTheRun) {
   EXPECT_FALSE(warnings.slowing());
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -2,8 +2,7 @@
 
 #include "safety/monitor_fixture.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 /// The healthy case is a run that was followed from cycle 0; estimator and controller computed every cycle. A motion is
 /// requested since the start, and silence_needed is 100 cycles.
@@ -361,5 +360,4 @@ TEST_F(MonitorTest, AResetInACycleWithoutACommandFrameIsRefused) {
   EXPECT_EQ(permit_.state, SupervisorState::kStopped);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -6,8 +6,7 @@
 #include "safety/monitor_fixture.h"
 #include "signals/names.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 /// The healthy case was stopped by e_stop_trigger while driving; the robot stands, and nothing is requested.
 class ResetTest : public MonitorTest {
@@ -230,5 +229,4 @@ TEST_F(MonitorTest, NeverPermitsDrivingUnderALatch) {
   EXPECT_GT(ramps, 100u);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

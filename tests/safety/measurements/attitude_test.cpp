@@ -9,8 +9,7 @@
 
 #include "machine/gravity.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 using Eigen::Vector3d;
 
@@ -212,5 +211,4 @@ TEST_F(AttitudeTest, AForceThatNoAccelerometerMeasuresDoesNotEnterTheMean) {
   EXPECT_NEAR(attitude.tilt(), 0, kSmall);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -3,8 +3,7 @@
 #include "safety/monitor_fixture.h"
 #include "support/constants.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 constexpr double kDelay = 0.05;
 constexpr double kDeceleration = 2;
@@ -109,5 +108,4 @@ TEST_F(MonitorTest, AControllerThatSlowsDownInTimeIsNot) {
   EXPECT_EQ(permit_.causes, 0u);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

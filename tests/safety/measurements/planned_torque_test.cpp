@@ -4,8 +4,7 @@
 
 #include "safety/monitor_fixture.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 DriveTrain heavy() {
   DriveTrain robot = two_wheels();
@@ -75,5 +74,4 @@ TEST_F(PlannedTorqueTest, AWheelThatPushesByMoreThanItsAccelerationTakesIs) {
   EXPECT_EQ(permit_.causes, std::uint64_t{kCauseStall});
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

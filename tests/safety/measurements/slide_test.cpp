@@ -4,8 +4,7 @@
 
 #include "safety/monitor_fixture.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 constexpr double kSecond = 1000;  // cycles
 
@@ -109,5 +108,4 @@ TEST(Slide, GrowsNoFasterThanTyresCarryAndNotBeyondTheLimit) {
   EXPECT_FALSE(slide.possible());
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

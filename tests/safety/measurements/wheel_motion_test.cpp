@@ -8,8 +8,7 @@
 #include "safety/measurements/joint_standstill.h"
 #include "support/constants.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 constexpr std::uint64_t kSpeedWindow = 20;  // cycles
 constexpr double kAngleRounding = 1e-9;     // of angles of some rad, over 20 ms
@@ -157,5 +156,4 @@ TEST_F(WheelMotionTest, ACoarseCountAtTheEdgeIsNoMotion) {
   }
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -2,8 +2,7 @@
 
 #include "control/legged/ideal_legs.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 constexpr double kStep = 0.01;  // s
 using Positions = std::array<double, kLegsJoints>;
@@ -170,5 +169,4 @@ TEST_F(LyingJoints, CarryTheirOwnWeightAlone) {
     EXPECT_NEAR(legs_.out.joints[i].effort, equations.bias[static_cast<Eigen::Index>(6 + i)], 1e-6) << i;
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -9,8 +9,7 @@
 
 #include "support/allocation_guard.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 using Qp = DualActiveSet<4, 8>;
 using Random = std::mt19937;
@@ -207,5 +206,4 @@ TEST(DualActiveSet, SolvesTheLargestProblemWithoutAllocation) {
   EXPECT_LT(slope.norm(), kPrecision * problem.gradient.norm());
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -2,8 +2,7 @@
 
 #include "control/legged/ideal_legs.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 Request pose_of(const std::array<double, 6>& pose) {
   Request request;
@@ -257,5 +256,4 @@ TEST(BodyPose, AFootThatComesOutOfReachMovesItsJointsNoFasterThanTheyMay) {
   EXPECT_NE(legs.out.reasons & kReasonOutOfReach, 0u);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -5,8 +5,7 @@
 #include <Eigen/Geometry>
 #include <Eigen/QR>
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 /// Feet at four heights, and a load under which all push.
 FootForcesInput uneven() {
@@ -86,5 +85,4 @@ TEST(FootForces, AreZeroForALoadThatIsNoNumber) {
   for (const Eigen::Vector3d& force : foot_forces(input)) EXPECT_EQ(force, Eigen::Vector3d::Zero());
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

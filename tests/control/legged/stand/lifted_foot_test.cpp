@@ -2,8 +2,7 @@
 
 #include "control/legged/ideal_legs.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 Request lift_of(std::size_t leg, double x, double y, double height) {
   Request request = stance_of({ModeKind::kLift, leg});
@@ -183,5 +182,4 @@ TEST_P(LiftedFoot, LeavesTheBodyItsNominalAttitude) {
 
 INSTANTIATE_TEST_SUITE_P(Legs, LiftedFoot, testing::Values(0, 1, 2, 3));
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -6,8 +6,7 @@
 
 #include "control/legged/walk/gait_table.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 constexpr int kParts = 1000;  // of a period
 
@@ -151,5 +150,4 @@ TEST(Gait, TimesGrowWithTheRootOfTheLegAndLengthsWithTheLeg) {
   EXPECT_EQ(larger.duty, trot.duty);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -13,8 +13,7 @@
 #include "control/legged/walk/swing.h"
 #include "control/legged/walk/walker.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 constexpr double kMillisecond = 0.001;  // s
 constexpr double kMu = 0.3;             // other than the default
@@ -638,5 +637,4 @@ TEST_F(WalkerLaws, KnowsTheFootThatIsFarthestFromItsPlace) {
   }
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -7,8 +7,7 @@
 #include "machine/legs/legs_corpus.h"
 #include "signals/legged/legged_command.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 /// quadbot in its nominal stance, whose estimate is right.
 struct WalkerTest : testing::Test {
@@ -86,5 +85,4 @@ TEST_F(WalkerTest, ACrawlIsSoSlowThatAFootReachesThroughItsStanceAfterTheEndOfTh
   EXPECT_DOUBLE_EQ(speeds[gait_named("trot")][0], 1.7);  // of any gait
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

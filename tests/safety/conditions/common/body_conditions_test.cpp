@@ -16,8 +16,7 @@
 #include "support/constants.h"
 #include "support/measured_contacts.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 using Eigen::Vector3d;
 
@@ -513,5 +512,4 @@ TEST_F(BodyConditionsTest, NeverAllocate) {
   EXPECT_EQ(guard.count(), 0u);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -3,8 +3,7 @@
 #include "safety/monitor_fixture.h"
 #include "support/constants.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 /// The robot drives without a heartbeat.
 class GateConditionsTest : public MonitorTest {
@@ -165,5 +164,4 @@ TEST_F(GateReports, OfAnotherTimeThanBetweenTwoFramesDisobey) {
   EXPECT_EQ(causes_after(21, 21, GateVerdict::kPassed), std::uint64_t{kCauseGateDisobeys}) << "to come";
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -4,8 +4,7 @@
 
 #include <gtest/gtest.h>
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 /// At 1 kHz, more than 50 overruns within a second are reported after a tenth of it.
 class MachineConditionsTest : public testing::Test {
@@ -65,5 +64,4 @@ TEST_F(MachineConditionsTest, ANewRunRestartsTheCount) {
   EXPECT_TRUE(overruns(51, 200));
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -2,8 +2,7 @@
 
 #include "safety/monitor_fixture.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 /// The driver reports that the machine is starting. No joint and no IMU reports.
 class MachineStartTest : public MonitorTest {
@@ -79,5 +78,4 @@ TEST_F(MachineStartTest, AnEmergencyStopLatchesMeanwhile) {
   EXPECT_EQ(permit_.state, SupervisorState::kStopped);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

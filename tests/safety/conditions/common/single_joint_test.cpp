@@ -6,8 +6,7 @@
 #include "safety/measurements/finite.h"
 #include "safety/monitor_fixture.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 constexpr double kCycle = 1e-3;
 constexpr std::size_t kJoints = 4;
@@ -151,5 +150,4 @@ TEST_F(FailingJointTest, FaultyStopsTheRobotAndIsNamed) {
   expect_named(kCauseDriverFault);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

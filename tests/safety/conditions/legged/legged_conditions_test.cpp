@@ -9,8 +9,7 @@
 #include "machine/legs/legs_corpus.h"
 #include "signals/names.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 /// Quadbot stands: joints, forces of its feet and its command are those of the healthy case.
 class LeggedConditionsTest : public testing::Test {
@@ -783,5 +782,4 @@ TEST_F(LeggedConditionsTest, FeetAreJudgedOnlyWhileItStands) {
   }
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

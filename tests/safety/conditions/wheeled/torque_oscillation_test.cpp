@@ -2,8 +2,7 @@
 
 #include "safety/monitor_fixture.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 /// It drives at 5 rad/s with motors of 3 N·m; the limit is 0.3 of that for 1 s. A wheel drives 0.065 kg·m².
 class TorqueOscillationTest : public MonitorTest {
@@ -144,5 +143,4 @@ TEST_F(TorqueOscillationTest, IsWarnedOfAfterAPartOfItsPersistence) {
   EXPECT_NEAR(static_cast<double>(first_warning_), 0.5 * 400 + 50, 30);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -2,8 +2,7 @@
 
 #include "safety/monitor_fixture.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 class WheelFollowingTest : public MonitorTest {
  protected:
@@ -328,5 +327,4 @@ TEST_F(ScrubbingTest, WheelsThatStandWhileDrivingStraightAreStalledAsAnyOther) {
   EXPECT_EQ(permit_.causes, std::uint64_t{kCauseStall});
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

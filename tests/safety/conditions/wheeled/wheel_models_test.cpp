@@ -10,8 +10,7 @@
 #include "safety/conditions/wheeled/wheeled_conditions.h"
 #include "safety/monitor_fixture.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 constexpr double kModelPeriod = 2e-3;  // s
 constexpr double kModelQuantum = 2 * std::numbers::pi / 4096;
@@ -470,5 +469,4 @@ TEST(WheelModels, RandomDrivesAreJudgedAsTheHeadersSayInEveryRun) {
   EXPECT_EQ(seen.size(), 9U) << "every condition was active";
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -5,8 +5,7 @@
 
 #include "safety/monitor_fixture.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 constexpr double kPeriod = 1e-3;
 
@@ -166,5 +165,4 @@ TEST_F(WheeledConditionsTest, SeveralWheelsOnOneSideScrub) {
   }
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests
