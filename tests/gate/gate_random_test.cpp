@@ -196,25 +196,4 @@ TEST_F(GateRandomDrive, NeitherSpeedsUpBeyondTheLimitNorDrivesIntoAnEndStopNorJu
   EXPECT_GT(rated, 1000u);
 }
 
-TEST_F(GateRandomDrive, SameInputsGiveTheSameBits) {
-  for (unsigned seed = 0; seed < 20; ++seed) {
-    std::vector<JointCommand> first;
-    for (int round = 0; round < 2; ++round) {
-      begin(seed);
-      for (std::size_t tick = 0; tick < 200; ++tick) {
-        move();
-        request();
-        next();
-        for (std::size_t i = 0; i < 2; ++i) {
-          if (round == 0) {
-            first.push_back(joints_[i]);
-          } else {
-            ASSERT_EQ(std::memcmp(&first[2 * tick + i], &joints_[i], sizeof(JointCommand)), 0) << "seed " << seed;
-          }
-        }
-      }
-    }
-  }
-}
-
 }  // namespace robot_control::tests

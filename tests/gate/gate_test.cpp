@@ -362,13 +362,4 @@ TEST_F(GateTest, PassesInTheFirstTickAfterTickZero) {
   }
 }
 
-TEST_F(GateTest, StepsWithoutAllocating) {
-  if (!AllocationGuard::kCounts) GTEST_SKIP() << "the sanitizer owns the allocator";
-  AllocationGuard guard;
-  step();
-  input_.permit_found = Lookup::kCorrupt;
-  step();
-  EXPECT_EQ(guard.count(), 0u);
-}
-
 }  // namespace robot_control::tests

@@ -147,12 +147,4 @@ TEST(JointSpeed, RemembersEnoughAtEveryRate) {
   }
 }
 
-TEST(JointSpeed, StepsWithoutAllocating) {
-  if (!AllocationGuard::kCounts) GTEST_SKIP() << "the sanitizer owns the allocator";
-  JointSpeed joint(kPeriod);
-  AllocationGuard guard;
-  for (std::uint64_t k = 0; k < 100; ++k) joint.step(0.1 * static_cast<double>(k), k);
-  EXPECT_EQ(guard.count(), 0u);
-}
-
 }  // namespace robot_control::tests

@@ -395,23 +395,4 @@ TEST_F(RestartTest, ANewDriverBesideARunningMonitorClearsNothing) {
   EXPECT_EQ(permit_.state, SupervisorState::kStopped);
 }
 
-TEST_F(RestartTest, SameFactsGiveTheSameBits) {
-  Permit first;
-  Permit second;
-  for (Permit* permit : {&first, &second}) {
-    SafetyMonitor monitor(parameters(), robot(), kPeriod);
-    SensorFrame sensors = sensors_;
-    MonitorInput input = input_;
-    input.sensors = &sensors;
-    for (std::uint64_t k = 0; k < 500; ++k) {
-      sensors.head.cycle = k;
-      if (k == 300) ++input.operator_input.e_stop_services;
-      if (k == 350) ++input.operator_input.resets;
-      monitor.step(input, *permit);
-    }
-  }
-  EXPECT_EQ(std::memcmp(&first, &second, sizeof first), 0);
-  EXPECT_EQ(first.state, SupervisorState::kReady);
-}
-
 }  // namespace robot_control::tests

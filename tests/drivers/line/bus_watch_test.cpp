@@ -118,11 +118,4 @@ TEST_F(BusWatchTest, SaysThatTheSendQueueIsFull) {
   EXPECT_THAT(text(), HasSubstr("the send queue is full"));
 }
 
-TEST_F(BusWatchTest, AStepDoesNotAllocate) {
-  report(CAN_ERR_BUSOFF, 0);
-  const AllocationGuard guard;
-  after(1);
-  EXPECT_EQ(guard.count(), 0U);
-}
-
 }  // namespace robot_control::tests

@@ -303,14 +303,4 @@ TEST(CanFilters, AnInvertedOnePassesTheOthers) {
   EXPECT_THAT(passing(filters, {0x11F, 0x120, 0x12F, 0x130}), ElementsAre(0x11F, 0x130));
 }
 
-TEST_F(CanBusTest, NeitherSendingNorReceivingAllocates) {
-  const auto frames = numbered_up_to(20);
-  for (unsigned i = 0; i < 20; ++i) send_from_far(numbered(i));
-  const CanTime now = at(1);
-  AllocationGuard guard;
-  EXPECT_EQ(bus_->send(frames), 20u);
-  EXPECT_EQ(bus_->receive(now).frames.size(), 20u);
-  EXPECT_EQ(guard.count(), 0u);
-}
-
 }  // namespace robot_control::tests

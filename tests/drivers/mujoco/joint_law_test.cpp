@@ -124,11 +124,4 @@ TEST_F(JointLawTest, TheStabilityLimitIsWhereTheHeaderSaysItIs) {
   }
 }
 
-TEST_F(JointLawTest, StepDoesNotAllocate) {
-  AllocationGuard guard;
-  velocity_ = 3;
-  brake(1);
-  EXPECT_EQ(guard.count(), 0u);
-}
-
 }  // namespace robot_control::tests

@@ -341,23 +341,6 @@ TEST_F(EstimatorPoseTest, AClockOffsetThatIsNotKnownMayBeThatOfEitherSensor) {
   }
 }
 
-TEST_F(EstimatorPoseTest, SameInputsGiveTheSameBits) {
-  Estimator first(rigid_tyres(), two_wheeler(), kPeriod);
-  Estimator second(rigid_tyres(), two_wheeler(), kPeriod);
-  second.step(robot_.frame(), state_);
-  second.enter_run();
-  StateFrame one;
-  StateFrame two;
-  robot_.noise = {.gyro = 1e-3, .accelerometer = 1e-2, .counts = 4096};
-  for (int i = 0; i < 3000; ++i) {
-    robot_.drive(0.5 * std::sin(i * 1e-3), 0.2);
-    if (i > 2000) robot_.tread[1] = 0.9;  // slips
-    first.step(robot_.frame(), one);
-    second.step(robot_.frame(), two);
-    ASSERT_EQ(std::memcmp(&one, &two, sizeof one), 0) << "cycle " << i;
-  }
-}
-
 TEST_F(EstimatorPoseTest, StepsWithoutAllocating) {
   const AllocationGuard guard;
   for (int i = 0; i < 3000; ++i) {

@@ -196,16 +196,6 @@ TEST(WheelLoop, HoldsAnIntegralWithinTheEffortLimit) {
   EXPECT_LT(loop.integral(), kLimit);
 }
 
-TEST(WheelLoop, DoesNotAllocate) {
-  WheelLoop loop = seeded();
-  const AllocationGuard guard;
-  for (int k = 0; k < 100; ++k) {
-    loop.measure({.position = 0.01 * k}, k % 3 + 1, k % 10 > 0);
-    loop.step({.velocity = 1, .acceleration = 1, .feed_forward = 0.1}, k % 3 + 1);
-  }
-  EXPECT_EQ(guard.count(), 0u);
-}
-
 TEST(WheelLoop, ForgetsWhatItCarriedWithoutAnIntegrator) {
   WheelLoop loop = seeded(0, {.ki = 0});
   loop.preload_integrator(1.3);

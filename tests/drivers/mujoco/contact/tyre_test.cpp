@@ -137,11 +137,4 @@ TEST_F(TyreTest, IsStableAtAnyRimSpeed) {
   EXPECT_NEAR(velocity_, 0, 1e-9);
 }
 
-TEST_F(TyreTest, StepDoesNotAllocate) {
-  AllocationGuard guard;
-  velocity_ = 3;
-  steps(1000, 5, 1);
-  EXPECT_EQ(guard.count(), 0u);
-}
-
 }  // namespace robot_control::tests

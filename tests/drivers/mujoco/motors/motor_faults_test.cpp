@@ -118,15 +118,4 @@ TEST_F(MotorFaultsTest, ABlockedRotorHoldsAFreeWheelAgainstTwiceTheMotorsTorque)
   EXPECT_LT(farthest, 0.02 + 2 * load * 4 * kStep * kStep / kInertia);
 }
 
-TEST_F(MotorFaultsTest, NeverAllocate) {
-  const std::vector<JointCommand> commands(3);
-  const AllocationGuard guard;
-  for (std::size_t kind = 0; kind < kFaultKinds; ++kind) {
-    InjectedFaults faults{};
-    faults[0] = {FaultComponent::kMotor, kLeftWheel, static_cast<FaultKind>(kind)};
-    for (int i = 0; i < 50; ++i) faults_.receive(faults, cycle_++, commands);
-  }
-  EXPECT_EQ(guard.count(), 0u);
-}
-
 }  // namespace robot_control::tests

@@ -142,10 +142,6 @@ TEST(LateSamplesTest, KeepTheirOrderAndAreNeverEarlyNorLost) {
   EXPECT_GT(held, samples.size() / 10) << "some cycles bring no new sample";
 }
 
-TEST(LateSamplesTest, AreTheSameForTheSameSeed) {
-  EXPECT_EQ(reported(0.01, 0.002, 1000), reported(0.01, 0.002, 1000));
-}
-
 struct SlipNoiseTest : testing::Test {
   SlipNoiseTest() {
     made_.axles = {0.2, -0.2};
@@ -307,17 +303,6 @@ TEST(FieldErrors, BeginWithWhatTheImuMeasuredBefore) {
     rates.insert(standing.imu.angular_velocity[2]);
   }
   EXPECT_EQ(rates.size(), 50u);
-}
-
-TEST(FieldErrors, NeverAllocate) {
-  MujocoPlantParameters parameters;
-  parameters.sensor_errors = ErrorLevel::kField;
-  parameters.encoder_jitter = 0.002;
-  SensorErrors all(two_wheels(), {{kLeftWheel, 0.1}, {kRightWheel, 0.1}}, parameters, kStep);
-  Measurement measurement;
-  const AllocationGuard guard;
-  for (int i = 0; i < 1000; ++i) all.step(measurement);
-  EXPECT_EQ(guard.count(), 0u);
 }
 
 }  // namespace robot_control::tests

@@ -273,16 +273,4 @@ TEST_F(ButtonFaults, PressAndReleaseItAtRandom) {
   }
 }
 
-TEST_F(SensorFaultsTest, NeverAllocate) {
-  const AllocationGuard guard;
-  for (std::size_t component = 0; component < kFaultComponents; ++component) {
-    for (std::size_t kind = 0; kind < kFaultKinds; ++kind) {
-      for (std::uint64_t cycle = 0; cycle < 50; ++cycle) {
-        step(static_cast<FaultComponent>(component), static_cast<FaultKind>(kind), cycle);
-      }
-    }
-  }
-  EXPECT_EQ(guard.count(), 0u);
-}
-
 }  // namespace robot_control::tests

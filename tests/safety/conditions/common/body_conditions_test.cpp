@@ -503,13 +503,4 @@ TEST_F(BodyConditionsTest, WhatIsOffIsNotFound) {
   }
 }
 
-TEST_F(BodyConditionsTest, NeverAllocate) {
-  if (!AllocationGuard::kCounts) GTEST_SKIP() << "the sanitizer owns the allocator";
-  rate_ = {1, 2, 3};
-  const AllocationGuard guard;
-  steps(1000);
-  facts_.enter_run();
-  EXPECT_EQ(guard.count(), 0u);
-}
-
 }  // namespace robot_control::tests
