@@ -68,8 +68,7 @@ bool sound(const CommandCase& command) {
   return command.content == Content::kGood;
 }
 
-class GateEnumeration : public GateFixture {
- protected:
+struct GateEnumeration : GateFixture {
   static std::uint64_t from_now(std::int64_t cycles) {
     return static_cast<std::uint64_t>(static_cast<std::int64_t>(kTick) + cycles);
   }

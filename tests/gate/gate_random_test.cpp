@@ -34,8 +34,7 @@ double number(std::mt19937_64& random) {
   return random() % 64 == 0 ? value : static_cast<double>(static_cast<std::int64_t>(bits)) * 1e-18;
 }
 
-class GateGarbage : public GateFixture {
- protected:
+struct GateGarbage : GateFixture {
   GateGarbage() : GateFixture(kArm) {}
 };
 
@@ -94,8 +93,7 @@ TEST_F(GateGarbage, NeverMovesAJointBeyondItsLimitsOrWithoutAPermit) {
 }
 
 /// Random joints move on random paths with random commands, tick after tick.
-class GateRandomDrive : public GateFixture {
- protected:
+struct GateRandomDrive : GateFixture {
   GateRandomDrive() : GateFixture(kArm) {}
 
   void begin(unsigned seed) {

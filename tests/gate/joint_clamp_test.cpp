@@ -20,8 +20,7 @@ bool same(const JointCommand& one, const JointCommand& other) {
 
 // The speed limit. Both directions: what holds of one holds of the other with every sign turned.
 
-class SpeedClamp : public testing::TestWithParam<double> {
- protected:
+struct SpeedClamp : testing::TestWithParam<double> {
   JointCommand effort(double value) const { return {.mode = JointMode::kEffort, .effort = sign * value}; }
   double sign = GetParam();
 };
@@ -137,8 +136,7 @@ TEST(GainClamp, GainsThatTheModeDoesNotUseAreCarried) {
 
 // End stops: the upper one, and the lower one as its mirror image about 1 rad, the middle.
 
-class PositionClamp : public testing::TestWithParam<double> {
- protected:
+struct PositionClamp : testing::TestWithParam<double> {
   double at(double left) const { return sign > 0 ? kJoint.upper - left : kJoint.lower + left; }
   double sign = GetParam();
 };

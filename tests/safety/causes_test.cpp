@@ -8,8 +8,7 @@
 
 namespace robot_control::tests {
 
-class CausesTest : public MonitorTest {
- protected:
+struct CausesTest : MonitorTest {
   CausesTest() { drive(); }
   void expect_stop(SupervisorState state, StopCause cause) const {
     EXPECT_EQ(permit_.state, state);
@@ -185,8 +184,7 @@ TEST_F(CausesTest, CorruptSensorFramesInARowStopWithoutAnother) {
 // Category 1.
 
 /// A heartbeat came every 10 cycles so far, the last one in this cycle.
-class HeartbeatTest : public CausesTest {
- protected:
+struct HeartbeatTest : CausesTest {
   HeartbeatTest() {
     for (int i = 0; i < 10; ++i) {
       ++input_.operator_input.heartbeats;

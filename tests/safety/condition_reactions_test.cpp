@@ -116,8 +116,7 @@ SafetyParameters only(const SafetyParameters& given, const Row& row, Reaction re
   return parameters;
 }
 
-class Conditions : public MonitorTest, public testing::WithParamInterface<std::tuple<std::size_t, Reaction>> {
- protected:
+struct Conditions : MonitorTest, testing::WithParamInterface<std::tuple<std::size_t, Reaction>> {
   Conditions() : row_(rows()[std::get<0>(GetParam())]), reaction_(std::get<1>(GetParam())) {
     const SafetyParameters chosen = only(parameters(), row_, reaction_);
     persistence_ = std::max<std::uint64_t>(1, static_cast<std::uint64_t>(std::lround(row_.persistence / kPeriod)));
@@ -212,8 +211,7 @@ INSTANTIATE_TEST_SUITE_P(Every, Conditions,
                          name_of_row);
 
 /// Drives that take speeds and measure no torque (robot.wheel_command: velocity).
-class ConditionsWithoutTorque : public Conditions {
- protected:
+struct ConditionsWithoutTorque : Conditions {
   /// docs/safety.md names them.
   static constexpr std::uint64_t kBlind = kCauseWheelEffort | kCausePower | kCauseTorqueOscillation;
 

@@ -10,8 +10,7 @@ namespace robot_control::tests {
 constexpr double kRounding = 1e-12;
 constexpr double kCommanded = 15;
 
-class DerivedLimits : public testing::Test {
- protected:
+struct DerivedLimits : testing::Test {
   DerivedLimits() {
     robot_.joints.resize(2);
     robot_.wheels.resize(2);

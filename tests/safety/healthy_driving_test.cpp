@@ -19,8 +19,7 @@ std::ostream& operator<<(std::ostream& out, const Machine& machine) {
 
 /// Drives of 6 s: up at 1 m/s² to 0.9 m/s, a curve, through zero to −0.5 m/s, and to rest. The wheels follow their
 /// targets 20 ms later, as a wheel loop of 8 Hz does.
-class HealthyDriving : public testing::TestWithParam<Machine> {
- protected:
+struct HealthyDriving : testing::TestWithParam<Machine> {
   static constexpr double kDrive = 6;  // s
   static constexpr double kLag = 0.02;
 

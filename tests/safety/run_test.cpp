@@ -7,8 +7,7 @@
 
 namespace robot_control::tests {
 
-class RunTest : public MonitorTest {
- protected:
+struct RunTest : MonitorTest {
   void e_stop() {
     ++input_.operator_input.e_stop_services;
     step();
@@ -237,8 +236,7 @@ TEST_F(RunTest, ANewRunOfTheSameDriverIsNoLoss) {
 
 // A restart of the monitor.
 
-class RestartTest : public RunTest {
- protected:
+struct RestartTest : RunTest {
   void restart() {
     input_.operator_input = {};
     restart_monitor();

@@ -13,8 +13,7 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 
 /// One node sends every 0.1 s, on the robot's clock.
-class CommandInputTest : public testing::Test {
- protected:
+struct CommandInputTest : testing::Test {
   void receive(const std::string& sender, double linear, std::int64_t stamp_ns = 0) {
     ArrivedCommand arrived{.sender = publisher(sender), .twist = {}, .stamp_ns = stamp_ns};
     arrived.twist.linear[0] = linear;
@@ -284,8 +283,7 @@ TEST_F(CommandInputTest, ARefusedMessageIsARequestForMotionWhateverItHolds) {
 }
 
 /// A stop that latches, and its reset.
-class RevokedSenderTest : public CommandInputTest {
- protected:
+struct RevokedSenderTest : CommandInputTest {
   RevokedSenderTest() { grant(); }
 
   void grant() { input_.follow({.run = 7, .withdrawals = withdrawals_, .granted = true}, now_.loop_ns); }
@@ -536,8 +534,7 @@ TEST_F(CommandInputTest, NaNOfAnotherSenderLeavesTheCommandInForce) {
 }
 
 /// Twists and poses of robots on legs, each over a connection of its own.
-class PoseInputTest : public RevokedSenderTest {
- protected:
+struct PoseInputTest : RevokedSenderTest {
   void twist(const std::string& sender, double linear) {
     ArrivedCommand arrived{.sender = publisher(sender), .twist = {}, .part = StatedPart::kTwist};
     arrived.twist.linear[0] = linear;

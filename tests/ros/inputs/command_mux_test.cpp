@@ -26,8 +26,7 @@ CommandSourceList shipped() {
           .locks = {{"pause", "pause", 0, 255}}};
 }
 
-class CommandMuxTest : public testing::Test {
- protected:
+struct CommandMuxTest : testing::Test {
   void receive(Source source, double linear) {
     ArrivedCommand arrived{
         .sender = {"/node" + std::to_string(source), connections_[source]}, .twist = {}, .stamp_ns = 0};
@@ -263,8 +262,7 @@ TEST_F(CommandMuxTest, AStampTooOldMakesNoSourceLive) {
 
 /// The source of a planner never times out, or after a minute. The planner has died; then come a stop and its reset, a
 /// new run or the end of a pause.
-class DeadSourceTest : public CommandMuxTest, public testing::WithParamInterface<double> {
- protected:
+struct DeadSourceTest : CommandMuxTest, testing::WithParamInterface<double> {
   DeadSourceTest() {
     CommandSourceList list = shipped();
     list.sources[kCmd].timeout = GetParam();

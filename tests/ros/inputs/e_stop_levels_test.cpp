@@ -10,8 +10,7 @@ using testing::ElementsAre;
 constexpr bool kTrue = true;
 constexpr bool kFalse = false;
 
-class EStopLevelsTest : public testing::Test {
- protected:
+struct EStopLevelsTest : testing::Test {
   EStopLevels levels_;
 };
 

@@ -16,8 +16,7 @@ constexpr std::int64_t kWindow = kSecond;
 
 constexpr std::int64_t kInTransit = MotionRequests::in_transit_ns(1'000'000);
 
-class MotionRequestsTest : public testing::Test {
- protected:
+struct MotionRequestsTest : testing::Test {
   MotionRequestsTest() {
     requests_.set_window(kWindow);
     requests_.follow(permission_, now_);
@@ -116,8 +115,7 @@ TEST_F(MotionRequestsTest, OfClosedConnectionsAreForgottenBeyondABound) {
 }
 
 /// The nodes that sent lately.
-class SendersTest : public MotionRequestsTest {
- protected:
+struct SendersTest : MotionRequestsTest {
   void send(const std::string& name, std::int64_t at) {
     requests_.sent({name, connections_.emplace_back(boost::make_shared<char>()), name}, at);
   }
@@ -152,8 +150,7 @@ TEST_F(SendersTest, AreListedUpToABound) {
 }
 
 /// This controller was started beside a node that publishes already.
-class MotionRequestsOfARestartTest : public MotionRequestsTest {
- protected:
+struct MotionRequestsOfARestartTest : MotionRequestsTest {
   MotionRequestsOfARestartTest() {
     requests_ = MotionRequests();
     requests_.set_window(kWindow);

@@ -11,8 +11,7 @@ using testing::HasSubstr;
 using testing::StartsWith;
 
 /// The healthy message moves the first joint of quadbot by 0.2 rad in 1 s, and the second one back and forth.
-class JointTrajectoryTest : public testing::Test {
- protected:
+struct JointTrajectoryTest : testing::Test {
   void SetUp() override {
     for (std::size_t i = 0; i < kLegsJoints; ++i) start_[i] = robot_.joints[i].rest_position;
     message_.joint_names = {name(0), name(1)};

@@ -11,8 +11,7 @@ using testing::Each;
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-class MotionMessagesTest : public testing::Test {
- protected:
+struct MotionMessagesTest : testing::Test {
   MotionMessagesTest() {
     robot_.base_link = "base_link";
     robot_.imu_link = "imu_link";

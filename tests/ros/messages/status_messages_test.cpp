@@ -13,8 +13,7 @@ using testing::Not;
 
 constexpr std::int64_t kPeriod = 1'000'000;  // ns
 
-class SafetyStatusTest : public testing::Test {
- protected:
+struct SafetyStatusTest : testing::Test {
   SafetyStatusTest() {
     permit_.head = {.run = 7, .cycle = 1500, .stamp_ns = 1500 * kPeriod};
     permit_.action = PermitAction::kDrive;

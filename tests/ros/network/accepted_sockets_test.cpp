@@ -15,8 +15,7 @@ namespace robot_control::tests {
 constexpr rlim_t kLimit = 128;
 
 /// Healthy: a listening socket on the loopback, and a limit that leaves room for some connections.
-class AcceptedSocketsTest : public testing::Test {
- protected:
+struct AcceptedSocketsTest : testing::Test {
   AcceptedSocketsTest() : listening_(socket(AF_INET, SOCK_STREAM, 0)) {
     getrlimit(RLIMIT_NOFILE, &before_);
     const rlimit limit{.rlim_cur = kLimit, .rlim_max = before_.rlim_max};

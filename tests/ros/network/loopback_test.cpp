@@ -12,8 +12,7 @@
 namespace robot_control::tests {
 
 /// The healthy case is a process that has requested it, with ROS on the loopback.
-class LoopbackTest : public testing::Test {
- protected:
+struct LoopbackTest : testing::Test {
   LoopbackTest() {
     bind_as_ros_is_configured();
     unsetenv("ROS_HOSTNAME");

@@ -16,8 +16,7 @@ std::string value_of(const DiagnosticReport& report, const std::string& key) {
   return "(none)";
 }
 
-class PermitReport : public testing::Test {
- protected:
+struct PermitReport : testing::Test {
   PermitReport() {
     permit_.state = SupervisorState::kDrive;
     permit_.action = PermitAction::kDrive;
@@ -55,8 +54,7 @@ TEST_F(PermitReport, ACauseOutweighsAWarning) {
   EXPECT_THAT(report().message().message, HasSubstr("tilted too far"));
 }
 
-class StateReport : public testing::Test {
- protected:
+struct StateReport : testing::Test {
   StateReport() {
     state_.head.run = 1;
     state_.base.flags = kStateValid;

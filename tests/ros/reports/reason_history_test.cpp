@@ -5,8 +5,7 @@
 namespace robot_control::tests {
 
 /// A controller that publishes every cycle, and a thread that reads now and then.
-class ReasonHistoryTest : public testing::Test {
- protected:
+struct ReasonHistoryTest : testing::Test {
   void publish(std::uint64_t reasons, std::uint64_t run = 7) {
     newest_.head = {.run = run, .cycle = cycle_++};
     newest_.reasons = reasons;

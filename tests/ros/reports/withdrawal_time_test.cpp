@@ -5,8 +5,7 @@
 namespace robot_control::tests {
 
 /// Looks at times that grow by one.
-class WithdrawalTimeTest : public testing::Test {
- protected:
+struct WithdrawalTimeTest : testing::Test {
   void observe(PermitAction action, std::uint64_t causes = 0) {
     permit_.action = action;
     permit_.causes = causes;

@@ -9,8 +9,7 @@ using testing::HasSubstr;
 using testing::Not;
 
 /// Healthy: the YAML file names diffbot, the server is empty.
-class ChosenDescription : public testing::Test {
- protected:
+struct ChosenDescription : testing::Test {
   ChosenDescription() { parameters_.urdf = PROJECT_DIRECTORY "/urdf/diffbot.urdf"; }
 
   RobotDescription chosen(bool urdf_requested, const std::string& published) const {

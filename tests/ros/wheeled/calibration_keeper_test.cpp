@@ -8,8 +8,7 @@
 namespace robot_control::tests {
 
 /// The healthy case has a state that learned something, and a file in an existing folder.
-class CalibrationKeeperTest : public testing::Test {
- protected:
+struct CalibrationKeeperTest : testing::Test {
   CalibrationKeeperTest() {
     robot_.name = "diffbot";
     robot_.wheels.resize(2);

@@ -9,8 +9,7 @@ namespace robot_control::tests {
 
 using testing::ElementsAre;
 
-class WheelMessagesTest : public testing::Test {
- protected:
+struct WheelMessagesTest : testing::Test {
   WheelMessagesTest() {
     robot_.joints.resize(3);
     robot_.joints[0].name = "left";

@@ -4,8 +4,7 @@
 
 namespace robot_control::tests {
 
-class EvidenceTest : public MonitorTest {
- protected:
+struct EvidenceTest : MonitorTest {
   static constexpr double kSlow = 0.6;  // m/s; the robot drives at 0.5
 
   EvidenceTest() {

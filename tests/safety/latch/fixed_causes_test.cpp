@@ -7,8 +7,7 @@
 namespace robot_control::tests {
 
 /// The robot drives at full speed, with a heartbeat in the last cycle.
-class FixedCauses : public MonitorTest, public testing::WithParamInterface<FixedCause> {
- protected:
+struct FixedCauses : MonitorTest, testing::WithParamInterface<FixedCause> {
   FixedCauses() {
     drive();
     steps(20);

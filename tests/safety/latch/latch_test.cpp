@@ -68,8 +68,7 @@ TEST(ActiveCauses, OfAConditionThatIsNotActiveNoneIsAdded) {
   EXPECT_EQ(causes.measurements()[0].value, 12);
 }
 
-class EvidenceOf : public testing::Test {
- protected:
+struct EvidenceOf : testing::Test {
   std::array<CauseEvidence, kMaxEvidence> written() const {
     std::array<CauseEvidence, kMaxEvidence> out;
     out.fill({.cause = 1, .value = 99});

@@ -9,8 +9,7 @@
 namespace robot_control::tests {
 
 /// The healthy case was stopped by e_stop_trigger while driving; the robot stands, and nothing is requested.
-class ResetTest : public MonitorTest {
- protected:
+struct ResetTest : MonitorTest {
   ResetTest() {
     drive();
     ++input_.operator_input.e_stop_services;

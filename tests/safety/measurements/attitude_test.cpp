@@ -17,8 +17,7 @@ constexpr double kStep = 1e-3;  // s
 constexpr double kSmall = 1e-12;
 constexpr double kTime = Attitude::kTimeConstant;
 
-class AttitudeTest : public testing::Test {
- protected:
+struct AttitudeTest : testing::Test {
   AttitudeTest() { step({0, 0, 0}, rest()); }
 
   static Vector3d rest() { return {0, 0, kGravity}; }

@@ -12,8 +12,7 @@ DriveTrain heavy() {
   return robot;
 }
 
-class PlannedTorqueTest : public MonitorTest {
- protected:
+struct PlannedTorqueTest : MonitorTest {
   PlannedTorqueTest() {
     SafetyParameters chosen = without_heartbeat();
     chosen.yaw_rate.reaction = chosen.torque_oscillation.reaction = Reaction::kOff;

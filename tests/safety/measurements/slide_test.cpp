@@ -8,8 +8,7 @@ namespace robot_control::tests {
 
 constexpr double kSecond = 1000;  // cycles
 
-class SlideTest : public MonitorTest {
- protected:
+struct SlideTest : MonitorTest {
   SlideTest() { begin_with(without_heartbeat()); }
   /// Drives until the bound has grown to the rims' speed.
   void drive_for_long() {

@@ -14,8 +14,7 @@ constexpr std::uint64_t kSpeedWindow = 20;  // cycles
 constexpr double kAngleRounding = 1e-9;     // of angles of some rad, over 20 ms
 
 /// One wheel with an encoder.
-class WheelMotionTest : public testing::Test {
- protected:
+struct WheelMotionTest : testing::Test {
   WheelMotionTest() {
     set_joints_valid(sensors_, kValidMotion);
     sensors_.joint_count = 1;

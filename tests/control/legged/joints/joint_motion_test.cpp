@@ -7,8 +7,7 @@ namespace robot_control::tests {
 constexpr double kStep = 0.01;  // s
 using Positions = std::array<double, kLegsJoints>;
 
-class JointMotionOf : public testing::Test {
- protected:
+struct JointMotionOf : testing::Test {
   JointMotionOf() {
     for (std::size_t i = 0; i < kLegsJoints; ++i) {
       start_[i] = 0.1 * static_cast<double>(i);
@@ -81,8 +80,7 @@ TEST_F(JointMotionOf, StopsEachJointAsItsAccelerationAllows) {
 }
 
 /// The joints phase of the controller.
-class LyingJoints : public testing::Test {
- protected:
+struct LyingJoints : testing::Test {
   LyingJoints() {
     for (std::size_t i = 0; i < kLegsJoints; ++i) start_[i] = legs_.sensors.joints[i].position;
   }

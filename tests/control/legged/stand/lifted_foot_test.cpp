@@ -10,8 +10,7 @@ Request lift_of(std::size_t leg, double x, double y, double height) {
   return request;
 }
 
-class LiftedFoot : public testing::TestWithParam<std::size_t> {
- protected:
+struct LiftedFoot : testing::TestWithParam<std::size_t> {
   static const IdealLegs& nominal() {
     static const IdealLegs kStanding = standing();
     return kStanding;

@@ -24,8 +24,7 @@ Vector3 plain(const Vector3d& vector) {
   return {vector.x(), vector.y(), vector.z()};
 }
 
-class BodyConditionsTest : public testing::Test {
- protected:
+struct BodyConditionsTest : testing::Test {
   BodyConditionsTest() {
     robot_.mass = 10;
     robot_.joints.resize(2);
@@ -306,8 +305,7 @@ TEST_F(BodyConditionsTest, ASlowImuIsNotStuck) {
 }
 
 /// Random rates within the range of a BMI088, on all axes, or on one of them.
-class JumpingRatesTest : public BodyConditionsTest, public testing::WithParamInterface<Vector3d> {
- protected:
+struct JumpingRatesTest : BodyConditionsTest, testing::WithParamInterface<Vector3d> {
   static constexpr int kSeeds = 200;
 
   void jump() {

@@ -6,8 +6,7 @@
 namespace robot_control::tests {
 
 /// The robot drives without a heartbeat.
-class GateConditionsTest : public MonitorTest {
- protected:
+struct GateConditionsTest : MonitorTest {
   GateConditionsTest() {
     begin_with(without_heartbeat());
     drive();
@@ -131,8 +130,7 @@ TEST_F(GateConditionsTest, ThePermitsOfAnEarlierMonitorAreNotJudged) {
 }
 
 /// Frames of a driver whose ticks all brake for want of a command, or all pass.
-class GateReports : public ::testing::Test {
- protected:
+struct GateReports : ::testing::Test {
   std::uint64_t causes_after(std::uint64_t frame, std::uint64_t tick, GateVerdict verdict) {
     SensorFrame sensors;
     sensors.head.cycle = frame;

@@ -7,8 +7,7 @@
 namespace robot_control::tests {
 
 /// At 1 kHz, more than 50 overruns within a second are reported after a tenth of it.
-class MachineConditionsTest : public testing::Test {
- protected:
+struct MachineConditionsTest : testing::Test {
   bool overruns(std::uint64_t counted, std::uint64_t cycles = 1) {
     bool reported = false;
     sensors_.overruns = counted;

@@ -5,8 +5,7 @@
 namespace robot_control::tests {
 
 /// The driver reports that the machine is starting. No joint and no IMU reports.
-class MachineStartTest : public MonitorTest {
- protected:
+struct MachineStartTest : MonitorTest {
   MachineStartTest() {
     new_run();
     begin_start();

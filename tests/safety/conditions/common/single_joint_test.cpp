@@ -12,8 +12,7 @@ constexpr double kCycle = 1e-3;
 constexpr std::size_t kJoints = 4;
 constexpr std::uint64_t kPersistence = 10;  ///< cycles of encoders_lost by default
 
-class SingleJointTest : public testing::Test {
- protected:
+struct SingleJointTest : testing::Test {
   SingleJointTest() {
     sensors_.joint_count = kJoints;
     set_joints_valid(sensors_, kValidMotion);
@@ -124,8 +123,7 @@ TEST_F(SingleJointTest, ANumberThatIsNotFiniteCountsOnlyWhereItIsValid) {
 }
 
 /// The whole monitor, in motion; the second wheel's joint fails.
-class FailingJointTest : public MonitorTest {
- protected:
+struct FailingJointTest : MonitorTest {
   FailingJointTest() {
     begin_with(without_heartbeat());
     drive();

@@ -5,8 +5,7 @@
 namespace robot_control::tests {
 
 /// It drives at 5 rad/s with motors of 3 N·m; the limit is 0.3 of that for 1 s. A wheel drives 0.065 kg·m².
-class TorqueOscillationTest : public MonitorTest {
- protected:
+struct TorqueOscillationTest : MonitorTest {
   static constexpr double kLimit = 3;  // N·m
   static constexpr double kInertia = 0.065;
 

@@ -4,8 +4,7 @@
 
 namespace robot_control::tests {
 
-class WheelFollowingTest : public MonitorTest {
- protected:
+struct WheelFollowingTest : MonitorTest {
   WheelFollowingTest() {
     SafetyParameters chosen = without_heartbeat();
     chosen.yaw_rate.reaction = Reaction::kOff;
@@ -148,8 +147,7 @@ TEST_F(WheelFollowingTest, AWheelThatFollowsIsNotStalledWhateverTheGyroShows) {
 }
 
 /// 64 counts a turn give one in 0.49 s at 0.2 rad/s. The motors push all the time, as inside a skid steer's curve.
-class CoarseEncoderTest : public WheelFollowingTest {
- protected:
+struct CoarseEncoderTest : WheelFollowingTest {
   static constexpr double kSlow = 0.2;             // rad/s
   static constexpr double kCount = 64 * kQuantum;  // rad
 
@@ -261,8 +259,7 @@ TEST_F(WheelFollowingTest, ACommandIsNotStaleForWantOfAState) {
 }
 
 /// Two axles, of which the fixture has one wheel each: in a turn on the spot either scrubs with `kScrub`.
-class ScrubbingTest : public WheelFollowingTest {
- protected:
+struct ScrubbingTest : WheelFollowingTest {
   static constexpr double kScrub = 0.1 * 6 * 9.81 * 0.6247;  ///< N·m: 12 kg, friction 1 (scrub_test.cpp)
 
   ScrubbingTest() {

@@ -14,8 +14,7 @@ double tolerance(double speed) {
   return speed * kPeriod / 0.02;
 }
 
-class WheeledConditionsTest : public testing::Test {
- protected:
+struct WheeledConditionsTest : testing::Test {
   WheeledConditionsTest() {
     set_joints_valid(sensors_, kValidMotion);
     sensors_.valid = kValidGyro;
