@@ -1,11 +1,9 @@
-#!/usr/bin/python3
 """The services of a simulated machine, called as a user of ROS calls them."""
 
 import math
 import time
 
 import rospy
-import rostest
 from nav_msgs.msg import Odometry
 from robot_control.msg import SafetyStatus
 from robot_control.srv import InjectFault, Step
@@ -118,7 +116,3 @@ class ServicesTest(RobotTestCase):
         self.assertTrue(self.inject("e_stop_button", "ok")[0])
         wait_for("nothing injected", lambda: self.plant.values["injected"] == "none")
         self.robot.release()
-
-
-if __name__ == "__main__":
-    rostest.rosrun("robot_control", "services", ServicesTest)
