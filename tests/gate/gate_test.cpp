@@ -1,7 +1,6 @@
 #include <cstring>
 
 #include "gate/gate_fixture.h"
-#include "support/allocation_guard.h"
 
 namespace robot_control::tests {
 

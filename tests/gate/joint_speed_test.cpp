@@ -5,8 +5,6 @@
 #include <cmath>
 #include <random>
 
-#include "support/allocation_guard.h"
-
 namespace robot_control::tests {
 
 constexpr double kPeriod = 1e-3;

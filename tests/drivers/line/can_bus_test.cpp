@@ -9,7 +9,6 @@
 #include <deque>
 
 #include "rt/clock.h"
-#include "support/allocation_guard.h"
 #include "support/matchers.h"
 
 namespace {

@@ -2,7 +2,6 @@
 
 #include "drivers/mujoco/constants.h"
 #include "drivers/mujoco/plant_fixture.h"
-#include "support/allocation_guard.h"
 
 namespace robot_control::tests {
 

@@ -2,8 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include "support/allocation_guard.h"
-
 namespace robot_control::tests {
 
 TEST(DelayLine, GivesWhatWentInSoManyStepsAgo) {

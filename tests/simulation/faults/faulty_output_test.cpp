@@ -6,8 +6,6 @@
 
 #include <cmath>
 
-#include "support/allocation_guard.h"
-
 namespace robot_control::tests {
 
 constexpr std::uint64_t kSeed = 42;

@@ -4,7 +4,6 @@
 
 #include <cmath>
 
-#include "support/allocation_guard.h"
 #include "support/constants.h"
 
 namespace robot_control::tests {

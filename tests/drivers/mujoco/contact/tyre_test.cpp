@@ -7,7 +7,6 @@
 #include <cmath>
 
 #include "drivers/mujoco/constants.h"
-#include "support/allocation_guard.h"
 
 namespace robot_control::tests {
 

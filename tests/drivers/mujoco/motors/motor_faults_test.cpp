@@ -8,7 +8,6 @@
 
 #include "drivers/mujoco/constants.h"
 #include "drivers/mujoco/two_wheels.h"
-#include "support/allocation_guard.h"
 
 namespace robot_control::tests {
 

@@ -11,7 +11,6 @@
 #include "drivers/mujoco/sensors/sensor_errors.h"
 #include "drivers/mujoco/sensors/vibration.h"
 #include "drivers/mujoco/two_wheels.h"
-#include "support/allocation_guard.h"
 #include "support/robots/made_robot.h"
 
 namespace robot_control::tests {

@@ -11,7 +11,6 @@
 
 #include "drivers/driver.h"
 #include "drivers/mujoco/two_wheels.h"
-#include "support/allocation_guard.h"
 #include "support/message_of.h"
 
 namespace robot_control::tests {

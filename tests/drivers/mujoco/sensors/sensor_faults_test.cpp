@@ -11,7 +11,6 @@
 
 #include "drivers/mujoco/two_wheels.h"
 #include "signals/names.h"
-#include "support/allocation_guard.h"
 
 namespace robot_control::tests {
 

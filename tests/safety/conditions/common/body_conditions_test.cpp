@@ -12,7 +12,6 @@
 
 #include "machine/gravity.h"
 #include "safety/measurements/rim_speed.h"
-#include "support/allocation_guard.h"
 #include "support/constants.h"
 #include "support/measured_contacts.h"
 
