@@ -28,11 +28,6 @@ TEST_F(ResetTest, IsAcceptedInItsCycle) {
   EXPECT_EQ(permit_.since_cycle, cycle());
 }
 
-TEST_F(ResetTest, NothingHappensWithoutARequest) {
-  steps(10000);
-  EXPECT_EQ(permit_.state, SupervisorState::kStopped);
-}
-
 TEST_F(ResetTest, IsRefusedWhileAMotionIsAskedFor) {
   ask_for(0.1);
   EXPECT_EQ(reset(), std::uint64_t{kRefusalCommand});
@@ -60,14 +55,6 @@ TEST_F(ResetTest, IsRefusedWhileTheTopicStillSaysTrue) {
   EXPECT_EQ(reset(), std::uint64_t{kRefusalCauseActive});
   input_.operator_input.e_stop_level = 0;
   EXPECT_EQ(reset(), 0u);
-}
-
-TEST_F(ResetTest, FalseOnTheTopicDoesNotReset) {
-  input_.operator_input.e_stop_level = 1;
-  step();
-  input_.operator_input.e_stop_level = 0;
-  steps(100);
-  EXPECT_EQ(permit_.state, SupervisorState::kStopped);
 }
 
 TEST_F(ResetTest, NamesEveryReasonAtOnce) {

@@ -484,20 +484,4 @@ TEST_F(BodyConditionsTest, SkippedCyclesCount) {
   EXPECT_EQ(out_.stopping(), kCauseFreeFall);
 }
 
-TEST_F(BodyConditionsTest, WhatIsOffIsNotFound) {
-  for (Condition* condition : {&parameters_.tilt, &parameters_.tip_over, &parameters_.free_fall, &parameters_.impact,
-                               &parameters_.lift, &parameters_.imu_stuck, &parameters_.imu_jump}) {
-    condition->reaction = Reaction::kOff;
-  }
-  begin();
-  measure_contacts(sensors_);
-  for (const Vector3d& force : {Vector3d(100, 0, 0), Vector3d(0, 0, 0), Vector3d(kGravity, 0, 0)}) {
-    force_ = force;
-    rate_ = {0, 3, 0};
-    steps(500);
-    for (int i = 0; i < 500; ++i) check();
-    EXPECT_TRUE(quiet());
-  }
-}
-
 }  // namespace robot_control::tests

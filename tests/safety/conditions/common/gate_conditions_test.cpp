@@ -14,16 +14,6 @@ struct GateConditionsTest : MonitorTest {
   }
 };
 
-TEST_F(GateConditionsTest, AGateThatBrakesInSpiteOfThePermitIsRefusingAfterLossCycles) {
-  gate_works_ = false;
-  steps(kLoss - 1);
-  EXPECT_EQ(permit_.causes, 0u);
-  step();
-  EXPECT_EQ(permit_.causes, std::uint64_t{kCauseGateRefuses});
-  EXPECT_EQ(permit_.state, SupervisorState::kStopped);
-  EXPECT_EQ(permit_.evidence[0].value, static_cast<double>(kLoss));
-}
-
 // The frame that it did not find in time was late.
 TEST_F(GateConditionsTest, AGateThatFindsNoPermitOrNoCommandInTimeNamesWhatIsLate) {
   for (const auto& [reason, cause] :

@@ -135,14 +135,6 @@ TEST_F(WheelTargetTest, ARobotWithoutEncodersIsNotSaidToMove) {
   EXPECT_EQ(permit_.causes, std::uint64_t{kCauseEncodersLost});
 }
 
-TEST_F(WheelTargetTest, ACommandThatDescendsFromAnOldStateIsStaleAfterLossCycles) {
-  fresh_state_ = false;
-  steps(kLoss - 1);
-  EXPECT_EQ(permit_.causes, 0u);
-  step();
-  EXPECT_EQ(permit_.causes, std::uint64_t{kCauseCommandStale});
-}
-
 TEST_F(WheelTargetTest, ACommandIsStaleAsLateInANewRun) {
   ask_for(0);
   turn_wheels(0);
