@@ -120,15 +120,11 @@ struct Conditions : MonitorTest, testing::WithParamInterface<std::tuple<std::siz
   Conditions() : row_(rows()[std::get<0>(GetParam())]), reaction_(std::get<1>(GetParam())) {
     const SafetyParameters chosen = only(parameters(), row_, reaction_);
     persistence_ = std::max<std::uint64_t>(1, static_cast<std::uint64_t>(std::lround(row_.persistence / kPeriod)));
-    monitor_ = SafetyMonitor(chosen, robot(), kPeriod);
     sensors_.valid |= kValidBattery;
     measure_contacts(sensors_);
     sensors_.battery_voltage = 24;
     sensors_.contacts[0].force[2] = sensors_.contacts[1].force[2] = 6 * 9.81;
-    new_run();
-    steps(kStart);
-    drive();
-    steps(100);
+    drive_with(chosen, robot());
   }
 
   /// Cycles from the onset to the first in which `reported` is true; at most `patience`.
@@ -218,14 +214,8 @@ struct ConditionsWithoutTorque : Conditions {
   ConditionsWithoutTorque() {
     SafetyParameters chosen = only(parameters(), row_, reaction_);
     chosen.joint_numbers = kValidKinematics;
-    monitor_ = SafetyMonitor(chosen, robot(), kPeriod);
     measure_no_torque();
-    ask_for(0);
-    turn_wheels(0);
-    new_run();
-    steps(kStart);
-    drive();
-    steps(100);
+    drive_with(chosen, robot());
   }
 
   void measure_no_torque() {

@@ -80,6 +80,10 @@ class DeviceRig {
     return true;
   }
   void command_all(const DriveCommand& command) { commands.assign(drives().size(), command); }
+  void reset() {
+    command_all({.enabled = true, .reset = true});
+    cycle();
+  }
   ::testing::AssertionResult runs(double seconds = 5) {
     command_all({.enabled = true});
     if (run_until([this] { return all_are(DrivePhase::kRunning); }, seconds)) return ::testing::AssertionSuccess();

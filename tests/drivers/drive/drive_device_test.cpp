@@ -270,8 +270,7 @@ TEST_P(DriveAndDevice, StaysInFaultUntilTheReset) {
   rig_.run(3);
   EXPECT_EQ(state(), DrivePhase::kFault);
   EXPECT_EQ(rig_.motor().torque, 0);
-  rig_.command_all({.enabled = true, .reset = true});
-  rig_.cycle();
+  rig_.reset();
   EXPECT_TRUE(rig_.runs());
 }
 
@@ -279,8 +278,7 @@ TEST_P(DriveAndDevice, AFaultThatRemainsIsReportedAgainAfterTheReset) {
   ASSERT_TRUE(rig_.runs());
   device_->inject(DeviceFault::kUnderVoltage);
   ASSERT_TRUE(fails());
-  rig_.command_all({.enabled = true, .reset = true});
-  rig_.cycle();
+  rig_.reset();
   rig_.command_all({.enabled = true});
   EXPECT_TRUE(fails(8));
 }
@@ -294,8 +292,7 @@ TEST_P(DriveAndDevice, OneResetIsOneAttempt) {
   rig_.bus().join([&clears, is_one = GetParam().clears](const can_frame& frame, std::int64_t) {
     if (is_one(frame)) ++clears;
   });
-  rig_.command_all({.enabled = true, .reset = true});
-  rig_.cycle();
+  rig_.reset();
   rig_.command_all({.enabled = true, .torque = 2});
   rig_.run(8);
   EXPECT_EQ(state(), DrivePhase::kFault);
@@ -304,8 +301,7 @@ TEST_P(DriveAndDevice, OneResetIsOneAttempt) {
   EXPECT_LE(clears, Drive::kMaxClears);
   EXPECT_EQ(rig_.motor().torque, 0);
   device_->inject(DeviceFault::kNone);
-  rig_.command_all({.enabled = true, .reset = true});
-  rig_.cycle();
+  rig_.reset();
   EXPECT_TRUE(rig_.runs());
 }
 
@@ -411,8 +407,7 @@ void receive_random_frames(DeviceRig& rig, int count) {
   EXPECT_EQ(rig.motor().velocity, 0);
   rig.command_all({.enabled = true});
   rig.cycle();
-  rig.command_all({.enabled = true, .reset = true});
-  rig.cycle();
+  rig.reset();
   EXPECT_TRUE(rig.runs(10));
 }
 

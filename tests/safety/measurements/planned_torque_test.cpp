@@ -16,11 +16,7 @@ struct PlannedTorqueTest : MonitorTest {
   PlannedTorqueTest() {
     SafetyParameters chosen = without_heartbeat();
     chosen.yaw_rate.reaction = chosen.torque_oscillation.reaction = Reaction::kOff;
-    monitor_ = SafetyMonitor(chosen, heavy(), kPeriod);
-    new_run();
-    steps(kStart);
-    drive();
-    steps(100);
+    drive_with(chosen, heavy());
   }
 
   /// Drives a curve around the left wheel, which stands and holds `torque`, N·m, for `cycles`. The right one gets

@@ -18,13 +18,7 @@ struct TorqueOscillationTest : MonitorTest {
     chosen.torque_oscillation = {.limit = 0.3, .persistence = 1.0, .reaction = Reaction::kBrake};
     chosen.wheel_effort.reaction = chosen.power.reaction = Reaction::kOff;
     chosen.count_ripple.fill(count_ripple);
-    monitor_ = SafetyMonitor(chosen, robot(), kPeriod);
-    ask_for(0);  // a run begins with a zero request
-    turn_wheels(0);
-    new_run();
-    steps(kStart);
-    drive();
-    steps(100);
+    drive_with(chosen, robot());
   }
 
   void pull(std::size_t wheel, double effort) {

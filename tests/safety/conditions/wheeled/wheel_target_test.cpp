@@ -8,9 +8,7 @@ struct WheelTargetTest : MonitorTest {
   WheelTargetTest() {
     SafetyParameters chosen = without_heartbeat();
     chosen.yaw_rate.reaction = Reaction::kOff;
-    begin_with(chosen);
-    drive();
-    steps(100);
+    drive_with(chosen, robot());
   }
 };
 
@@ -166,13 +164,7 @@ struct ScrubbingTest : WheelTargetTest {
     SafetyParameters chosen = derived_limits(parameters(), scrubbing, 15);
     chosen.yaw_rate.reaction = Reaction::kOff;
     chosen.heartbeat_timeout = 0;
-    monitor_ = SafetyMonitor(chosen, scrubbing, kPeriod);
-    ask_for(0);
-    turn_wheels(0);
-    new_run();
-    steps(kStart);
-    drive();
-    steps(100);
+    drive_with(chosen, scrubbing);
   }
 
   /// Turns on the spot with kSpeed; the wheels turn with `speed` and have `torque`, both towards their targets.
