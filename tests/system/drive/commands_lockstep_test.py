@@ -10,10 +10,12 @@ from system.commands_support import StampedSender
 from system.system_support import DRIVER, LIMIT, RobotTestCase, wait_for
 
 
+rospy.set_param("/use_sim_time", True)  # before this process becomes a node, whose clock is then the robot's
+
+
 class CommandsLockstepTest(RobotTestCase):
     @classmethod
     def setUpClass(cls) -> None:
-        rospy.set_param("/use_sim_time", True)
         rospy.set_param("/robot/clock", "lockstep")
         super().setUpClass()
         cls.sender = StampedSender(cls.robot)
