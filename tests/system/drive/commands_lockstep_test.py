@@ -9,7 +9,6 @@ from std_srvs.srv import SetBool
 from system.commands_support import StampedSender
 from system.system_support import DRIVER, LIMIT, RobotTestCase, wait_for
 
-
 rospy.set_param("/use_sim_time", True)  # before this process becomes a node, whose clock is then the robot's
 
 
