@@ -71,16 +71,6 @@ TEST_P(BrakeHolds, AMinuteWithoutMoving) {
 INSTANTIATE_TEST_SUITE_P(MujocoPlantTest, BrakeHolds,
                          testing::Combine(testing::Values(kFlat, kSlope), testing::Values(0.01, 0.001)));
 
-TEST_F(MujocoPlantTest, HandOverFromHoldingTorqueToBrakeDoesNotSagOnASlope) {
-  auto plant = started(kSlope);
-  const double torque = sensors(*plant).joints[0].effort;
-  for (int i = 0; i < 10; ++i) {
-    hold(*plant, both(effort_command(torque), effort_command(torque)), 0.05);
-    hold(*plant, brakes_, 0.5);
-  }
-  EXPECT_LT(distance(truth(*plant).pose_world.position, {}), 0.2e-3);
-}
-
 class RollsTrue : public PlantTest, public testing::WithParamInterface<double> {};
 
 TEST_P(RollsTrue, DistanceIsRadiusTimesAngle) {
