@@ -1,6 +1,5 @@
 // Tests what a start, a new run and a restart of the monitor forget, and what they keep.
 
-
 #include "safety/monitor_fixture.h"
 #include "signals/names.h"
 
