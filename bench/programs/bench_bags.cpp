@@ -10,7 +10,6 @@
 #include "rt/clock.h"
 
 namespace robot_control::bench {
-namespace {
 
 constexpr double kMaxMegabytes =
     512;  // memory of the process: two bags of some 10 kB at a time, which inflate to 64 MiB
@@ -48,7 +47,6 @@ void run(std::uint64_t first, std::uint64_t runs) {
                  {"speed", static_cast<double>(runs) / seconds, "1/s", 0, "none", 0}});
 }
 
-}  // namespace
 }  // namespace robot_control::bench
 
 int main(int argc, char** argv) {

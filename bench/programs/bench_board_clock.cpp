@@ -10,7 +10,6 @@
 #include "drivers/board/board_machine.h"
 
 namespace robot_control::bench {
-namespace {
 
 constexpr double kSpeed = 10;    // rad/s
 constexpr double kSettled = 5;   // s, until drift and offset are known
@@ -41,7 +40,6 @@ Row error_at(double rate) {
           value / kAllowed};
 }
 
-}  // namespace
 }  // namespace robot_control::bench
 
 int main() {

@@ -16,7 +16,6 @@
 #include "drivers/roboclaw/roboclaw_machine.h"
 
 namespace robot_control::bench {
-namespace {
 
 constexpr double kRate = 1000;
 constexpr double kSpeed = 10;      // rad/s
@@ -127,7 +126,6 @@ void add_board(std::vector<Row>& rows, const std::string& name, double watchdog_
   }
 }
 
-}  // namespace
 }  // namespace robot_control::bench
 
 int main(int argc, char** argv) {

@@ -13,7 +13,6 @@
 #include "support/bus/torture.h"
 
 namespace robot_control::bench {
-namespace {
 
 constexpr std::uint64_t kCount = 1'000'000'000;
 constexpr std::uint64_t kRounds = 20;
@@ -81,7 +80,6 @@ int run(std::uint64_t count) {
   return 0;
 }
 
-}  // namespace
 }  // namespace robot_control::bench
 
 int main(int argc, char** argv) {

@@ -20,7 +20,6 @@
 #include "rt/realtime_thread.h"
 
 namespace robot_control::bench {
-namespace {
 
 constexpr int kMaxHops = 8;
 constexpr int kPriority = 83;  // LoopPriority::kDriver
@@ -87,7 +86,6 @@ int run(int hops, int cycles) {
   return 0;
 }
 
-}  // namespace
 }  // namespace robot_control::bench
 
 int main(int argc, char** argv) {

@@ -16,7 +16,6 @@
 #include "support/allocation_guard.h"
 
 namespace robot_control::bench {
-namespace {
 
 constexpr int kFeet = 100000;
 constexpr int kStates = 1000;
@@ -104,7 +103,6 @@ class Robot {
   std::vector<Eigen::Vector3d> feet_;
 };
 
-}  // namespace
 }  // namespace robot_control::bench
 
 int main(int count, char** arguments) {

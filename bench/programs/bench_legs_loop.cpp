@@ -8,7 +8,6 @@
 #include "bench/programs/legs/loop_rows.h"
 
 namespace robot_control::bench {
-namespace {
 
 struct NamedRow {
   std::string_view name;
@@ -62,7 +61,6 @@ int run(int argc, char** argv) {
   return 0;
 }
 
-}  // namespace
 }  // namespace robot_control::bench
 
 int main(int argc, char** argv) {

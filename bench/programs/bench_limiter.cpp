@@ -9,7 +9,6 @@
 #include "rt/clock.h"
 
 namespace robot_control::bench {
-namespace {
 
 void run(std::uint64_t first, std::uint64_t runs) {
   const std::int64_t start = monotonic_ns();
@@ -21,7 +20,6 @@ void run(std::uint64_t first, std::uint64_t runs) {
                     {"speed", sequences / seconds, "1/s", 0, "none", 0}});
 }
 
-}  // namespace
 }  // namespace robot_control::bench
 
 int main(int argc, char** argv) {

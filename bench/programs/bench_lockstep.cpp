@@ -11,7 +11,6 @@
 #include "support/processes/loop_speed.h"
 
 namespace robot_control::bench {
-namespace {
 
 constexpr int kRounds = 7;
 constexpr std::uint64_t kCycles = 40'000;
@@ -34,7 +33,6 @@ void run(const std::string& path) {
                      {"four processes", median(four), unit, median(bare), reference, median_ratio(four, bare)}});
 }
 
-}  // namespace
 }  // namespace robot_control::bench
 
 int main(int argc, char** argv) {

@@ -15,7 +15,6 @@
 #include "rt/clock.h"
 
 namespace robot_control::bench {
-namespace {
 
 constexpr int kRounds = 41;
 constexpr int kSteps = 5000;
@@ -121,7 +120,6 @@ void run(const std::string& path) {
                   {"native mj_step", median(natives), unit, median(bares), reference, median_ratio(natives, bares)}});
 }
 
-}  // namespace
 }  // namespace robot_control::bench
 
 int main(int argc, char** argv) {

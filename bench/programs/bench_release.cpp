@@ -10,7 +10,6 @@
 #include "rt/clock.h"
 
 namespace robot_control::bench {
-namespace {
 
 void run(std::uint64_t first, std::uint64_t runs, std::string_view robot) {
   std::mutex adding;
@@ -43,7 +42,6 @@ void run(std::uint64_t first, std::uint64_t runs, std::string_view robot) {
                     {"speed", sequences / seconds, "1/s", 0, "none", 0}});
 }
 
-}  // namespace
 }  // namespace robot_control::bench
 
 int main(int argc, char** argv) {

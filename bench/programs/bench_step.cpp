@@ -28,7 +28,6 @@
 #include "support/allocation_guard.h"
 
 namespace robot_control::bench {
-namespace {
 
 constexpr std::size_t kRecorded = 2000;  // cycles replayed in one block
 constexpr int kBlocks = 101;
@@ -161,7 +160,6 @@ void run(const std::string& path) {
   print("step", rows);
 }
 
-}  // namespace
 }  // namespace robot_control::bench
 
 int main(int argc, char** argv) {

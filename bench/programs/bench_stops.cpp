@@ -13,7 +13,6 @@
 #include "support/processes/stop_trials.h"
 
 namespace robot_control::bench {
-namespace {
 
 constexpr int kTrials = 200;
 constexpr double kPromised = 20;  // cycles
@@ -46,7 +45,6 @@ void run(const std::string& path) {
   print("stops", rows);
 }
 
-}  // namespace
 }  // namespace robot_control::bench
 
 int main(int argc, char** argv) {

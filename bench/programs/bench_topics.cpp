@@ -16,7 +16,6 @@
 #include "signals/state_frame.h"
 
 namespace robot_control::bench {
-namespace {
 
 using Message = std_msgs::Float64MultiArray;
 
@@ -63,7 +62,6 @@ int run(const std::string& role, int cycles) {
   return 0;
 }
 
-}  // namespace
 }  // namespace robot_control::bench
 
 int main(int argc, char** argv) {

@@ -5,7 +5,6 @@
 
 #include <array>
 #include <filesystem>
-#include <memory>
 
 #include "bus/bus.h"
 #include "signals/command_frame.h"

@@ -6,8 +6,6 @@
 #include <unistd.h>
 
 #include <fstream>
-#include <iterator>
-#include <vector>
 
 #include "bus/bus.h"
 #include "support/bus/damage.h"

@@ -2,8 +2,6 @@
 /// reader. The executions are those that the memory model of C++ allows. A reader writes nothing, so the result for one
 /// reader holds for all.
 
-#include <gtest/gtest.h>
-
 #include "bus/latest_frames.h"
 #include "bus/model/expectations.h"
 #include "bus/model/futex_stub.h"

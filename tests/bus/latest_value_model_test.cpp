@@ -1,8 +1,6 @@
 /// Runs the code of LatestValue itself, with two words, in every execution of a writer and a reader that the memory
 /// model of C++ allows.
 
-#include <gtest/gtest.h>
-
 #include "bus/latest_value.h"
 #include "bus/model/expectations.h"
 

@@ -1,8 +1,6 @@
 /// Runs the code of Ring itself, with two slots and rows of two words, in every execution of a writer and a reader. The
 /// executions are those that the memory model of C++ allows.
 
-#include <gtest/gtest.h>
-
 #include "bus/model/expectations.h"
 #include "bus/model/futex_stub.h"
 #include "bus/ring.h"

@@ -139,46 +139,4 @@ TEST_F(RingTest, AppendAndTakeAllocateNothing) {
   EXPECT_EQ(guard.count(), 0u);
 }
 
-TEST_F(RingTest, AWaitingWriterInAnotherProcessLosesNothing) {
-  constexpr std::uint64_t kRows = 60'000;
-  const AnonymousMemory<RingPositions> positions;
-  std::atomic<std::uint64_t>& read = positions->read[0];
-  ChildProcess other([&] {
-    for (std::uint64_t i = 0; i < kRows; ++i) {
-      while (writer_.full(&read)) sched_yield();
-      if (!writer_.append(row_of(i), &read)) return 1;
-    }
-    return 0;
-  });
-  for (std::uint64_t i = 0; i < kRows;) {
-    if (!reader_.read(row_)) {
-      sched_yield();
-      continue;
-    }
-    ASSERT_TRUE(is_row(row_, i));
-    ++i;
-    read.store(reader_.position(), std::memory_order_release);
-  }
-  EXPECT_EQ(other.wait(), 0);
-  EXPECT_EQ(reader_.overwritten() + reader_.dropped(), 0u);
-}
-
-TEST_F(RingTest, AWriterThatNeverWaitsTearsNoRowAndEveryLossIsCounted) {
-  constexpr std::uint64_t kRows = 200'000;
-  std::thread other([&] { append(0, kRows); });
-  std::uint64_t taken = 0;
-  for (;;) {
-    if (!reader_.read(row_)) {
-      if (reader_.position() == kRows) break;
-      std::this_thread::yield();
-      continue;
-    }
-    ASSERT_TRUE(is_row(row_, row_.values[0]));
-    ASSERT_EQ(row_.values[0] + 1, reader_.position());
-    ++taken;
-  }
-  other.join();
-  EXPECT_EQ(taken + reader_.overwritten(), kRows);
-}
-
 }  // namespace robot_control::tests

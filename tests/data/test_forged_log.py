@@ -75,15 +75,6 @@ def test_a_changed_field_is_noticed(replayed):
     assert f"differs: row, run 0, cycle {LATER}: " in text
 
 
-def test_a_changed_header_is_noticed(replayed):
-    def edit(topic, message):
-        if topic == "trace_header":
-            message.parameters += " "
-
-    code, text = replayed(edit)
-    assert code == DIFFERENT, text
-
-
 def test_a_changed_time_is_noticed(replayed):
     code, text = replayed(lambda *_: None, later=3600)
     assert code == DIFFERENT, text

@@ -8,12 +8,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <functional>
-#include <limits>
-#include <memory>
-#include <ostream>
-#include <string>
-#include <vector>
 
 #include "drivers/driver.h"
 #include "gate/stop_action.h"

@@ -2,8 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <limits>
-
 #include "drivers/board/board_machine.h"
 
 namespace robot_control::tests {

@@ -4,14 +4,12 @@
 
 #include <gtest/gtest.h>
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 constexpr Brake kFirm{.effort = 3, .hold_effort = 5, .damping = 2, .stiffness = 40, .hold_speed = 0.1};
 constexpr double kTiny = 1e-12;  // rounding of numbers below 10
 
-class BrakeLawTest : public testing::Test {
- protected:
+struct BrakeLawTest : testing::Test {
   /// Returns the cycle, from 1 on, in which it begins to hold at this speed, or 0 after `steps`.
   int holds_after(int steps, double speed) {
     for (int i = 1; i <= steps; ++i) {
@@ -95,5 +93,4 @@ TEST_F(BrakeLawTest, ReleasedSlowsAgainAndCountsFromNothing) {
   EXPECT_EQ(holds_after(50, 0.45), 50);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -4,8 +4,7 @@
 
 #include "gate/gate_fixture.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 constexpr std::array kLookups{Lookup::kMissing, Lookup::kFrame, Lookup::kToken, Lookup::kCorrupt};
 constexpr std::array<std::int64_t, 8> kAges{-1, 0, 1, 2, 3, 4, 5, 6};  // in cycles; 0: this very one, -1: the future
@@ -69,8 +68,7 @@ bool sound(const CommandCase& command) {
   return command.content == Content::kGood;
 }
 
-class GateEnumeration : public GateFixture {
- protected:
+struct GateEnumeration : GateFixture {
   static std::uint64_t from_now(std::int64_t cycles) {
     return static_cast<std::uint64_t>(static_cast<std::int64_t>(kTick) + cycles);
   }
@@ -123,5 +121,4 @@ TEST_F(GateEnumeration, MovesIfAndOnlyIfAllFourQuestionsAreAnsweredYes) {
   EXPECT_EQ(moved, 4u * 2 * 2 * 4);  // ages × expiries × orders of permits × ages of commands
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -5,8 +5,6 @@
 #include <gtest/gtest.h>
 
 #include <cstring>
-#include <limits>
-#include <vector>
 
 #include "gate/gate.h"
 
@@ -18,8 +16,7 @@ inline constexpr double kPeriod = 1e-3;
 inline constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-class GateFixture : public testing::Test {
- protected:
+struct GateFixture : testing::Test {
   explicit GateFixture(const JointLimits& limits = {.effort = kLimit}, const GateParameters& parameters = {})
       : gate_({limits, limits}, parameters, kPeriod) {
     permit_.head.run = command_.head.run = input_.run = kRun;

@@ -1,14 +1,12 @@
 /// Tests the gate's limits on its joints, and its failure modes.
 
 #include <cstring>
-#include <stdexcept>
 
 #include "gate/gate_fixture.h"
 #include "gate/joint_clamp.h"
 #include "support/allocation_guard.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 // Gains.
 
@@ -22,8 +20,7 @@ TEST_F(GateFixture, AJointWithoutLimitsAndWithoutAPositionGetsNoDampingBelowZero
 
 // Velocities for a drive's own loop.
 
-class GateDriveVelocity : public GateFixture {
- protected:
+struct GateDriveVelocity : GateFixture {
   GateDriveVelocity() : GateFixture({.effort = kLimit, .acceleration = 100}, {}) {
     command_.joints.fill({});
     request(0);
@@ -58,8 +55,7 @@ TEST_F(GateDriveVelocity, BeginsAfterABrakeBetweenTheMeasuredSpeedAndZero) {
 
 // Ramps.
 
-class GateRamp : public GateFixture {
- protected:
+struct GateRamp : GateFixture {
   GateRamp() : GateFixture({.effort = kLimit}, {.longest_ramp = 10}) { ramp_for_ever(); }
   void ramp_for_ever() {
     permit_.action = PermitAction::kRamp;
@@ -122,8 +118,7 @@ TEST_F(GateRamp, ABrakePermitDoes) {
 
 // How fast an effort may change: 400 N·m/s are 0.4 N·m a tick.
 
-class GateRate : public GateFixture {
- protected:
+struct GateRate : GateFixture {
   GateRate() : GateFixture({.effort = kLimit, .effort_rate = 400}) { command_.joints[1].effort = 0; }
   void request(double effort) { command_.joints[0].effort = effort; }
 };
@@ -243,8 +238,7 @@ TEST_F(GateRate, AJointThatBrakedAloneRestarts) {
 
 // How fast a joint may turn: 20 rad/s.
 
-class GateSpeed : public GateFixture {
- protected:
+struct GateSpeed : GateFixture {
   GateSpeed() : GateFixture({.effort = kLimit, .velocity = 20}) {}
   void turn(double speed, int ticks = 40) {
     for (int i = 0; i < ticks; ++i) {
@@ -344,8 +338,7 @@ TEST_F(GateWithoutLimits, NeedsNoSamplesWhereNothingIsKnown) {
 
 // End stops.
 
-class GateRange : public GateFixture {
- protected:
+struct GateRange : GateFixture {
   GateRange() : GateFixture({.effort = kLimit, .lower = -1, .upper = 1, .soft_zone = 0.1}) {}
 };
 
@@ -365,8 +358,7 @@ TEST_F(GateRange, BrakesWithoutAPosition) {
 
 // Stop actions of the joints.
 
-class GateWithStopActions : public GateFixture {
- protected:
+struct GateWithStopActions : GateFixture {
   GateWithStopActions()
       : GateFixture({.effort = kLimit},
                     {.profiles = {{{.kind = StopKind::kCoast}, {.kind = StopKind::kDamp, .damping = 3}}}}) {}
@@ -413,8 +405,7 @@ TEST_F(GateWithStopActions, DrivesAsEver) {
   EXPECT_EQ(joints_[0].effort, 1.5);
 }
 
-class GateWithAMove : public GateFixture {
- protected:
+struct GateWithAMove : GateFixture {
   static constexpr StopAction kMove{
       .kind = StopKind::kMove, .damping = 2, .stiffness = 60, .target = 1.5, .time = 1.25, .brake_after = 1.5};
   static constexpr StopAction kDamp{.kind = StopKind::kDamp, .damping = 3};
@@ -584,5 +575,4 @@ TEST_F(GateRange, StepsWithoutAllocating) {
   EXPECT_EQ(guard.count(), 0u);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -6,8 +6,7 @@
 
 #include "signals/gate_report.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 constexpr double kClampRounding = 1e-14;  // of numbers of order ten
 
@@ -21,8 +20,7 @@ bool same(const JointCommand& one, const JointCommand& other) {
 
 // The speed limit. Both directions: what holds of one holds of the other with every sign turned.
 
-class SpeedClamp : public testing::TestWithParam<double> {
- protected:
+struct SpeedClamp : testing::TestWithParam<double> {
   JointCommand effort(double value) const { return {.mode = JointMode::kEffort, .effort = sign * value}; }
   double sign = GetParam();
 };
@@ -138,8 +136,7 @@ TEST(GainClamp, GainsThatTheModeDoesNotUseAreCarried) {
 
 // End stops: the upper one, and the lower one as its mirror image about 1 rad, the middle.
 
-class PositionClamp : public testing::TestWithParam<double> {
- protected:
+struct PositionClamp : testing::TestWithParam<double> {
   double at(double left) const { return sign > 0 ? kJoint.upper - left : kJoint.lower + left; }
   double sign = GetParam();
 };
@@ -253,5 +250,4 @@ TEST(RateClamp, BringsTheEffortToTheNearerEnd) {
   EXPECT_EQ(clamp_rate(-1, 2, command), 0u);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -5,10 +5,7 @@
 #include <cmath>
 #include <random>
 
-#include "support/allocation_guard.h"
-
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 constexpr double kPeriod = 1e-3;
 
@@ -148,13 +145,4 @@ TEST(JointSpeed, RemembersEnoughAtEveryRate) {
   }
 }
 
-TEST(JointSpeed, StepsWithoutAllocating) {
-  if (!AllocationGuard::kCounts) GTEST_SKIP() << "the sanitizer owns the allocator";
-  JointSpeed joint(kPeriod);
-  AllocationGuard guard;
-  for (std::uint64_t k = 0; k < 100; ++k) joint.step(0.1 * static_cast<double>(k), k);
-  EXPECT_EQ(guard.count(), 0u);
-}
-
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

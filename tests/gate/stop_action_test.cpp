@@ -7,8 +7,7 @@
 #include <algorithm>
 #include <cstring>
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 constexpr StopAction kMoving{
     .kind = StopKind::kMove, .damping = 2, .stiffness = 60, .target = 1.5, .time = 1.25, .brake_after = 1.5};
@@ -124,5 +123,4 @@ TEST(JointStop, DoesNotPassTheTargetAfterALongGap) {
   EXPECT_LE(late.position, kMoving.target);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -8,8 +8,7 @@
 
 #include "support/robots/made_robot.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 constexpr double kEarthGravity = 9.81;  // m/s²
 constexpr double kStep = 0.001;         // s
@@ -125,5 +124,4 @@ TEST(WheelStop, OfADampedRobotTakesItsSpeedInHalfASecond) {
   EXPECT_NEAR(force, 2 * robot.mass, 1e-9);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -149,21 +149,4 @@ TEST_F(SecondKind, ALiveTuningInItsLogIsForged) {
   EXPECT_FALSE(replayed().exact());
 }
 
-TEST(SecondKindTwice, GivesTheSameBits) {
-  const auto digest = [] {
-    Parameters parameters = default_parameters();
-    parameters.robot = {};
-    ClosedLoop loop(parameters, std::make_shared<Pendulum>(parameters));
-    Checksum sum;
-    for (int k = 0; k < 1000; ++k) {
-      if (k % 50 == 0) loop.command({.linear = {}, .angular = {0, 0, 1}});
-      loop.step();
-      sum.mix(loop.row().driver->sensors.head.checksum);
-      sum.mix(loop.row().controller->command.head.checksum);
-    }
-    return sum.sum();
-  };
-  EXPECT_EQ(digest(), digest());
-}
-
 }  // namespace robot_control::tests

@@ -8,7 +8,6 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
-#include <string>
 
 #include "configuration/parameters.h"
 #include "control/common/command_watch.h"

@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <functional>
 
 #include "kinds/pendulum.h"
 #include "log/replay/recorded.h"

@@ -3,10 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include <memory>
-#include <string>
-#include <vector>
-
 #include "log/bag_log.h"
 #include "log/black_box/black_box.h"
 #include "log/black_box/saved_black_box.h"

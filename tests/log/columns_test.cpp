@@ -1,8 +1,5 @@
 #include <algorithm>
 #include <cmath>
-#include <iterator>
-#include <set>
-#include <sstream>
 
 #include "log/fields/trace_fields.h"
 #include "log/rows/traces.h"

@@ -1,9 +1,5 @@
 /// A log whose messages have another layout is refused with the version that wrote it and the remedy.
 
-#include <string>
-#include <utility>
-#include <vector>
-
 #include "log/bag_writer.h"
 #include "log/messages/log_messages.h"
 #include "log/messages/trace_message.h"

@@ -54,11 +54,6 @@ struct AReplayedLog : testing::Test {
   std::unique_ptr<BagLog> log;
 };
 
-TEST_F(AReplayedLog, IsExactOverASnapshot) {
-  drive_on(11'000);
-  expect_replayed_whole();
-}
-
 TEST_F(AReplayedLog, IsExactOverStopsResetsTuningAndANewRun) {
   drive_on(1000);
   loop.e_stop();

@@ -39,8 +39,7 @@ inline DriveTrain two_wheels() {
 }
 
 /// A machine that stands still for any report.
-class StandingMachine final : public Simulator {
- public:
+struct StandingMachine final : Simulator {
   void start() override {}
   void read(SensorFrame& sensors) noexcept override {
     sensors.injected = faults;

@@ -57,33 +57,6 @@ TEST_F(RunningLoop, ADriverThatSkipsCyclesIsNoDisobedience) {
   }
 }
 
-TEST_F(RunningLoop, BeginsInInitWhenDriverAndMonitorBothRestart) {
-  loop.driver.set_driver_instance(100);
-  loop.driver.begin_run(2);
-  loop.restart_monitor();
-  loop.step();
-  EXPECT_EQ(loop.newest_permit().state, SupervisorState::kInit);
-  loop.steps(3);
-  EXPECT_EQ(loop.newest_permit().action, PermitAction::kDrive);
-}
-
-TEST_F(RunningLoop, IgnoresFramesOfAnotherRun) {
-  const std::uint64_t cycle = loop.driver.next_cycle() - 1;
-  CommandFrame foreign = loop.newest_command();
-  foreign.head.run = 12345;
-  loop.command.writer.publish(foreign);
-  loop.driver.step();
-  EXPECT_EQ(loop.gate().verdict, GateVerdict::kHeld) << "cycle " << cycle << " was overwritten by a foreign run";
-  EXPECT_EQ(loop.gate().command_cycle, cycle - 1);
-}
-
-TEST_F(RunningLoop, IgnoresSensorsOfAnotherRobot) {
-  loop.sensors.memory->head.robot_hash.store(8);
-  loop.driver.step();
-  EXPECT_FALSE(loop.estimator->step());
-  EXPECT_FALSE(loop.monitor->step());
-}
-
 TEST_F(RunningLoop, AResetAskedForDuringSilenceReleasesNothingLater) {
   loop.controller->inbox().store({.content = {}, .count = 2});
   loop.steps(20);

@@ -1,8 +1,5 @@
 #include "loop/gate_setup.h"
 
-#include <functional>
-#include <limits>
-
 #include "loop/cycle_fixture.h"
 #include "robots/differential_drive.h"
 #include "support/matchers.h"
@@ -91,8 +88,7 @@ TEST(GateSetup, WheelsStopByTheUsersActionAndAnArmBrakes) {
 }
 
 /// A machine whose wheel runs away, or whose encoder is lost.
-class RunawayMachine final : public Driver {
- public:
+struct RunawayMachine final : Driver {
   void start() override {}
   void read(SensorFrame& sensors) noexcept override {
     position += speed * kPeriod;

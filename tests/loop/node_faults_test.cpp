@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <bit>
-#include <vector>
 
 #include "cycle_fixture.h"
 #include "signals/names.h"
@@ -178,52 +177,12 @@ TEST_F(NodeFaults, TheGateHoldsThreeCyclesThenBrakesForAControllerThatIsOffAndTh
   EXPECT_EQ(loop.newest_permit().state, SupervisorState::kStopped) << "until a reset";
 }
 
-TEST_F(NodeFaults, TheGateHoldsThreeCyclesThenBrakesForAnEstimatorThatIsOffAndTheMonitorLatches) {
-  inject(FaultComponent::kEstimator, FaultKind::kOff);
-  EXPECT_EQ(cycles_until_brake(50), 5) << "without a state there is no command";
-  loop.steps(static_cast<int>(SafetyParameters{}.loss_cycles));
-  EXPECT_NE(loop.newest_permit().causes & kCauseEstimatorLost, 0u);
-}
-
-TEST_F(NodeFaults, ThePermitOfAMonitorThatIsOffExpires) {
-  inject(FaultComponent::kMonitor, FaultKind::kOff);
-  EXPECT_EQ(cycles_until_brake(50), static_cast<int>(kPermitLife) + 1);
-  EXPECT_NE(loop.gate().reasons & (kGatePermitExpired | kGateNoPermit), 0u);
-}
-
 TEST_F(NodeFaults, ThePermitOfAMonitorThatIsStuckExpires) {
   inject(FaultComponent::kMonitor, FaultKind::kStuck);
   EXPECT_EQ(cycles_until_brake(50), static_cast<int>(kPermitLife) + 2) << "the frame of the first cycle is healthy";
   loop.steps(100);
   EXPECT_EQ(loop.gate().verdict, GateVerdict::kBrake);
   EXPECT_NE(loop.gate().reasons & kGatePermitExpired, 0u) << "a fresh head does not prolong it";
-}
-
-TEST_F(NodeFaults, ThePermitOfAMonitorThatIsTenCyclesLateExpires) {
-  inject(FaultComponent::kMonitor, FaultKind::kDelayed);
-  EXPECT_LE(cycles_until_brake(50), static_cast<int>(kPermitLife) + 2);
-  loop.steps(100);
-  EXPECT_NE(loop.gate().reasons & kGatePermitExpired, 0u);
-}
-
-TEST_F(NodeFaults, ThePermitOfASlowMonitorExpiresAgainAndAgain) {
-  inject(FaultComponent::kMonitor, FaultKind::kSlow);
-  int braked = 0;
-  for (int i = 0; i < 100; ++i) {
-    loop.step();
-    braked += loop.gate().verdict == GateVerdict::kBrake ? 1 : 0;
-  }
-  // A permit lives for kPermitLife of 10 ticks. In the first of them the command is still that of a controller without
-  // a permit. The first spell begins with frames that were under way.
-  EXPECT_NEAR(braked, 100 - 10 * (static_cast<int>(kPermitLife) - 1), static_cast<int>(kPermitLife));
-}
-
-TEST_F(NodeFaults, TheMonitorLatchesForAControllerThatSendsGarbage) {
-  inject(FaultComponent::kController, FaultKind::kGarbage);
-  loop.steps(100);
-  EXPECT_NE(loop.newest_permit().causes & (kCauseNotFinite | kCauseCorruptFrame), 0u);
-  EXPECT_EQ(loop.gate().verdict, GateVerdict::kBrake);
-  EXPECT_GT(loop.gate().refused, 0u);
 }
 
 TEST_F(NodeFaults, NeverAllocate) {

@@ -21,11 +21,6 @@ struct PausedLoop : ::testing::Test {
     }
   }
 
-  void begin_run(std::uint64_t run) {
-    loop.driver.set_start(loop.driver.next_stamp_ns());
-    loop.driver.begin_run(run);
-  }
-
   Loop loop;
   int monitor_rows = 0;  ///< in pauses
 };
@@ -59,39 +54,6 @@ TEST_F(PausedLoop, GoesOnAsIfNothingHadBeen) {
   EXPECT_EQ(loop.newest_permit().state, SupervisorState::kDrive);
 }
 
-TEST_F(PausedLoop, IsLostWhenItFallsSilentAfterwards) {
-  pause();
-  loop.step();
-  loop.monitor->time_out();
-  EXPECT_NE(loop.newest_permit().causes & kCauseDriverLost, 0u);
-}
-
-TEST_F(PausedLoop, RefusesAResetBecauseNothingCanBeJudged) {
-  loop.monitor->inbox().store({.resets = 1});
-  pause();
-  EXPECT_EQ(loop.newest_permit().resets_handled, 1u);
-  EXPECT_EQ(loop.newest_permit().reset_refusal, std::uint64_t{kRefusalPaused});
-}
-
-TEST_F(PausedLoop, LatchesAnEmergencyStopAtOnce) {
-  loop.monitor->inbox().store({.e_stop_services = 1});
-  pause();
-  EXPECT_EQ(loop.newest_permit().state, SupervisorState::kStopped);
-  EXPECT_EQ(loop.newest_permit().first_cause, std::uint64_t{kCauseEmergencyStopService});
-  loop.step();
-  EXPECT_EQ(loop.gate().verdict, GateVerdict::kBrake) << "before the machine moves again";
-}
-
-TEST_F(PausedLoop, SaysOnceThatTheTopicSaidTrue) {
-  loop.monitor->inbox().store({.e_stop_level = 1, .e_stop_messages = 1, .e_stop_triggers = 1});
-  pause();
-  const std::uint32_t sequence = loop.permit.reader.sequence();
-  pause(5);
-  EXPECT_EQ(loop.permit.reader.sequence(), sequence);
-  EXPECT_EQ(monitor_rows, 1);
-  EXPECT_EQ(loop.newest_permit().causes, std::uint64_t{kCauseEmergencyStopTopic});
-}
-
 TEST_F(PausedLoop, IsTakenForAFrameByAMonitorThatHasNotSeenItsCycle) {
   loop.driver.step();
   loop.driver.publish_paused();
@@ -104,19 +66,13 @@ TEST_F(PausedLoop, IsTakenForAFrameByAMonitorThatHasNotSeenItsCycle) {
   EXPECT_EQ(loop.gate().missed, 0u);
 }
 
-TEST_F(PausedLoop, KeepsADriversFaultVisible) {
-  loop.machine.state = DriverState::kFault;
-  loop.step();
-  pause();
-  EXPECT_EQ(loop.sensors.newest().driver_state, DriverState::kFault);
-}
-
 TEST_F(PausedLoop, ANewRunCarriesOnItsStampsAndTheirDistanceFromTheClock) {
   constexpr std::int64_t kSlipped = 3 * kPeriodNs;
   loop.driver.count_slip(kSlipped);
   loop.step();
   const SensorFrame last = loop.sensors.newest();
-  begin_run(2);
+  loop.driver.set_start(loop.driver.next_stamp_ns());
+  loop.driver.begin_run(2);
   const std::int64_t deadline = due_ns(last) + 50 * kPeriodNs;
   loop.driver.set_due(deadline);
   loop.step();
@@ -125,19 +81,6 @@ TEST_F(PausedLoop, ANewRunCarriesOnItsStampsAndTheirDistanceFromTheClock) {
   EXPECT_EQ(first.head.stamp_ns, last.head.stamp_ns + kPeriodNs);
   EXPECT_EQ(first.slipped_ns, 0u);
   EXPECT_EQ(due_ns(first), deadline);
-}
-
-TEST_F(PausedLoop, ANewRunAfterAPauseIsFollowedAndReleasesNothing) {
-  loop.monitor->inbox().store({.e_stop_services = 1});
-  loop.steps(2);
-  pause(3);
-  begin_run(2);
-  loop.steps(10);
-  EXPECT_EQ(loop.newest_state().head.run, 2u);
-  EXPECT_EQ(loop.newest_state().head.cycle, 9u);
-  EXPECT_EQ(loop.newest_command().requested.twist.linear, Vector3{}) << "what was asked for before is dropped";
-  EXPECT_EQ(loop.newest_permit().state, SupervisorState::kStopped);
-  EXPECT_EQ(loop.newest_permit().causes, std::uint64_t{kCauseEmergencyStopService});
 }
 
 TEST_F(PausedLoop, DoesNotAllocate) {

@@ -5,8 +5,6 @@
 #include <algorithm>
 #include <filesystem>
 #include <random>
-#include <utility>
-#include <vector>
 
 #include "log/black_box/saved_black_box.h"
 #include "log/trace_reader.h"

@@ -7,7 +7,6 @@
 #include <sys/resource.h>
 
 #include <filesystem>
-#include <stdexcept>
 
 #include "log/trace_reader.h"
 #include "losses_fixture.h"

@@ -5,8 +5,6 @@
 #include <sched.h>
 #include <sys/prctl.h>
 
-#include <atomic>
-
 #include "rt/clock.h"
 #include "rt/futex.h"
 #include "support/processes/anonymous_memory.h"

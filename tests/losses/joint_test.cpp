@@ -1,8 +1,5 @@
 /// One joint of a robot on four wheels gives no sample, an old one, or a fault, at full speed.
 
-#include <string>
-#include <tuple>
-
 #include "losses_fixture.h"
 #include "support/temporary_folder.h"
 

@@ -6,8 +6,6 @@
 
 #include <algorithm>
 #include <csignal>
-#include <cstdint>
-#include <string>
 
 #include "support/processes/driving_robot.h"
 

@@ -6,10 +6,7 @@
 
 #include <filesystem>
 #include <initializer_list>
-#include <ostream>
 #include <random>
-#include <string>
-#include <vector>
 
 #include "losses_fixture.h"
 

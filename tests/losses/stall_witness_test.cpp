@@ -2,8 +2,6 @@
 
 #include "support/processes/stall_witness.h"
 
-#include <gtest/gtest.h>
-
 #include "losses_fixture.h"
 
 namespace robot_control::tests {

@@ -1,8 +1,6 @@
 /// Measures the time until the brake acts, node by node, in 20 of 20 trials; `scripts/bench stops` makes 200 of 200.
 /// ALostNode (signal_test.cpp) has one trial of five of the nine pairs of node and signal every day.
 
-#include <tuple>
-
 #include "losses_fixture.h"
 #include "support/processes/stop_trials.h"
 

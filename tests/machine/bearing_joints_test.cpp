@@ -1,7 +1,5 @@
 /// Joints between the body and the floor: legs that fold are refused, robots that only look like them stand.
 
-#include <tuple>
-
 #include "machine/random_text.h"
 #include "machine/urdf_text.h"
 #include "support/matchers.h"

@@ -1,7 +1,5 @@
 /// Every refusal names the file, the element and the remedy.
 
-#include <limits>
-
 #include "machine/urdf_text.h"
 #include "machine/wheeled/drive_train.h"
 #include "support/matchers.h"

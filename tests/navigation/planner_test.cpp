@@ -1,7 +1,6 @@
 #include "navigation/planner.h"
 
 #include <fstream>
-#include <iterator>
 #include <random>
 
 #include "navigation/house.h"

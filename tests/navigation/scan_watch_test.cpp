@@ -1,7 +1,5 @@
 #include "navigation/scan_watch.h"
 
-#include <functional>
-
 #include "support/matchers.h"
 
 namespace robot_control::navigation::tests {

@@ -3,8 +3,6 @@
 #include <unistd.h>
 
 #include <fstream>
-#include <limits>
-#include <sstream>
 
 #include "configuration/parameters.h"
 #include "support/matchers.h"

@@ -1,5 +1,4 @@
 // Random damage to a valid file: it is read or refused, and nothing else happens. A failing seed is printed.
-#include <gtest/gtest.h>
 
 #include <random>
 

@@ -7,9 +7,6 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
-#include <sstream>
-#include <string>
-#include <vector>
 
 #include "configuration/parameters.h"
 #include "parameters/schema.h"

@@ -1,5 +1,3 @@
-#include <gtest/gtest.h>
-
 #include "configuration/parameters.h"
 #include "parameter_file.h"
 

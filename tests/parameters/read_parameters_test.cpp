@@ -1,7 +1,5 @@
 #include <yaml-cpp/yaml.h>
 
-#include <map>
-#include <set>
 #include <span>
 
 #include "configuration/parameters.h"

@@ -1,7 +1,5 @@
 /// Bad inputs to a robot on legs: it refuses them with the reason, or walks on as before.
 
-#include <limits>
-
 #include "control/legged/walk/gait_table.h"
 #include "robots/quadruped_fixture.h"
 

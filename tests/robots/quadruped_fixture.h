@@ -1,10 +1,6 @@
 #pragma once
 /// The robots on legs of the tests, by name.
 
-#include <gtest/gtest.h>
-
-#include <string>
-
 #include "machine/legs/legs_corpus.h"
 #include "support/robots/quadruped_loop.h"
 

@@ -1,7 +1,6 @@
 /// Robots on legs in the closed loop: lie, stand, move the body, lift a foot, lie down, and be stopped.
 
 #include <random>
-#include <vector>
 
 #include "control/legged/stand/body_bounds.h"
 #include "robots/quadruped_fixture.h"

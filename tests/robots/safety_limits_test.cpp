@@ -2,8 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <utility>
-
 #include "control/wheeled/wheel_loops/wheel_loop_gains.h"
 #include "loop/cycle_fixture.h"
 #include "safety/derived_limits.h"

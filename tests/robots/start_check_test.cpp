@@ -3,9 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <iomanip>
 #include <numbers>
-#include <sstream>
 
 #include "control/wheeled/smooth_speed.h"
 #include "loop/cycle_fixture.h"

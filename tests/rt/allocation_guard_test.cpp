@@ -3,9 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cstdlib>
-#include <memory>
 #include <thread>
-#include <vector>
 
 namespace robot_control::tests {
 

@@ -10,15 +10,9 @@
 
 #include <algorithm>
 #include <array>
-#include <atomic>
-#include <cerrno>
 #include <csignal>
 #include <cstdlib>
-#include <functional>
-#include <stdexcept>
-#include <string>
 #include <thread>
-#include <vector>
 
 #include "rt/realtime_thread.h"
 #include "support/matchers.h"

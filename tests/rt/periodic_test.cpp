@@ -2,8 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <vector>
-
 namespace robot_control::tests {
 
 constexpr std::int64_t kStart = 5'000'000'000;

@@ -10,11 +10,8 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
-#include <atomic>
 #include <cmath>
 #include <fstream>
-#include <string>
-#include <string_view>
 #include <thread>
 
 #include "support/allocation_guard.h"

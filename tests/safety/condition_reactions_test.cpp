@@ -5,19 +5,13 @@
 // facts are immediate. From then on its persistence counts.
 
 #include <cmath>
-#include <functional>
-#include <limits>
-#include <string>
-#include <tuple>
-#include <vector>
 
 #include "safety/latch/fixed_reactions.h"
 #include "safety/monitor_fixture.h"
 #include "signals/names.h"
 #include "support/measured_contacts.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 constexpr std::uint64_t kWindow = 20;
 
@@ -122,20 +116,15 @@ SafetyParameters only(const SafetyParameters& given, const Row& row, Reaction re
   return parameters;
 }
 
-class Conditions : public MonitorTest, public testing::WithParamInterface<std::tuple<std::size_t, Reaction>> {
- protected:
+struct Conditions : MonitorTest, testing::WithParamInterface<std::tuple<std::size_t, Reaction>> {
   Conditions() : row_(rows()[std::get<0>(GetParam())]), reaction_(std::get<1>(GetParam())) {
     const SafetyParameters chosen = only(parameters(), row_, reaction_);
     persistence_ = std::max<std::uint64_t>(1, static_cast<std::uint64_t>(std::lround(row_.persistence / kPeriod)));
-    monitor_ = SafetyMonitor(chosen, robot(), kPeriod);
     sensors_.valid |= kValidBattery;
     measure_contacts(sensors_);
     sensors_.battery_voltage = 24;
     sensors_.contacts[0].force[2] = sensors_.contacts[1].force[2] = 6 * 9.81;
-    new_run();
-    steps(kStart);
-    drive();
-    steps(100);
+    drive_with(chosen, robot());
   }
 
   /// Cycles from the onset to the first in which `reported` is true; at most `patience`.
@@ -218,22 +207,15 @@ INSTANTIATE_TEST_SUITE_P(Every, Conditions,
                          name_of_row);
 
 /// Drives that take speeds and measure no torque (robot.wheel_command: velocity).
-class ConditionsWithoutTorque : public Conditions {
- protected:
+struct ConditionsWithoutTorque : Conditions {
   /// docs/safety.md names them.
   static constexpr std::uint64_t kBlind = kCauseWheelEffort | kCausePower | kCauseTorqueOscillation;
 
   ConditionsWithoutTorque() {
     SafetyParameters chosen = only(parameters(), row_, reaction_);
     chosen.joint_numbers = kValidKinematics;
-    monitor_ = SafetyMonitor(chosen, robot(), kPeriod);
     measure_no_torque();
-    ask_for(0);
-    turn_wheels(0);
-    new_run();
-    steps(kStart);
-    drive();
-    steps(100);
+    drive_with(chosen, robot());
   }
 
   void measure_no_torque() {
@@ -281,5 +263,4 @@ TEST(ConditionTable, HasEveryCauseThatIsNotFixed) {
   EXPECT_EQ(all, 0u) << names_of(kStopCauseNames, all);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

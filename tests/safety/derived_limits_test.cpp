@@ -5,14 +5,12 @@
 
 #include <gtest/gtest.h>
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 constexpr double kRounding = 1e-12;
 constexpr double kCommanded = 15;
 
-class DerivedLimits : public testing::Test {
- protected:
+struct DerivedLimits : testing::Test {
   DerivedLimits() {
     robot_.joints.resize(2);
     robot_.wheels.resize(2);
@@ -122,5 +120,4 @@ TEST_F(DerivedLimits, InventNoBattery) {
   EXPECT_FALSE(limits().battery_empty.limit);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

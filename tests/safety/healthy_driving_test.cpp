@@ -3,13 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <optional>
-#include <ostream>
 
 #include "safety/monitor_fixture.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 struct Machine {
   double rate;    ///< Hz
@@ -22,8 +19,7 @@ std::ostream& operator<<(std::ostream& out, const Machine& machine) {
 
 /// Drives of 6 s: up at 1 m/s² to 0.9 m/s, a curve, through zero to −0.5 m/s, and to rest. The wheels follow their
 /// targets 20 ms later, as a wheel loop of 8 Hz does.
-class HealthyDriving : public testing::TestWithParam<Machine> {
- protected:
+struct HealthyDriving : testing::TestWithParam<Machine> {
   static constexpr double kDrive = 6;  // s
   static constexpr double kLag = 0.02;
 
@@ -142,5 +138,4 @@ INSTANTIATE_TEST_SUITE_P(Machines, HealthyDriving,
                          testing::Values(Machine{100, 4096}, Machine{100, 64}, Machine{1000, 4096}, Machine{1000, 64},
                                          Machine{2000, 4096}, Machine{2000, 64}, Machine{1000, 0}));
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -9,7 +9,6 @@
 #include <cmath>
 #include <numbers>
 #include <span>
-#include <vector>
 
 #include "gate/gate.h"
 #include "safety/conditions/wheeled/wheeled_conditions.h"
@@ -85,6 +84,16 @@ class MonitorTest : public testing::Test {
     monitor_ = SafetyMonitor(chosen, robot(), kPeriod);
     new_run();
     steps(kStart);
+  }
+  /// Begins a run with a zero request, and drives for 100 cycles.
+  void drive_with(const SafetyParameters& chosen, const DriveTrain& robot) {
+    monitor_ = SafetyMonitor(chosen, robot, kPeriod);
+    ask_for(0);
+    turn_wheels(0);
+    new_run();
+    steps(kStart);
+    drive();
+    steps(100);
   }
 
   /// The next cycle.

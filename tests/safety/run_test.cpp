@@ -1,15 +1,11 @@
 // Tests what a start, a new run and a restart of the monitor forget, and what they keep.
 
-#include <cstring>
-
 #include "safety/monitor_fixture.h"
 #include "signals/names.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
-class RunTest : public MonitorTest {
- protected:
+struct RunTest : MonitorTest {
   void e_stop() {
     ++input_.operator_input.e_stop_services;
     step();
@@ -238,8 +234,7 @@ TEST_F(RunTest, ANewRunOfTheSameDriverIsNoLoss) {
 
 // A restart of the monitor.
 
-class RestartTest : public RunTest {
- protected:
+struct RestartTest : RunTest {
   void restart() {
     input_.operator_input = {};
     restart_monitor();
@@ -396,24 +391,4 @@ TEST_F(RestartTest, ANewDriverBesideARunningMonitorClearsNothing) {
   EXPECT_EQ(permit_.state, SupervisorState::kStopped);
 }
 
-TEST_F(RestartTest, SameFactsGiveTheSameBits) {
-  Permit first;
-  Permit second;
-  for (Permit* permit : {&first, &second}) {
-    SafetyMonitor monitor(parameters(), robot(), kPeriod);
-    SensorFrame sensors = sensors_;
-    MonitorInput input = input_;
-    input.sensors = &sensors;
-    for (std::uint64_t k = 0; k < 500; ++k) {
-      sensors.head.cycle = k;
-      if (k == 300) ++input.operator_input.e_stop_services;
-      if (k == 350) ++input.operator_input.resets;
-      monitor.step(input, *permit);
-    }
-  }
-  EXPECT_EQ(std::memcmp(&first, &second, sizeof first), 0);
-  EXPECT_EQ(first.state, SupervisorState::kReady);
-}
-
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -4,9 +4,7 @@
 
 #include <array>
 #include <bit>
-#include <cstdint>
 #include <cstring>
-#include <limits>
 
 #include "signals/command_frame.h"
 #include "signals/permit.h"

@@ -26,7 +26,7 @@ from nav_msgs.msg import Odometry
 from robot_control.msg import DriveState, SafetyStatus
 from robot_control.robot.pose import Pose, pose_of
 from sensor_msgs.msg import JointState
-from std_msgs.msg import Bool, Float64MultiArray
+from std_msgs.msg import Bool
 from std_srvs.srv import Trigger, TriggerResponse
 from system import rosunit_skips
 from system.stall_witness import StallWitness
@@ -262,7 +262,6 @@ class Robot:
         self.nodes: dict[str, Program] = {}
         self.odom: Odometry | None = None
         self._joints: Latest | None = None
-        self._wheels: Latest | None = None
         self.status: SafetyStatus | None = None
         self.revoked: tuple[str, ...] = ()
         """Senders whose motion is refused until they send zero."""
@@ -410,12 +409,6 @@ class Robot:
         return latest.message
 
     @property
-    def wheels(self) -> tuple[float, ...]:
-        """The newest targets on joint_commands, from the first question on."""
-        self._wheels = self._wheels or Latest(self.name("joint_commands"), Float64MultiArray)
-        return () if self._wheels.message is None else tuple(self._wheels.message.data)
-
-    @property
     def pose(self) -> Pose:
         """Estimated, in odom."""
         assert self.odom is not None
@@ -463,12 +456,6 @@ def running_robot(namespace: str = "") -> Iterator[Robot]:
         robot.end()
 
 
-def init_test_node(name: str) -> None:
-    """Initialises the node, once in a process; SIGINT stays with unittest."""
-    if not rospy.core.is_initialized():
-        rospy.init_node(name, anonymous=True, disable_signals=True)
-
-
 class RobotTestCase(unittest.TestCase):
     """Tests that share one robot in the root namespace, a `shared` one with the other classes of this process."""
 
@@ -477,11 +464,10 @@ class RobotTestCase(unittest.TestCase):
     parameters: Sequence[tuple[str, object]] = ()
     """of the server, from the start of the robot on"""
     shared: Robot | None = None
-    """set by shared_robot.py, which ends it"""
+    """set by run_cases.py, which ends it"""
 
     @classmethod
     def setUpClass(cls) -> None:
-        init_test_node(cls.__name__)
         for name, value in cls.parameters:
             rospy.set_param(name, value)
         cls.robot = cls.shared or Robot(prefix=cls.prefix)

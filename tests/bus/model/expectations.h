@@ -5,10 +5,6 @@
 #include <gtest/gtest.h>
 
 #include <cstdio>
-#include <functional>
-#include <set>
-#include <string>
-#include <vector>
 
 #include "bus/model/memory_model.h"
 

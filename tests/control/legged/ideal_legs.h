@@ -1,11 +1,8 @@
 #pragma once
 /// A leg controller whose joints are where it commands them, and what its commands mean by forward kinematics.
 
-#include <gtest/gtest.h>
-
 #include <Eigen/Geometry>
 #include <cmath>
-#include <cstdint>
 
 #include "control/legged/leg_controller.h"
 #include "control/legged/stand/body_bounds.h"

@@ -1,7 +1,6 @@
 #include "control/legged/ideal_legs.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 /// Returns a robot of 12.7 kg times `mass` whose legs have 0.426 m times `length`.
 LegModel of_size(double mass, double length) {
@@ -97,5 +96,4 @@ TEST(JointBounds, AreTheRangesAndNineTenthsOfTheSpeedsThatTheGateAllows) {
   }
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -2,8 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 constexpr double kPeriod = 0.001;  // s
 constexpr std::array<AxisBounds, 2> kBounds{{{.speed = 0.4, .acceleration = 3}, {.speed = 0.9, .acceleration = 40}}};
@@ -83,5 +82,4 @@ TEST(TrackedAxes, BrakeToTheStoppingPlace) {
   EXPECT_GE(axes[1].value, place[1]);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

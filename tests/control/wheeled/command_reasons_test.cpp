@@ -1,8 +1,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <functional>
-#include <map>
 
 #include "control/wheeled/control_bench.h"
 #include "signals/names.h"

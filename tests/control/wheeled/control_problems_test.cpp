@@ -1,7 +1,5 @@
 #include "control/wheeled/control_problems.h"
 
-#include <string>
-
 #include "control/wheeled/test_robot.h"
 #include "control/wheeled/wheel_loops/wheel_loop_gains.h"
 #include "support/matchers.h"

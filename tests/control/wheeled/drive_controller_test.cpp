@@ -3,9 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <functional>
 #include <random>
-#include <vector>
 
 #include "control/wheeled/control_bench.h"
 #include "support/allocation_guard.h"

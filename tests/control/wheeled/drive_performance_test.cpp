@@ -118,19 +118,4 @@ TEST(DrivePerformance, StopsWhereTheLimitsSay) {
   }
 }
 
-TEST(DrivePerformance, RepeatsBitForBit) {
-  const auto last = [] {
-    ControlBench bench;
-    bench.plant.counts = 4096;
-    drive_and_stop(bench);
-    bench.send(0.5, 0.2);
-    bench.run(0.4);
-    return bench;
-  };
-  const ControlBench a = last();
-  const ControlBench b = last();
-  EXPECT_EQ(a.plant.distance, b.plant.distance);
-  EXPECT_EQ(checksum_of(a.command), checksum_of(b.command));
-}
-
 }  // namespace robot_control::tests

@@ -2,10 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <functional>
-#include <iostream>
-#include <vector>
-
 #include "bench/programs/kernel.h"
 #include "bench/programs/rows.h"
 #include "control/wheeled/control_bench.h"

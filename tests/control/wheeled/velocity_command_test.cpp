@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 
 #include "control/wheeled/control_bench.h"
 #include "control/wheeled/control_problems.h"

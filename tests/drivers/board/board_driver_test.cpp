@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <string>
 
 #include "drivers/board/board_machine.h"
 #include "drivers/board/mutated_stream.h"

@@ -6,7 +6,6 @@
 #include <array>
 #include <random>
 #include <span>
-#include <vector>
 
 #include "drivers/board/mutated_stream.h"
 #include "firmware/board.h"

@@ -252,8 +252,7 @@ TEST(Cia402Drive, ResetsNoFaultByItself) {
   rig.run(5);
   EXPECT_FALSE(reset);
   EXPECT_THAT(rig.drive().words(), HasSubstr("fault; the drive reports an error: 0x7305"));
-  rig.command_all({.enabled = true, .reset = true});
-  rig.cycle();
+  rig.reset();
   EXPECT_TRUE(rig.runs());
   EXPECT_TRUE(reset);
 }
@@ -353,14 +352,12 @@ TEST_F(TwoAxes, FailTogetherAndAreResetTogether) {
   EXPECT_THAT(rig_.drive(0).words(), HasSubstr("has another axis in fault"));
   EXPECT_THAT(rig_.drive(1).words(), HasSubstr("reports an error: 0x7305"));
   device_->inject(DeviceFault::kNone);
-  rig_.command_all({.enabled = true, .reset = true});
-  rig_.cycle();
+  rig_.reset();
   EXPECT_TRUE(rig_.runs());
   device_->inject(DeviceFault::kOff);
   rig_.run(0.5);
   device_->inject(DeviceFault::kNone);
-  rig_.command_all({.enabled = true, .reset = true});
-  rig_.cycle();
+  rig_.reset();
   EXPECT_TRUE(rig_.runs());
 }
 
@@ -372,8 +369,7 @@ TEST_F(TwoAxes, StartAgainTogetherWhereOneFailedAndCouldStillBrake) {
     EXPECT_EQ(rig_.drive(1 - axis).status().state, DrivePhase::kFault) << axis;
     EXPECT_EQ(rig_.drive(axis).status().state, DrivePhase::kRunning) << axis;
     device_->objects().set(on_axis(kDcLinkVoltage, axis), 48'000);
-    rig_.command_all({.enabled = true, .reset = true});
-    rig_.cycle();
+    rig_.reset();
     EXPECT_TRUE(rig_.runs()) << axis;
   }
 }

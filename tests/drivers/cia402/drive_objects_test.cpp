@@ -4,8 +4,6 @@
 
 #include <cstdio>
 #include <fstream>
-#include <map>
-#include <string>
 
 namespace robot_control::cia402::tests {
 

@@ -2,8 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <limits>
-
 namespace robot_control::cia402::tests {
 
 constexpr DriveUnits kUnits{.rated_torque = 2.5, .counts_per_turn = 4096};

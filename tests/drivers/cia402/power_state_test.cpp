@@ -2,8 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <set>
-
 namespace robot_control::cia402::tests {
 
 using enum PowerState;

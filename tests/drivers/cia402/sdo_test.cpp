@@ -2,8 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <vector>
-
 namespace robot_control::canopen::tests {
 
 using enum SdoCommand;

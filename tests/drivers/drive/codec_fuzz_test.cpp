@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <random>
-#include <vector>
 
 #include "drivers/cia402/drive_objects.h"
 #include "drivers/cia402/power_state.h"

@@ -3,12 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include <functional>
-#include <memory>
-#include <optional>
-#include <string>
-#include <vector>
-
 #include "drivers/cia402/cia402_device.h"
 #include "drivers/cia402/cia402_drive.h"
 #include "drivers/drive/drive_set.h"
@@ -86,6 +80,10 @@ class DeviceRig {
     return true;
   }
   void command_all(const DriveCommand& command) { commands.assign(drives().size(), command); }
+  void reset() {
+    command_all({.enabled = true, .reset = true});
+    cycle();
+  }
   ::testing::AssertionResult runs(double seconds = 5) {
     command_all({.enabled = true});
     if (run_until([this] { return all_are(DrivePhase::kRunning); }, seconds)) return ::testing::AssertionSuccess();

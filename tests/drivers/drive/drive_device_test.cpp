@@ -3,7 +3,6 @@
 #include <cmath>
 #include <numbers>
 #include <random>
-#include <utility>
 
 #include "drivers/drive/device_rig.h"
 #include "drivers/odrive/odrive_messages_06.h"
@@ -154,15 +153,6 @@ TEST_P(DriveAndDevice, GetsReadyWithoutTorqueAndRunsWhenItIsEnabled) {
   EXPECT_TRUE(rig_.runs());
 }
 
-TEST_P(DriveAndDevice, SaysThatItWaitsWhileTheDeviceIsOff) {
-  device_->inject(DeviceFault::kOff);
-  rig_.run(2);
-  EXPECT_EQ(state(), DrivePhase::kStarting);
-  EXPECT_THAT(rig_.drive().words(), HasSubstr("wheel_1 (node 1): starting; the drive waits for a first frame"));
-  device_->inject(DeviceFault::kNone);
-  EXPECT_TRUE(rig_.runs());
-}
-
 TEST_P(DriveAndDevice, AppliesTheCommandedTorqueWithinOneStepOfTheProtocol) {
   ASSERT_TRUE(rig_.runs());
   std::mt19937_64 random(7);
@@ -230,15 +220,6 @@ TEST_P(DriveAndDevice, NightlyLossesAndClocksStopNothingInHalfAnHour) {
   drive_with_losses(GetParam(), 1800);
 }
 
-TEST_P(DriveAndDevice, NoticesWithinItsMaximumSilenceThatTheCableIsOut) {
-  ASSERT_TRUE(rig_.runs());
-  rig_.bus().connect(rig_.host(), false);
-  int cycles = 0;
-  for (; state() == DrivePhase::kRunning && cycles < 100; ++cycles) rig_.cycle();
-  EXPECT_LE(cycles, 22);
-  EXPECT_THAT(rig_.drive().words(), HasSubstr("fault; the drive is silent"));
-}
-
 TEST_P(DriveAndDevice, HasNoTorqueAfterItsWatchdogWhenTheHostDies) {
   ASSERT_TRUE(rig_.runs());
   rig_.command_all({.enabled = true, .torque = 1});
@@ -261,27 +242,11 @@ TEST_P(DriveAndDevice, HasNoTorqueAfterItsWatchdogWhenTheHostDies) {
   }
 }
 
-TEST_P(DriveAndDevice, StaysInFaultUntilTheReset) {
-  ASSERT_TRUE(rig_.runs());
-  rig_.command_all({.enabled = true, .torque = 0.2});
-  device_->inject(DeviceFault::kEncoder);
-  ASSERT_TRUE(fails());
-  device_->inject(DeviceFault::kNone);
-  rig_.command_all({.enabled = true, .torque = 2});
-  rig_.run(3);
-  EXPECT_EQ(state(), DrivePhase::kFault);
-  EXPECT_EQ(rig_.motor().torque, 0);
-  rig_.command_all({.enabled = true, .reset = true});
-  rig_.cycle();
-  EXPECT_TRUE(rig_.runs());
-}
-
 TEST_P(DriveAndDevice, AFaultThatRemainsIsReportedAgainAfterTheReset) {
   ASSERT_TRUE(rig_.runs());
   device_->inject(DeviceFault::kUnderVoltage);
   ASSERT_TRUE(fails());
-  rig_.command_all({.enabled = true, .reset = true});
-  rig_.cycle();
+  rig_.reset();
   rig_.command_all({.enabled = true});
   EXPECT_TRUE(fails(8));
 }
@@ -295,8 +260,7 @@ TEST_P(DriveAndDevice, OneResetIsOneAttempt) {
   rig_.bus().join([&clears, is_one = GetParam().clears](const can_frame& frame, std::int64_t) {
     if (is_one(frame)) ++clears;
   });
-  rig_.command_all({.enabled = true, .reset = true});
-  rig_.cycle();
+  rig_.reset();
   rig_.command_all({.enabled = true, .torque = 2});
   rig_.run(8);
   EXPECT_EQ(state(), DrivePhase::kFault);
@@ -305,8 +269,7 @@ TEST_P(DriveAndDevice, OneResetIsOneAttempt) {
   EXPECT_LE(clears, Drive::kMaxClears);
   EXPECT_EQ(rig_.motor().torque, 0);
   device_->inject(DeviceFault::kNone);
-  rig_.command_all({.enabled = true, .reset = true});
-  rig_.cycle();
+  rig_.reset();
   EXPECT_TRUE(rig_.runs());
 }
 
@@ -412,8 +375,7 @@ void receive_random_frames(DeviceRig& rig, int count) {
   EXPECT_EQ(rig.motor().velocity, 0);
   rig.command_all({.enabled = true});
   rig.cycle();
-  rig.command_all({.enabled = true, .reset = true});
-  rig.cycle();
+  rig.reset();
   EXPECT_TRUE(rig.runs(10));
 }
 

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <random>
-#include <vector>
 
 #include "drivers/drive/late_position.h"
 #include "drivers/position_difference.h"

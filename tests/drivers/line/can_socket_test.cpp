@@ -6,8 +6,6 @@
 #include <unistd.h>
 
 #include <filesystem>
-#include <memory>
-#include <vector>
 
 #include "drivers/driver.h"
 #include "drivers/line/can_bus.h"

@@ -4,10 +4,7 @@
 
 #include <chrono>
 #include <filesystem>
-#include <functional>
 #include <list>
-#include <memory>
-#include <string>
 
 #include "drivers/board/board_machine.h"
 #include "drivers/driver.h"

@@ -1,7 +1,5 @@
 #include "drivers/line/virtual_can.h"
 
-#include <gtest/gtest.h>
-
 #include "drivers/drive/device_rig.h"
 
 namespace robot_control::tests {

@@ -1,8 +1,6 @@
 /// Robots on legs in the simulated machine, which stand up by a simple law: the feet stay where they lie, and the body
 /// rises. Each leg's share of the weight is the feed-forward.
 
-#include <gtest/gtest.h>
-
 #include <Eigen/Geometry>
 
 #include "drivers/mujoco/mujoco_plant.h"

@@ -1,7 +1,6 @@
 /// The physics fails: a fault is reported, the last good values stay, no file is written, no exit, no reset by itself.
 
 #include <filesystem>
-#include <limits>
 
 #include "drivers/mujoco/mujoco_errors.h"
 #include "drivers/mujoco/plant_fixture.h"

@@ -1,12 +1,7 @@
 /// The behaviour of the simulated machine, observed through the driver's four calls.
 
-#include <gtest/gtest.h>
-
-#include <cstring>
-
 #include "drivers/mujoco/constants.h"
 #include "drivers/mujoco/plant_fixture.h"
-#include "support/allocation_guard.h"
 
 namespace robot_control::tests {
 
@@ -75,16 +70,6 @@ TEST_P(BrakeHolds, AMinuteWithoutMoving) {
 
 INSTANTIATE_TEST_SUITE_P(MujocoPlantTest, BrakeHolds,
                          testing::Combine(testing::Values(kFlat, kSlope), testing::Values(0.01, 0.001)));
-
-TEST_F(MujocoPlantTest, HandOverFromHoldingTorqueToBrakeDoesNotSagOnASlope) {
-  auto plant = started(kSlope);
-  const double torque = sensors(*plant).joints[0].effort;
-  for (int i = 0; i < 10; ++i) {
-    hold(*plant, both(effort_command(torque), effort_command(torque)), 0.05);
-    hold(*plant, brakes_, 0.5);
-  }
-  EXPECT_LT(distance(truth(*plant).pose_world.position, {}), 0.2e-3);
-}
 
 class RollsTrue : public PlantTest, public testing::WithParamInterface<double> {};
 

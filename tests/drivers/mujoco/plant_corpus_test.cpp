@@ -1,11 +1,8 @@
 /// Real robots, as their makers publish them, on the plant alone: they stand still and stop without tipping
 /// (support/robots/corpus.h).
 
-#include <gtest/gtest.h>
-
 #include <cstdlib>
 #include <filesystem>
-#include <optional>
 
 #include "drivers/mujoco/plant_fixture.h"
 #include "drivers/mujoco/sensors/integrated_force.h"

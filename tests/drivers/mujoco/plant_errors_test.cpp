@@ -2,7 +2,6 @@
 
 #include <cmath>
 #include <cstring>
-#include <vector>
 
 #include "drivers/mujoco/plant_fixture.h"
 #include "support/allocation_guard.h"
@@ -136,15 +135,6 @@ TEST_F(PlantErrors, AnEncoderFaultIsNoFaultOfTheSimulation) {
   EXPECT_TRUE(std::isnan(frame.joints[0].position));
   EXPECT_EQ(frame.driver_state, DriverState::kRunning);
   EXPECT_EQ(frame.faults, 0u);
-}
-
-TEST_F(PlantErrors, AMotorThatIsOffPullsTheRobotRound) {
-  auto plant = erring();
-  inject(*plant, FaultComponent::kMotor, FaultKind::kOff);
-  hold(*plant, both(effort_command(0.5), effort_command(0.5)), 1);
-  EXPECT_EQ(truth(*plant).joints[0].effort, 0);
-  EXPECT_EQ(truth(*plant).joints[1].effort, 0.5);
-  EXPECT_GT(truth(*plant).twist_base.angular[2], 0.1) << "the right wheel drives it to the left";
 }
 
 TEST_F(PlantErrors, ABlockedMotorStopsItsWheelWhateverTheCommand) {

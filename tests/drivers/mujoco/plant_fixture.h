@@ -6,8 +6,6 @@
 #include <array>
 #include <cmath>
 #include <fstream>
-#include <memory>
-#include <string>
 
 #include "drivers/mujoco/mujoco_plant.h"
 #include "support/robots/diffbot_urdf.h"

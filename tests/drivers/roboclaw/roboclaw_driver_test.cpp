@@ -1,7 +1,5 @@
 #include <array>
 #include <cmath>
-#include <limits>
-#include <string>
 
 #include "drivers/board/mutated_stream.h"
 #include "drivers/roboclaw/roboclaw_machine.h"
@@ -264,8 +262,7 @@ TEST(RoboclawProtocol, CrcAndBytesAreThoseOfTheManual) {
   EXPECT_EQ(roboclaw::request(0x80, PacketCommand::kEncoders).size(), 2u);
 }
 
-class MutatedRoboclaw final : public MutatedLine {
- public:
+struct MutatedRoboclaw final : MutatedLine {
   bool send(std::span<const std::uint8_t> request) noexcept override {
     const auto command = static_cast<PacketCommand>(request[1]);
     driven += command == PacketCommand::kSpeeds ? 1 : 0;

@@ -3,10 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include <memory>
-#include <string>
-#include <vector>
-
 #include "drivers/table/drive_table.h"
 #include "drivers/table/read_drive_file.h"
 #include "drivers/table/simulated_front.h"

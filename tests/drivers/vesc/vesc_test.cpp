@@ -2,8 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <limits>
-
 #include "drivers/vesc/vesc_messages.h"
 
 namespace robot_control::vesc::tests {

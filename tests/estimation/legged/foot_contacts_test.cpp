@@ -1,7 +1,5 @@
 #include "estimation/legged/foot_contacts.h"
 
-#include <gtest/gtest.h>
-
 #include <cmath>
 
 #include "machine/gravity.h"

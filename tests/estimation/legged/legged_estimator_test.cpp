@@ -1,7 +1,5 @@
 #include "estimation/legged/legged_estimator.h"
 
-#include <gtest/gtest.h>
-
 #include "machine/gravity.h"
 #include "machine/legs/legs_corpus.h"
 #include "support/allocation_guard.h"

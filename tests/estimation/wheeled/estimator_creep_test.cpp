@@ -1,7 +1,5 @@
 // Tyres creep under force.
 
-#include <utility>
-
 #include "estimation/wheeled/estimator_fixture.h"
 #include "support/constants.h"
 

@@ -2,7 +2,6 @@
 
 #include <array>
 #include <cstring>
-#include <vector>
 
 #include "estimation/wheeled/estimator_fixture.h"
 #include "support/allocation_guard.h"
@@ -339,23 +338,6 @@ TEST_F(EstimatorPoseTest, AClockOffsetThatIsNotKnownMayBeThatOfEitherSensor) {
     const Eigen::Matrix3d covariance =
         Eigen::Map<const Eigen::Matrix<double, 6, 6>>(state_.base.pose_covariance.data())(plane, plane);
     EXPECT_LT(error.dot(covariance.inverse() * error), kAlmostCertain) << "late gyro: " << gyro_is_late;
-  }
-}
-
-TEST_F(EstimatorPoseTest, SameInputsGiveTheSameBits) {
-  Estimator first(rigid_tyres(), two_wheeler(), kPeriod);
-  Estimator second(rigid_tyres(), two_wheeler(), kPeriod);
-  second.step(robot_.frame(), state_);
-  second.enter_run();
-  StateFrame one;
-  StateFrame two;
-  robot_.noise = {.gyro = 1e-3, .accelerometer = 1e-2, .counts = 4096};
-  for (int i = 0; i < 3000; ++i) {
-    robot_.drive(0.5 * std::sin(i * 1e-3), 0.2);
-    if (i > 2000) robot_.tread[1] = 0.9;  // slips
-    first.step(robot_.frame(), one);
-    second.step(robot_.frame(), two);
-    ASSERT_EQ(std::memcmp(&one, &two, sizeof one), 0) << "cycle " << i;
   }
 }
 

@@ -1,7 +1,6 @@
 // The estimator's state is copied as bytes into another estimator, which continues with the same bits.
 
 #include <cstring>
-#include <memory>
 
 #include "estimation/wheeled/estimator_fixture.h"
 #include "signals/law_snapshot.h"

@@ -1,8 +1,5 @@
 /// Measures the cost of one step of the estimator in motion: tilt, core, both encoders, slip statistic.
 
-#include <iostream>
-#include <vector>
-
 #include "bench/programs/kernel.h"
 #include "bench/programs/rows.h"
 #include "estimation/wheeled/estimator_fixture.h"

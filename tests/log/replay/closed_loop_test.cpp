@@ -4,11 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
-#include <optional>
-#include <string>
-#include <utility>
-#include <vector>
 
 #include "log/replay/continuity.h"
 #include "log/replay/recorded.h"

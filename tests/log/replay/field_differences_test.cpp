@@ -4,8 +4,6 @@
 
 #include <gtest/gtest.h>
 
-#include <set>
-
 namespace robot_control::tests {
 
 JoinedRow row_of(const EstimatorTrace& trace) {

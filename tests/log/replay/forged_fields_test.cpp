@@ -5,10 +5,6 @@
 #include <algorithm>
 #include <fstream>
 #include <random>
-#include <set>
-#include <string>
-#include <string_view>
-#include <vector>
 
 #include "files/input_file.h"
 #include "log/messages/message_checksum.h"

@@ -1,7 +1,6 @@
 #include "log/rows/join.h"
 
 #include <random>
-#include <string>
 
 #include "log/rows/traces.h"
 #include "support/matchers.h"

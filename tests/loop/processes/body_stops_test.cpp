@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <functional>
 
 #include "machine/gravity.h"
 #include "simulation/closed_loop.h"

@@ -3,10 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include <sstream>
-#include <string>
-#include <vector>
-
 #include "loop/simulation_services.h"
 #include "signals/names.h"
 #include "simulation/closed_loop.h"

@@ -2,9 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <functional>
-#include <iterator>
-
 #include "control/wheeled/kinematics.h"
 #include "gate/joint_clamp.h"
 #include "simulation/closed_loop.h"

@@ -7,9 +7,6 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
-#include <iostream>
-#include <string>
-#include <vector>
 
 #include "simulation/closed_loop.h"
 #include "support/log_table.h"

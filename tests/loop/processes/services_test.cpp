@@ -7,7 +7,6 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
-#include <string>
 
 #include "simulation/closed_loop.h"
 #include "support/log_table.h"

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <limits>
 
 #include "machine/description/robot_description.h"
 #include "mesh_texts.h"

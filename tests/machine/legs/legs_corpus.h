@@ -4,9 +4,6 @@
 #include <gtest/gtest.h>
 #include <yaml-cpp/yaml.h>
 
-#include <string>
-#include <vector>
-
 #include "machine/legs/leg_model.h"
 #include "support/robots/corpus.h"
 

@@ -2,8 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 constexpr std::int64_t kPeriodOfScans = kStreamSilence / 5;
 constexpr double kFree = std::numeric_limits<double>::infinity();
@@ -43,5 +42,4 @@ TEST(ClearanceStreamTest, AStreamBeginsAgainAfterItsSilence) {
   EXPECT_TRUE(stream.falls_silent(5 * kStreamSilence));
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

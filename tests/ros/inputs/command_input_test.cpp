@@ -4,22 +4,16 @@
 #include <gtest/gtest.h>
 
 #include <boost/make_shared.hpp>
-#include <cmath>
-#include <limits>
-#include <map>
-#include <string>
 
 #include "ros/nanoseconds.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 using testing::HasSubstr;
 using testing::IsEmpty;
 
 /// One node sends every 0.1 s, on the robot's clock.
-class CommandInputTest : public testing::Test {
- protected:
+struct CommandInputTest : testing::Test {
   void receive(const std::string& sender, double linear, std::int64_t stamp_ns = 0) {
     ArrivedCommand arrived{.sender = publisher(sender), .twist = {}, .stamp_ns = stamp_ns};
     arrived.twist.linear[0] = linear;
@@ -289,8 +283,7 @@ TEST_F(CommandInputTest, ARefusedMessageIsARequestForMotionWhateverItHolds) {
 }
 
 /// A stop that latches, and its reset.
-class RevokedSenderTest : public CommandInputTest {
- protected:
+struct RevokedSenderTest : CommandInputTest {
   RevokedSenderTest() { grant(); }
 
   void grant() { input_.follow({.run = 7, .withdrawals = withdrawals_, .granted = true}, now_.loop_ns); }
@@ -541,8 +534,7 @@ TEST_F(CommandInputTest, NaNOfAnotherSenderLeavesTheCommandInForce) {
 }
 
 /// Twists and poses of robots on legs, each over a connection of its own.
-class PoseInputTest : public RevokedSenderTest {
- protected:
+struct PoseInputTest : RevokedSenderTest {
   void twist(const std::string& sender, double linear) {
     ArrivedCommand arrived{.sender = publisher(sender), .twist = {}, .part = StatedPart::kTwist};
     arrived.twist.linear[0] = linear;
@@ -704,5 +696,4 @@ TEST_F(PoseInputTest, AChosenGaitEndsWithThePermissionToMove) {
   EXPECT_EQ(input_.chosen_mode(), Mode{});
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -5,14 +5,11 @@
 
 #include <array>
 #include <boost/make_shared.hpp>
-#include <limits>
-#include <string>
 
 #include "control/common/command_watch.h"
 #include "ros/nanoseconds.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 using testing::ElementsAre;
 using testing::HasSubstr;
@@ -29,8 +26,7 @@ CommandSourceList shipped() {
           .locks = {{"pause", "pause", 0, 255}}};
 }
 
-class CommandMuxTest : public testing::Test {
- protected:
+struct CommandMuxTest : testing::Test {
   void receive(Source source, double linear) {
     ArrivedCommand arrived{
         .sender = {"/node" + std::to_string(source), connections_[source]}, .twist = {}, .stamp_ns = 0};
@@ -266,8 +262,7 @@ TEST_F(CommandMuxTest, AStampTooOldMakesNoSourceLive) {
 
 /// The source of a planner never times out, or after a minute. The planner has died; then come a stop and its reset, a
 /// new run or the end of a pause.
-class DeadSourceTest : public CommandMuxTest, public testing::WithParamInterface<double> {
- protected:
+struct DeadSourceTest : CommandMuxTest, testing::WithParamInterface<double> {
   DeadSourceTest() {
     CommandSourceList list = shipped();
     list.sources[kCmd].timeout = GetParam();
@@ -330,5 +325,4 @@ TEST_F(CommandMuxTest, EveryChangeOfTheCommanderIsOneLine) {
   EXPECT_EQ(lines[0].text, "commands come from cmd_vel");
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

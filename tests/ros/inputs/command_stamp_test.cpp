@@ -3,8 +3,7 @@
 #include "ros/inputs/command_input.h"
 #include "ros/nanoseconds.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 constexpr std::int64_t kTimeout = 1'250'000'000;
 constexpr std::int64_t kNow = 1'700'000'000 * kSecond;
@@ -52,5 +51,4 @@ TEST(CommandStamp, FarthestOfTheWireOverflowsNothing) {
   EXPECT_EQ(judge_stamp(1, kFarthest, kTimeout).verdict, StampVerdict::kTooOld);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

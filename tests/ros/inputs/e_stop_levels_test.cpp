@@ -3,16 +3,14 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 using testing::ElementsAre;
 
 constexpr bool kTrue = true;
 constexpr bool kFalse = false;
 
-class EStopLevelsTest : public testing::Test {
- protected:
+struct EStopLevelsTest : testing::Test {
   EStopLevels levels_;
 };
 
@@ -113,5 +111,4 @@ TEST_F(EStopLevelsTest, UnderEverNewNamesTakeBoundedMemoryAndNoneIsLost) {
   EXPECT_TRUE(levels_.stopped()) << "/panel_4999 says true";
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -4,13 +4,10 @@
 #include <gtest/gtest.h>
 
 #include <boost/make_shared.hpp>
-#include <string>
-#include <vector>
 
 #include "ros/nanoseconds.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 using testing::ElementsAre;
 using testing::IsEmpty;
@@ -19,8 +16,7 @@ constexpr std::int64_t kWindow = kSecond;
 
 constexpr std::int64_t kInTransit = MotionRequests::in_transit_ns(1'000'000);
 
-class MotionRequestsTest : public testing::Test {
- protected:
+struct MotionRequestsTest : testing::Test {
   MotionRequestsTest() {
     requests_.set_window(kWindow);
     requests_.follow(permission_, now_);
@@ -119,8 +115,7 @@ TEST_F(MotionRequestsTest, OfClosedConnectionsAreForgottenBeyondABound) {
 }
 
 /// The nodes that sent lately.
-class SendersTest : public MotionRequestsTest {
- protected:
+struct SendersTest : MotionRequestsTest {
   void send(const std::string& name, std::int64_t at) {
     requests_.sent({name, connections_.emplace_back(boost::make_shared<char>()), name}, at);
   }
@@ -155,8 +150,7 @@ TEST_F(SendersTest, AreListedUpToABound) {
 }
 
 /// This controller was started beside a node that publishes already.
-class MotionRequestsOfARestartTest : public MotionRequestsTest {
- protected:
+struct MotionRequestsOfARestartTest : MotionRequestsTest {
   MotionRequestsOfARestartTest() {
     requests_ = MotionRequests();
     requests_.set_window(kWindow);
@@ -303,5 +297,4 @@ TEST_F(MotionRequestsTest, NothingIsRevokedWithoutARequest) {
   EXPECT_FALSE(requests_.revoked(teleop_));
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

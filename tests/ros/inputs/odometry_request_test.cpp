@@ -3,12 +3,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <cmath>
-#include <limits>
 #include <numbers>
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 using testing::HasSubstr;
 
@@ -42,5 +39,4 @@ TEST(OdometryRequest, IsAnsweredWithThePoseThatHolds) {
   EXPECT_EQ(taken_sentence({1, -2.5, 0.5}), "the pose is 1 m, -2.5 m, 0.5 rad from the next cycle on");
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

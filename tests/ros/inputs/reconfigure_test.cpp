@@ -4,10 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 const std::vector<LiveParameter> kParameters = {
     {.key = "max_linear_speed", .value = 1.0, .min = 0.001, .max = 50, .rule = "a number"},
@@ -92,5 +90,4 @@ TEST(Reconfigure, WhatIsShownIsTakenBack) {
             "{'keep_curvature': true, 'max_linear_speed': 1, 'feed_forward': {'mass': 12.5, 'yaw_inertia': 0.5}}");
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

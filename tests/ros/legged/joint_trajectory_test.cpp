@@ -3,23 +3,15 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <cmath>
-#include <functional>
-#include <limits>
-#include <string>
-#include <vector>
-
 #include "machine/description/robot_description.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 using testing::HasSubstr;
 using testing::StartsWith;
 
 /// The healthy message moves the first joint of quadbot by 0.2 rad in 1 s, and the second one back and forth.
-class JointTrajectoryTest : public testing::Test {
- protected:
+struct JointTrajectoryTest : testing::Test {
   void SetUp() override {
     for (std::size_t i = 0; i < kLegsJoints; ++i) start_[i] = robot_.joints[i].rest_position;
     message_.joint_names = {name(0), name(1)};
@@ -136,5 +128,4 @@ std::vector<BrokenMessage> broken_messages() {
 INSTANTIATE_TEST_SUITE_P(Each, BrokenTrajectory, testing::ValuesIn(broken_messages()),
                          [](const testing::TestParamInfo<BrokenMessage>& one) { return std::string(one.param.name); });
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

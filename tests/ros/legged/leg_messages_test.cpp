@@ -7,8 +7,7 @@
 
 #include "control/legged/walk/own_gaits.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 using testing::ElementsAre;
 using testing::HasSubstr;
@@ -98,5 +97,4 @@ TEST(SlopeWords, HaveTheMeasuredSlopeAndTheLargestOne) {
   EXPECT_EQ(slope_words(kReasonTooSteep, state, robot), " (by 11.5 deg, at most 14.3 deg)");
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

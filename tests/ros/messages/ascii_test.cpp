@@ -7,8 +7,7 @@
 #include "ros/reports/diagnostics.h"
 #include "signals/names.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 bool is_ascii(std::string_view text) {
   return std::ranges::all_of(text, [](char c) { return static_cast<unsigned char>(c) < 0x80; });
@@ -72,5 +71,4 @@ TEST(Ascii, IsWhatTheTablesHoldBesideTheirUnits) {
   look(kDegradedReasonNames);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -6,11 +6,7 @@
 #include <gtest/gtest.h>
 #include <robot_control/SafetyStatus.h>
 
-#include <limits>
-#include <vector>
-
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 using Bytes = std::vector<std::uint8_t>;
 
@@ -106,5 +102,4 @@ TEST(BoundedMessage, IsTheMessageItselfToItsPublisher) {
   EXPECT_STREQ(ros::message_traits::md5sum<BoundedTwist>(), ros::message_traits::md5sum<geometry_msgs::Twist>());
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

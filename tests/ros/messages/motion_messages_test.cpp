@@ -5,15 +5,13 @@
 
 #include <cmath>
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 using testing::Each;
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-class MotionMessagesTest : public testing::Test {
- protected:
+struct MotionMessagesTest : testing::Test {
   MotionMessagesTest() {
     robot_.base_link = "base_link";
     robot_.imu_link = "imu_link";
@@ -225,5 +223,4 @@ TEST_F(MotionMessagesTest, AnImuOfAnotherNodeIsTakenWithItsAgeAndItsGaps) {
   EXPECT_EQ(imu_sample(message, 1'000'000'000, -5).time_ns, 1'000'000'000);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -4,10 +4,7 @@
 #include <gtest/gtest.h>
 #include <ros/time.h>
 
-#include <limits>
-
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 using testing::ElementsAre;
 using testing::HasSubstr;
@@ -16,8 +13,7 @@ using testing::Not;
 
 constexpr std::int64_t kPeriod = 1'000'000;  // ns
 
-class SafetyStatusTest : public testing::Test {
- protected:
+struct SafetyStatusTest : testing::Test {
   SafetyStatusTest() {
     permit_.head = {.run = 7, .cycle = 1500, .stamp_ns = 1500 * kPeriod};
     permit_.action = PermitAction::kDrive;
@@ -215,5 +211,4 @@ TEST_F(SafetyStatusTest, ARemedyNamesTheProgramsOfTheRobot) {
               ElementsAre("look whether driver runs and gets its core", "look whether leg_controller runs"));
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -8,8 +8,7 @@
 #include "ros/nanoseconds.h"
 #include "rt/clock.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 TEST(TimeMap, AddsTheMeasuredOffset) {
   TimeMap map(ClockMode::kWall);
@@ -87,5 +86,4 @@ TEST(TimeMap, IsTheStampItselfInLockstep) {
   EXPECT_EQ(map.ros_ns(7 * kSecond), 7 * kSecond);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -7,19 +7,15 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
-#include <cerrno>
 #include <chrono>
 #include <thread>
-#include <vector>
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 constexpr rlim_t kLimit = 128;
 
 /// Healthy: a listening socket on the loopback, and a limit that leaves room for some connections.
-class AcceptedSocketsTest : public testing::Test {
- protected:
+struct AcceptedSocketsTest : testing::Test {
   AcceptedSocketsTest() : listening_(socket(AF_INET, SOCK_STREAM, 0)) {
     getrlimit(RLIMIT_NOFILE, &before_);
     const rlimit limit{.rlim_cur = kLimit, .rlim_max = before_.rlim_max};
@@ -179,5 +175,4 @@ TEST(Reserve, LeavesMostOfASmallLimit) {
   EXPECT_EQ(reserve_of(32), 8U);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

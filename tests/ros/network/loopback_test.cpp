@@ -8,14 +8,11 @@
 #include <unistd.h>
 
 #include <cstdlib>
-#include <string>
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 /// The healthy case is a process that has requested it, with ROS on the loopback.
-class LoopbackTest : public testing::Test {
- protected:
+struct LoopbackTest : testing::Test {
   LoopbackTest() {
     bind_as_ros_is_configured();
     unsetenv("ROS_HOSTNAME");
@@ -76,5 +73,4 @@ TEST_F(LoopbackTest, ARefusalOfTheKernelIsPassedOn) {
   EXPECT_EQ(errno, EBADF);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

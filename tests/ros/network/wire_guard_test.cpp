@@ -10,13 +10,10 @@
 
 #include <cstring>
 #include <random>
-#include <string>
-#include <vector>
 
 #include "ros/network/interposition.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 std::string field(const std::string& text, std::uint32_t length) {
   std::string bytes(sizeof length, '\0');
@@ -144,5 +141,4 @@ TEST(WireGuard, ARequestHasAnEnd) {
   close(file);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

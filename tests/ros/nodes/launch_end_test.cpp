@@ -2,8 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 using namespace std::string_literals;
 
@@ -24,5 +23,4 @@ TEST(LaunchEnd, LeavesALaunchAloneThatDoesNotAskForIt) {
   unsetenv(kEndsLaunch);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -5,8 +5,7 @@
 
 #include "signals/names.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 using testing::HasSubstr;
 
@@ -17,8 +16,7 @@ std::string value_of(const DiagnosticReport& report, const std::string& key) {
   return "(none)";
 }
 
-class PermitReport : public testing::Test {
- protected:
+struct PermitReport : testing::Test {
   PermitReport() {
     permit_.state = SupervisorState::kDrive;
     permit_.action = PermitAction::kDrive;
@@ -56,8 +54,7 @@ TEST_F(PermitReport, ACauseOutweighsAWarning) {
   EXPECT_THAT(report().message().message, HasSubstr("tilted too far"));
 }
 
-class StateReport : public testing::Test {
- protected:
+struct StateReport : testing::Test {
   StateReport() {
     state_.head.run = 1;
     state_.base.flags = kStateValid;
@@ -237,5 +234,4 @@ TEST(GateReasons, NameTheControllerOfTheRobot) {
   EXPECT_EQ(value_of(report, "gate remedy: no_command"), "look whether leg_controller runs and gets its core");
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

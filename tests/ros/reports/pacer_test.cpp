@@ -2,8 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 constexpr std::int64_t kMillisecond = 1'000'000;
 
@@ -41,5 +40,4 @@ TEST(Pacer, RestartsWithARun) {
   EXPECT_TRUE(pacer.due(2, 2 * kMillisecond));
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

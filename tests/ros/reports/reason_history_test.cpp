@@ -1,15 +1,11 @@
 #include <gtest/gtest.h>
 
-#include <memory>
-
 #include "ros/nodes/commanded_node.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 /// A controller that publishes every cycle, and a thread that reads now and then.
-class ReasonHistoryTest : public testing::Test {
- protected:
+struct ReasonHistoryTest : testing::Test {
   void publish(std::uint64_t reasons, std::uint64_t run = 7) {
     newest_.head = {.run = run, .cycle = cycle_++};
     newest_.reasons = reasons;
@@ -56,5 +52,4 @@ TEST_F(ReasonHistoryTest, RestartsWithARun) {
   EXPECT_EQ(poll(), kReasonHolding);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -4,8 +4,7 @@
 
 #include "machine/wheeled/drive_train.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 DriveTrain two_wheels() {
   DriveTrain robot;
@@ -41,5 +40,4 @@ TEST(RobotReport, WarnsOfWhatAUserShouldLookAt) {
   EXPECT_EQ(sentence({.kind = Kind::kAssumed, .element = "<joint>", .text = "5 N·m"}), "assumed: <joint>: 5 N·m");
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -3,13 +3,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <limits>
-
 #include "ros/messages/status_messages.h"
 #include "signals/names.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 using testing::AllOf;
 using testing::ElementsAre;
@@ -200,5 +197,4 @@ TEST_F(StopLogTest, IsSilentWhileAHealthyRobotDrives) {
   }
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

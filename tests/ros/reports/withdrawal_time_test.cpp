@@ -2,12 +2,10 @@
 
 #include <gtest/gtest.h>
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 /// Looks at times that grow by one.
-class WithdrawalTimeTest : public testing::Test {
- protected:
+struct WithdrawalTimeTest : testing::Test {
   void observe(PermitAction action, std::uint64_t causes = 0) {
     permit_.action = action;
     permit_.causes = causes;
@@ -56,5 +54,4 @@ TEST_F(WithdrawalTimeTest, IsTheLookAfterAStopThatWasReleasedBetweenTwo) {
   EXPECT_EQ(time_.last_ns(), 3);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -3,8 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 using ::testing::HasSubstr;
 
@@ -41,5 +40,4 @@ TEST(CommandLine, EverythingElseIsRefusedInOneMessage) {
             "see rosrun robot_control telemetry --help\n");
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

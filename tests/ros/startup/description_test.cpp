@@ -3,15 +3,13 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 using testing::HasSubstr;
 using testing::Not;
 
 /// Healthy: the YAML file names diffbot, the server is empty.
-class ChosenDescription : public testing::Test {
- protected:
+struct ChosenDescription : testing::Test {
   ChosenDescription() { parameters_.urdf = PROJECT_DIRECTORY "/urdf/diffbot.urdf"; }
 
   RobotDescription chosen(bool urdf_requested, const std::string& published) const {
@@ -54,5 +52,4 @@ TEST_F(ChosenDescription, NeedsNoFileWhereOneIsPublished) {
   EXPECT_THROW(chosen(false, ""), RobotError);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

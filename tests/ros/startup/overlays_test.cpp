@@ -3,10 +3,7 @@
 #include <gtest/gtest.h>
 #include <xmlrpcpp/XmlRpcValue.h>
 
-#include <limits>
-
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 TEST(Overlays, NameEveryLeafWithItsPathAndOrigin) {
   XmlRpc::XmlRpcValue tree;
@@ -126,5 +123,4 @@ TEST(Overlays, PassAScalarInPlaceOfABlockOnToTheSchema) {
   EXPECT_EQ(overlays[0].path, "robot");
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -5,8 +5,7 @@
 
 #include "ros/nodes/node.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 using testing::HasSubstr;
 
@@ -33,5 +32,4 @@ TEST(PublishTick, EndsWhenTheFirstTopicIsDueWithinItsBounds) {
   EXPECT_EQ(publish_tick_ns(parameters, 0, {&slow}), 250'000);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -5,12 +5,10 @@
 #include "ros/nanoseconds.h"
 #include "support/temporary_folder.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 /// The healthy case has a state that learned something, and a file in an existing folder.
-class CalibrationKeeperTest : public testing::Test {
- protected:
+struct CalibrationKeeperTest : testing::Test {
   CalibrationKeeperTest() {
     robot_.name = "diffbot";
     robot_.wheels.resize(2);
@@ -93,5 +91,4 @@ TEST_F(CalibrationKeeperTest, GivesTheNextStartWhatItKept) {
   EXPECT_EQ(next.estimator.calibration.wheel_base_factor, 1);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

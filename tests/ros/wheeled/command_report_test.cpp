@@ -3,8 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 using testing::HasSubstr;
 using testing::IsEmpty;
@@ -245,5 +244,4 @@ TEST_F(CommandReportTest, NamesThePartsThatTheRobotIgnores) {
   EXPECT_THAT(lines[0].text, HasSubstr("linear.y, but a part of the request is ignored"));
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -5,13 +5,11 @@
 
 #include "signals/names.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 using testing::ElementsAre;
 
-class WheelMessagesTest : public testing::Test {
- protected:
+struct WheelMessagesTest : testing::Test {
   WheelMessagesTest() {
     robot_.joints.resize(3);
     robot_.joints[0].name = "left";
@@ -75,5 +73,4 @@ TEST_F(WheelMessagesTest, DriveStateReportsEveryReasonWithSentenceAndRemedy) {
   }
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -2,21 +2,11 @@
 
 #include "safety/monitor_fixture.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
-class EvidenceTest : public MonitorTest {
- protected:
-  static constexpr double kSlow = 0.6;  // m/s; the robot drives at 0.5
-
+struct EvidenceTest : MonitorTest {
   EvidenceTest() {
-    SafetyParameters chosen = without_heartbeat();
-    chosen.slow_speed = kSlow;
-    chosen.battery_low = {22, 0, Reaction::kSlow};
-    chosen.imu_lost.reaction = Reaction::kWarn;
-    sensors_.valid |= kValidBattery;
-    sensors_.battery_voltage = 24;
-    begin_with(chosen);
+    begin_with(without_heartbeat());
     drive();
   }
   std::vector<std::uint64_t> reported() const {
@@ -28,24 +18,6 @@ class EvidenceTest : public MonitorTest {
   }
   using Causes = std::vector<std::uint64_t>;
 };
-
-TEST_F(EvidenceTest, AWarningStaysForASecondAfterItsFactAndSlowsDownAsLong) {
-  sensors_.battery_voltage = 21;
-  step();
-  const std::uint64_t since = cycle();
-  steps(10);
-  sensors_.battery_voltage = 24;
-  steps(1000);
-  EXPECT_EQ(permit_.warnings, std::uint64_t{kCauseBatteryLow});
-  EXPECT_EQ(permit_.speed_limit, kSlow);
-  EXPECT_EQ(permit_.evidence[0].cycle, since);
-  EXPECT_EQ(permit_.evidence[0].value, 21);
-  EXPECT_EQ(permit_.evidence[0].limit, 22);
-  step();
-  EXPECT_EQ(permit_.warnings, 0u);
-  EXPECT_EQ(permit_.speed_limit, kNoSpeedLimit);
-  EXPECT_EQ(reported(), Causes());
-}
 
 TEST(Warnings, ACauseThatStopsInsteadIsNoWarningASecondLater) {
   Warnings warnings(1e-3);
@@ -59,40 +31,6 @@ TEST(Warnings, ACauseThatStopsInsteadIsNoWarningASecondLater) {
   EXPECT_EQ(warnings.evidence(kCauseTorqueOscillation).value, 1);
   warnings.step(active, 1002, 1);
   EXPECT_EQ(warnings.bits(), 0u);
-}
-
-TEST_F(EvidenceTest, AFactThatComesAndGoesIsOneWarning) {
-  sensors_.battery_voltage = 21;
-  step();
-  const std::uint64_t since = cycle();
-  for (int i = 0; i < 50; ++i) {
-    sensors_.battery_voltage = i % 2 == 0 ? 24 : 21;
-    steps(100);
-    ASSERT_EQ(permit_.warnings, std::uint64_t{kCauseBatteryLow});
-  }
-  EXPECT_EQ(permit_.evidence[0].cycle, since);
-}
-
-TEST_F(EvidenceTest, StandsInTheOrderInWhichCausesCameWithWarningsLast) {
-  sensors_.battery_voltage = 21;
-  step();
-  ++input_.operator_input.e_stop_services;
-  step();
-  const std::uint64_t stopped = cycle();
-  input_.command = nullptr;
-  steps(kLoss);
-  EXPECT_EQ(reported(), (Causes{kCauseEmergencyStopService, kCauseControllerLost, kCauseBatteryLow}));
-  EXPECT_EQ(permit_.evidence[0].cycle, stopped);
-  EXPECT_EQ(permit_.evidence[1].cycle, cycle());
-  EXPECT_EQ(permit_.evidence[1].value, static_cast<double>(kLoss));
-}
-
-TEST_F(EvidenceTest, NamesTheJoint) {
-  speed_[1] = 12;
-  steps(180);
-  ASSERT_NE(permit_.causes & kCauseRunaway, 0u);
-  EXPECT_EQ(permit_.evidence[0].joint, 1u);
-  EXPECT_GT(permit_.evidence[0].value, permit_.evidence[0].limit);
 }
 
 TEST_F(EvidenceTest, NamesTheJointWhoseSampleIsNotFinite) {
@@ -140,5 +78,4 @@ TEST_F(EvidenceTest, OutlivesANewRun) {
   EXPECT_EQ(reported(), Causes{kCauseEmergencyStopService});
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

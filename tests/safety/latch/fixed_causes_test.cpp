@@ -1,17 +1,13 @@
 // Every cause with a fixed reaction (fixed_reactions.h) latches in its cycle, and the gate then acts.
 
-#include <string>
-
 #include "safety/latch/fixed_reactions.h"
 #include "safety/monitor_fixture.h"
 #include "signals/names.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 /// The robot drives at full speed, with a heartbeat in the last cycle.
-class FixedCauses : public MonitorTest, public testing::WithParamInterface<FixedCause> {
- protected:
+struct FixedCauses : MonitorTest, testing::WithParamInterface<FixedCause> {
   FixedCauses() {
     drive();
     steps(20);
@@ -120,5 +116,4 @@ std::string name_of_rule(const testing::TestParamInfo<FixedCause>& info) {
 
 INSTANTIATE_TEST_SUITE_P(Every, FixedCauses, testing::ValuesIn(kFixedCauses), name_of_rule);
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -6,8 +6,7 @@
 #include "safety/latch/supervisor.h"
 #include "safety/latch/warnings.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 constexpr double kTick = 0.01;  // s: a warning is held for 100 cycles
 
@@ -69,8 +68,7 @@ TEST(ActiveCauses, OfAConditionThatIsNotActiveNoneIsAdded) {
   EXPECT_EQ(causes.measurements()[0].value, 12);
 }
 
-class EvidenceOf : public testing::Test {
- protected:
+struct EvidenceOf : testing::Test {
   std::array<CauseEvidence, kMaxEvidence> written() const {
     std::array<CauseEvidence, kMaxEvidence> out;
     out.fill({.cause = 1, .value = 99});
@@ -255,5 +253,4 @@ TEST(Warnings, EndWithTheRun) {
   EXPECT_FALSE(warnings.slowing());
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -2,13 +2,11 @@
 
 #include "safety/monitor_fixture.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 /// The healthy case is a run that was followed from cycle 0; estimator and controller computed every cycle. A motion is
 /// requested since the start, and silence_needed is 100 cycles.
-class MotionReleaseTest : public testing::Test {
- protected:
+struct MotionReleaseTest : testing::Test {
   static constexpr std::uint64_t kSilence = 100;
 
   MotionReleaseTest() {
@@ -361,5 +359,4 @@ TEST_F(MonitorTest, AResetInACycleWithoutACommandFrameIsRefused) {
   EXPECT_EQ(permit_.state, SupervisorState::kStopped);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

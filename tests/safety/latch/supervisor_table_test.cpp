@@ -2,13 +2,10 @@
 
 #include <gtest/gtest.h>
 
-#include <map>
-
 #include "safety/latch/fixed_reactions.h"
 #include "signals/names.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 using enum SupervisorState;
 using enum Trigger;
@@ -105,5 +102,4 @@ TEST(Names, SpeakOfEveryBitThatIsSet) {
   EXPECT_EQ(name_of(static_cast<SupervisorState>(99)), "UNKNOWN");
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -6,12 +6,10 @@
 
 #include <Eigen/Geometry>
 #include <cmath>
-#include <limits>
 
 #include "machine/gravity.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 using Eigen::Vector3d;
 
@@ -19,8 +17,7 @@ constexpr double kStep = 1e-3;  // s
 constexpr double kSmall = 1e-12;
 constexpr double kTime = Attitude::kTimeConstant;
 
-class AttitudeTest : public testing::Test {
- protected:
+struct AttitudeTest : testing::Test {
   AttitudeTest() { step({0, 0, 0}, rest()); }
 
   static Vector3d rest() { return {0, 0, kGravity}; }
@@ -213,5 +210,4 @@ TEST_F(AttitudeTest, AForceThatNoAccelerometerMeasuresDoesNotEnterTheMean) {
   EXPECT_NEAR(attitude.tilt(), 0, kSmall);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

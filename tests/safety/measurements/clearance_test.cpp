@@ -1,14 +1,9 @@
 #include "safety/measurements/clearance.h"
 
-#include <gtest/gtest.h>
-
-#include <limits>
-
 #include "safety/monitor_fixture.h"
 #include "support/constants.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 constexpr double kDelay = 0.05;
 constexpr double kDeceleration = 2;
@@ -113,5 +108,4 @@ TEST_F(MonitorTest, AControllerThatSlowsDownInTimeIsNot) {
   EXPECT_EQ(permit_.causes, 0u);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

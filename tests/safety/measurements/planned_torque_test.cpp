@@ -4,8 +4,7 @@
 
 #include "safety/monitor_fixture.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 DriveTrain heavy() {
   DriveTrain robot = two_wheels();
@@ -13,16 +12,11 @@ DriveTrain heavy() {
   return robot;
 }
 
-class PlannedTorqueTest : public MonitorTest {
- protected:
+struct PlannedTorqueTest : MonitorTest {
   PlannedTorqueTest() {
     SafetyParameters chosen = without_heartbeat();
     chosen.yaw_rate.reaction = chosen.torque_oscillation.reaction = Reaction::kOff;
-    monitor_ = SafetyMonitor(chosen, heavy(), kPeriod);
-    new_run();
-    steps(kStart);
-    drive();
-    steps(100);
+    drive_with(chosen, heavy());
   }
 
   /// Drives a curve around the left wheel, which stands and holds `torque`, N·m, for `cycles`. The right one gets
@@ -75,5 +69,4 @@ TEST_F(PlannedTorqueTest, AWheelThatPushesByMoreThanItsAccelerationTakesIs) {
   EXPECT_EQ(permit_.causes, std::uint64_t{kCauseStall});
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

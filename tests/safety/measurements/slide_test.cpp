@@ -4,13 +4,11 @@
 
 #include "safety/monitor_fixture.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 constexpr double kSecond = 1000;  // cycles
 
-class SlideTest : public MonitorTest {
- protected:
+struct SlideTest : MonitorTest {
   SlideTest() { begin_with(without_heartbeat()); }
   /// Drives until the bound has grown to the rims' speed.
   void drive_for_long() {
@@ -109,5 +107,4 @@ TEST(Slide, GrowsNoFasterThanTyresCarryAndNotBeyondTheLimit) {
   EXPECT_FALSE(slide.possible());
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

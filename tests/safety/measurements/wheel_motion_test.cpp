@@ -3,21 +3,18 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 #include <numbers>
 
 #include "safety/measurements/joint_standstill.h"
 #include "support/constants.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 constexpr std::uint64_t kSpeedWindow = 20;  // cycles
 constexpr double kAngleRounding = 1e-9;     // of angles of some rad, over 20 ms
 
 /// One wheel with an encoder.
-class WheelMotionTest : public testing::Test {
- protected:
+struct WheelMotionTest : testing::Test {
   WheelMotionTest() {
     set_joints_valid(sensors_, kValidMotion);
     sensors_.joint_count = 1;
@@ -158,5 +155,4 @@ TEST_F(WheelMotionTest, ACoarseCountAtTheEdgeIsNoMotion) {
   }
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -254,20 +254,6 @@ def assert_on_the_path(out, log):
     assert out["valid"][-1]
 
 
-def test_wheels_slower_than_the_imu_are_absent_in_between(log, samples):
-    slow = [table.copy() for table in samples]
-    off = np.arange(samples[0].size) % 20 != 0  # wheels at 50 Hz, IMU at 1 kHz
-    slow[1][off] = slow[2][off] = np.nan
-    assert_on_the_path(Estimator().process(*slow), log)
-
-
-def test_the_imu_slower_than_the_wheels_is_absent_in_between(log, samples):
-    slow = [table.copy() for table in samples]
-    off = np.arange(samples[0].size) % 10 != 3  # IMU at 100 Hz, wheels at 1 kHz
-    slow[3][off] = slow[4][off] = np.nan
-    assert_on_the_path(Estimator().process(*slow), log)
-
-
 def test_samples_may_come_at_irregular_times(log, samples):
     rows = np.cumsum(np.random.default_rng(4).integers(1, 20, size=2000))  # 1 … 19 ms apart
     rows = rows[rows < samples[0].size]
@@ -316,36 +302,6 @@ def test_wheels_alone_make_a_path(log, samples):
     out = Estimator().process(*samples[:3])
     assert_on_the_path(out, log)  # the simulated wheels hardly slip, and match the URDF
     assert np.all(out["flags"] & FLAGS["no_gyro"])
-
-
-@pytest.mark.parametrize("accelerometer", [True, False])
-def test_without_a_gyro_the_wheels_are_not_calibrated_and_the_yaw_is_less_certain(log, samples, accelerometer):
-    time, left, right, _, accel = samples
-    out = Estimator().process(time, left, right * 1.01, accel=accel if accelerometer else None)
-    assert out["radius_ratio"][-1] == pytest.approx(1, abs=1e-3)
-    assert out["radius_ratio_deviation"][-1] > 0.009  # the parameter's 0.01, less what rounding and counts reveal
-    _, yaw = path_error(out, log)
-    assert yaw > 0.05  # 1 % of 3.5 m over a base of 0.5 m: 0.07 rad
-    assert yaw < 2 * np.sqrt(out["pose_covariance"][-1, 5, 5])
-
-
-def test_a_row_without_any_sample_does_no_harm(log, samples):
-    holes = [table.copy() for table in samples]
-    for table in holes[1:]:
-        table[5000:5003] = np.nan
-    assert_on_the_path(Estimator().process(*holes), log)
-
-
-def test_what_is_not_finite_never_gets_into_the_state(log, samples):
-    spoilt = [table.copy() for table in samples]
-    spoilt[1][2000] = np.inf
-    spoilt[2][2500] = -np.inf
-    spoilt[3][3000] = (np.nan, 0.0, 0.1)
-    spoilt[4][3500] = np.inf
-    out = Estimator().process(*spoilt)
-    for name, values in out.items():
-        assert np.all(np.isfinite(values)), name
-    assert_on_the_path(out, log)
 
 
 @pytest.mark.parametrize(
@@ -417,15 +373,6 @@ def test_parameters_reach_the_filter(samples):
     assert rough["pose_covariance"][-1, 0, 0] > 10 * usual["pose_covariance"][-1, 0, 0]
 
 
-def test_a_coarse_encoder_is_no_slip_when_its_counts_are_given(log, samples):
-    coarse = [table.copy() for table in samples]
-    for table in coarse[1:3]:
-        table[:] = np.floor(table / (2 * np.pi) * 360) * (2 * np.pi / 360)
-    out = Estimator(encoder_counts=360).process(*coarse)
-    assert not np.any(out["flags"] & FLAGS["slip"])
-    assert_on_the_path(out, log)
-
-
 def test_what_was_learned_is_kept_and_read_again(tmp_path, samples):
     path = tmp_path / "calibration.yaml"
     est = Estimator()
@@ -472,35 +419,3 @@ def test_other_threads_run_meanwhile_and_may_not_enter():
             pass
     assert turns > 100
     assert refused > 100
-
-
-@pytest.mark.parametrize("rate", [10, 20, 100, 1000])
-@pytest.mark.parametrize("turned", [3.0, 12.0, 42.0])
-@pytest.mark.parametrize("gap", [0.0, 0.5])
-def test_encoders_that_begin_again_at_zero_are_no_travel(rate, turned, gap):
-    """At 0.3 m/s, `gap` seconds without a reading before; `turned` rad until then."""
-    speed = 3.0  # rad/s
-    time = np.arange(0, turned / speed + gap + 3, 1 / rate)
-    angle = speed * np.maximum(time - 1, 0)
-    restart = np.searchsorted(time, 1 + turned / speed)
-    again = np.searchsorted(time, 1 + turned / speed + gap)
-    angle[restart:] -= angle[again]
-    angle[restart:again] = np.nan
-    gyro, accel = np.zeros((time.size, 3)), np.tile([0.0, 0.0, 9.81], (time.size, 1))
-    for given in ({}, {"urdf": DIFFBOT}):
-        estimator = Estimator(**(given or {"wheel_radius": 0.1, "wheel_base": 0.5}))
-        out = estimator.process(time, angle, angle, gyro, accel)
-        restarted = np.flatnonzero(out["flags"] & FLAGS["encoder_restarted"])
-        assert restarted.tolist() == [again + 4], "after four readings at its new zero"
-        lost = 0.1 * speed * (gap + 5 / rate)
-        assert 0.1 * speed * (time[-1] - 1) - out["x"][-1] == pytest.approx(lost / 2, abs=0.06 + lost / 2), given
-
-
-def test_a_wheel_that_rolls_back_to_its_zero_travels():
-    """Also with messages that hold the same angle for a tenth of a second."""
-    time = np.arange(0, 12, 0.01)
-    for hold in (1, 10):
-        angle = 8 * np.sin(time - 1)[np.arange(time.size) // hold * hold] * (time >= 1)
-        out = Estimator(wheel_radius=0.1, wheel_base=0.5).process(time, angle, angle)
-        assert not (out["flags"] & FLAGS["encoder_restarted"]).any()
-        assert out["wheel_x"][-1] == pytest.approx(0.1 * angle[-1], abs=1e-9)

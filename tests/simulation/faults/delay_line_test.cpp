@@ -2,8 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include "support/allocation_guard.h"
-
 namespace robot_control::tests {
 
 TEST(DelayLine, GivesWhatWentInSoManyStepsAgo) {
@@ -41,17 +39,6 @@ TEST(DelayLine, ForgetsWhenFilled) {
 
 TEST(DelayLine, RefusesADelayItCannotHold) {
   EXPECT_THROW((DelayLine<int, 5>(6)), std::invalid_argument);
-}
-
-TEST(DelayLine, NeverAllocates) {
-  DelayLine<double, 100> line(100);
-  const AllocationGuard guard;
-  line.fill(0);
-  for (double value = 0; value < 200; ++value) {
-    double passed = value;
-    line.step(passed);
-  }
-  EXPECT_EQ(guard.count(), 0u);
 }
 
 }  // namespace robot_control::tests

@@ -17,8 +17,7 @@
 
 namespace robot_control {
 
-class QuadrupedLoop {
- public:
+struct QuadrupedLoop {
   explicit QuadrupedLoop(const LegModel& robot, std::uint64_t seed = 0, ErrorLevel errors = ErrorLevel::kIdeal)
       : QuadrupedLoop(robot, parameters(seed, errors)) {}
   QuadrupedLoop(const LegModel& robot, const Parameters& parameters)

@@ -1,4 +1,3 @@
-#!/usr/bin/python3
 """The console while master and console are killed: its emergency stop works, or says that it does not."""
 
 from __future__ import annotations
@@ -7,7 +6,6 @@ import asyncio
 import importlib.util
 
 import rospy
-import rostest
 from robot_control.robot.ros_master import Master as RunningMaster
 from system.console.console_pages import DrivingPage, answer, driving_page, until
 from system.losses_support import Master
@@ -68,7 +66,3 @@ class ConsoleMasterTest(RobotTestCase):
         self.assertIn("no node receives the topic e_stop", said["text"])
         self.assertIn("Use the button on the robot", said["text"])
         wait_for("no stop of the robot", lambda: "e_stop_service" not in self.robot.causes)
-
-
-if __name__ == "__main__":
-    rostest.rosrun("robot_control", "console_master", ConsoleMasterTest)

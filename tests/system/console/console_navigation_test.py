@@ -1,4 +1,3 @@
-#!/usr/bin/python3
 """The console's map in a browser: the place of the robot, a goal and its cancel, each by a press and a drag."""
 
 import contextlib
@@ -9,7 +8,6 @@ from pathlib import Path
 
 import numpy as np
 import rospy
-import rostest
 from geometry_msgs.msg import PoseStamped, PoseWithCovarianceStamped
 from robot_control._navigation import write_map
 from robot_control.drive.path.frames import Tf
@@ -124,7 +122,3 @@ class ConsoleNavigationTest(ConsoleTestCase):
         self.stroke(browser, "set-goal", 0.5)
         self.waits_for(browser, "the goal", lambda: abs(self.robot.pose.x - here.x - 0.5) < AT_GOAL)
         self.robot.await_rest()
-
-
-if __name__ == "__main__":
-    rostest.rosrun("robot_control", "console_navigation", ConsoleNavigationTest)

@@ -1,7 +1,5 @@
-#!/usr/bin/python3
 """Every way to let go of the robot, really done in a browser, 20 times; once each stands in console_test.py."""
 
-import rostest
 from system.console.console_support import ConsoleTestCase
 
 TRIALS = 20
@@ -14,7 +12,3 @@ class ConsoleReleaseTest(ConsoleTestCase):
             self.lets_go_of_what_the_page_notices()
             self.lets_go_when_something_falls_silent()
             self.lets_go_when_something_ends()
-
-
-if __name__ == "__main__":
-    rostest.rosrun("robot_control", "console_release", ConsoleReleaseTest)

@@ -1,4 +1,3 @@
-#!/usr/bin/python3
 """Robots in the browser: shapes, meshes of STL and DAE, what is missing or broken, and names that are scripts."""
 
 import os
@@ -8,9 +7,8 @@ import unittest
 from pathlib import Path
 
 import rospy
-import rostest
 from system import rosunit_skips
-from system.system_support import init_test_node, repository, wait_for
+from system.system_support import repository, wait_for
 
 from bench.console.browser import Browser, missing
 from bench.console.process import Console
@@ -54,7 +52,6 @@ class ConsoleRobotsTest(unittest.TestCase):
 
     @classmethod
     def setUpClass(cls) -> None:
-        init_test_node("console_robots")
         if not missing():
             os.environ["ROS_PACKAGE_PATH"] = f"{corpus() or ''}:{os.environ.get('ROS_PACKAGE_PATH', '')}"
             cls.console, cls.browser = Console(), Browser()
@@ -120,7 +117,3 @@ class ConsoleRobotsTest(unittest.TestCase):
                 self.assertEqual(browser.text("scene-note"), "")
                 self.assertEqual(browser.problems(), [])
                 self.picture(browser, name)
-
-
-if __name__ == "__main__":
-    rostest.rosrun("robot_control", "console_robots", ConsoleRobotsTest)

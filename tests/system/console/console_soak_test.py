@@ -1,10 +1,8 @@
-#!/usr/bin/python3
 """Half an hour of one page that shows a robot which drives: neither browser nor server grow. CONSOLE_SOAK_MINUTES=N."""
 
 import os
 import time
 
-import rostest
 from system.console.console_support import SPEED, ConsoleTestCase
 from system.system_support import wait_for
 
@@ -47,7 +45,3 @@ class ConsoleSoakTest(ConsoleTestCase):
         self.assertLessEqual(server_now - server, SERVER_GROWTH)
         self.assertLessEqual(redraw, REDRAW)
         self.assertEqual(browser.problems(), [])
-
-
-if __name__ == "__main__":
-    rostest.rosrun("robot_control", "console_soak", ConsoleSoakTest)

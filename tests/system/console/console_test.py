@@ -1,10 +1,8 @@
-#!/usr/bin/python3
 """The console in a real browser: the page on a screen and on a phone, and every way to let go, once."""
 
 import signal
 import time
 
-import rostest
 from system.console.console_support import SPEED, ConsoleTestCase
 from system.system_support import again_after_a_stall, wait_for
 
@@ -82,7 +80,3 @@ class ConsoleTest(ConsoleTestCase):
 
     def test_4_what_ends_is_zero_in_time(self) -> None:
         self.lets_go_when_something_ends()
-
-
-if __name__ == "__main__":
-    rostest.rosrun("robot_control", "console", ConsoleTest)

@@ -1,10 +1,8 @@
-#!/usr/bin/python3
 """The topic `clearance`: the free way ahead caps the speed."""
 
 import math
 
 import rospy
-import rostest
 from std_msgs.msg import Float64
 from system.system_support import RobotTestCase, wait_for
 
@@ -48,7 +46,3 @@ class ClearanceTest(RobotTestCase):
         self.clearance.publish(math.inf)
         wait_for("the limit to end", lambda: self.robot.status.speed_limit > 0)
         self.assertEqual(self.robot.causes, set())
-
-
-if __name__ == "__main__":
-    rostest.rosrun("robot_control", "clearance", ClearanceTest)

@@ -1,4 +1,3 @@
-#!/usr/bin/python3
 """A list of command sources, on a running robot: priority, timeout, lock; teleop.py and drive_path.py find theirs."""
 
 import itertools
@@ -9,7 +8,6 @@ from dataclasses import astuple
 
 import roslib.packages
 import rospy
-import rostest
 from geometry_msgs.msg import PoseStamped, TwistStamped
 from nav_msgs.msg import Path as PathMessage
 from robot_control.msg import DriveState, SafetyStatus
@@ -212,7 +210,3 @@ class CommandSourcesTest(RobotTestCase):
         path.send_signal(signal.SIGINT)
         self.assertEqual(path.wait(), 1)
         self.assertEqual(last[-1], 0.0)
-
-
-if __name__ == "__main__":
-    rostest.rosrun("robot_control", "command_sources", CommandSourcesTest)

@@ -1,4 +1,3 @@
-#!/usr/bin/python3
 """Commands with stamps, from a sender that slept and from clocks that jump."""
 
 import os
@@ -7,7 +6,6 @@ import time
 from pathlib import Path
 
 import rospy
-import rostest
 from geometry_msgs.msg import TwistStamped
 from system.commands_support import StampedSender
 from system.losses_support import JumpingClock
@@ -121,7 +119,3 @@ class CommandsTest(RobotTestCase):
                 time.sleep(0.01)
         self.clock.jump(0.0)
         return slowest
-
-
-if __name__ == "__main__":
-    rostest.rosrun("robot_control", "commands", CommandsTest)

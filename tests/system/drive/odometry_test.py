@@ -1,11 +1,9 @@
-#!/usr/bin/python3
 """state_estimator publishes odometry and sets its pose on request."""
 
 import math
 
 import numpy as np
 import rospy
-import rostest
 from nav_msgs.msg import Odometry
 from robot_control.robot.pose import rotation, yaw_of
 from robot_control.srv import InjectFault, SetOdometry, SetOdometryResponse
@@ -96,7 +94,3 @@ class OdometryTest(RobotTestCase):
             self.inject("gyro", "ok")
         wait_for("imu/data again", lambda: self.imu.count > count)
         wait_for("no warning", lambda: "wheels alone" not in self.robot.reports[ESTIMATOR].message)
-
-
-if __name__ == "__main__":
-    rostest.rosrun("robot_control", "odometry", OdometryTest)

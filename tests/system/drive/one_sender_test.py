@@ -1,8 +1,6 @@
-#!/usr/bin/python3
 """`one_sender: true`: while two nodes send commands the robot obeys neither."""
 
 import rospy
-import rostest
 from system.commands_support import StampedSender
 from system.system_support import CONTROLLER, LIMIT, Program, RobotTestCase, wait_for
 
@@ -38,7 +36,3 @@ class OneSenderTest(RobotTestCase):
 
     def send(self) -> None:
         self.robot.send(0.5, 0.0)
-
-
-if __name__ == "__main__":
-    rostest.rosrun("robot_control", "one_sender", OneSenderTest)

@@ -1,4 +1,3 @@
-#!/usr/bin/python3
 """pad.py as a process with a pad of this machine: held, released, unplugged and plugged in again while it drives.
 
 The kernel of a test machine has no uinput, so the library is a fake one (tests/support/fake_evdev). The case of a real
@@ -8,7 +7,6 @@ device in test_pad.py compares its interface with the real one's.
 import time
 
 import rospy
-import rostest
 from geometry_msgs.msg import TwistStamped
 from system.fake_pad import ENABLE, FakePad
 from system.system_support import RobotTestCase, again_after_a_stall, wait_for
@@ -69,7 +67,3 @@ class PadTest(RobotTestCase):
         time.sleep(0.5)  # pad.py sees the release, and then the button
         self.plug(ENABLE, forward=FORWARD)
         wait_for("0.3 m/s", lambda: self.robot.speed > 0.27)
-
-
-if __name__ == "__main__":
-    rostest.rosrun("robot_control", "pad", PadTest)

@@ -1,4 +1,3 @@
-#!/usr/bin/python3
 """teleop.py in a pseudo-terminal, beside a running robot: keys move it, and every end of the keys stops it."""
 
 import math
@@ -11,7 +10,6 @@ from pathlib import Path
 import numpy as np
 import roslib.packages
 import rospy
-import rostest
 from robot_control.data.run_log import read_log
 from robot_control.drive.keys.operator import RESET_PAUSE
 from std_msgs.msg import Empty
@@ -149,7 +147,3 @@ class TeleopTest(RobotTestCase):
         median = 1e-6 * statistics.median(delays)
         print(f"key to wheel torque: median {median:.1f} ms, worst {1e-6 * max(delays):.1f} ms of {len(delays)}")
         self.assertLess(median, 1000 * LATENCY)
-
-
-if __name__ == "__main__":
-    rostest.rosrun("robot_control", "teleop", TeleopTest)

@@ -1,11 +1,9 @@
-#!/usr/bin/python3
 """A machine that starts slowly, never, or not at all: what it waits for is said everywhere, and nothing moves."""
 
 import math
 import time
 
 import rospy
-import rostest
 from diagnostic_msgs.msg import DiagnosticArray
 from robot_control.msg import RobotStatus, SafetyStatus
 from system.drivers.driver_support import LEFT, STANDING, DriverTestCase
@@ -82,7 +80,3 @@ class DriverStartTest(DriverTestCase):
         program = Program("driver")
         self.assertNotEqual(program.wait(), 0)
         self.assertIn("/nowhere/drives.yaml", program.output)
-
-
-if __name__ == "__main__":
-    rostest.rosrun("robot_control", "driver_start", DriverStartTest)

@@ -19,7 +19,6 @@ from system.system_support import (
     STALL_CAUSES,
     Program,
     Robot,
-    init_test_node,
     repository,
     wait_for,
 )
@@ -38,7 +37,6 @@ class DriverTestCase(unittest.TestCase):
 
     @classmethod
     def setUpClass(cls) -> None:
-        init_test_node(cls.__name__)
         folder = tempfile.TemporaryDirectory(prefix="driver-test-")
         cls.addClassCleanup(folder.cleanup)
         drives = yaml.safe_load((repository() / "config" / "drives" / "odrive.yaml").read_text())

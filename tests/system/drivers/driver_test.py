@@ -1,11 +1,9 @@
-#!/usr/bin/python3
 """The program `driver` loses its drives, its IMU, or its life."""
 
 import signal
 import time
 
 import rospy
-import rostest
 from robot_control.msg import SafetyStatus
 from sensor_msgs.msg import Imu
 from std_msgs.msg import Header
@@ -88,7 +86,3 @@ class DriverTest(DriverTestCase):
         self.wait_for("rest", lambda: abs(self.true_speed) < STANDING, every=lambda: self.robot.send(0.5, 0.2))
         self.release()
         self.drive()
-
-
-if __name__ == "__main__":
-    rostest.rosrun("robot_control", "driver", DriverTest)

@@ -1,4 +1,3 @@
-#!/usr/bin/python3
 """data_return.py beside robot_status.py: it sends at rest alone, with the lowest priority, and says how far it is."""
 
 import os
@@ -7,11 +6,10 @@ import unittest
 from pathlib import Path
 
 import rospy
-import rostest
 import yaml
 from robot_control.data.data_return.fetch import verify
 from robot_control.msg import RobotStatus
-from system.system_support import Program, Robot, init_test_node, wait_for
+from system.system_support import Program, Robot, wait_for
 
 from bench.data_return.server import missing
 
@@ -22,7 +20,6 @@ PATIENCE = 240.0
 @unittest.skipIf(missing(), missing())
 class DataReturnTest(unittest.TestCase):
     def test_it_sends_at_rest_and_says_so(self) -> None:
-        init_test_node("data_return_test")
         reports: list[RobotStatus] = []
         rospy.Subscriber("robot_status", RobotStatus, reports.append)
         folder = Path(self.enterContext(tempfile.TemporaryDirectory()))
@@ -64,7 +61,3 @@ class DataReturnTest(unittest.TestCase):
         problem = "data_return: run.2.bag: "
         wait_for("the problem", lambda: any(each.startswith(problem) for each in reports[-1].problems), PATIENCE)
         self.assertTrue(other.exists())
-
-
-if __name__ == "__main__":
-    rostest.rosrun("robot_control", "data_return", DataReturnTest)

@@ -1,4 +1,3 @@
-#!/usr/bin/python3
 """Any robot drives, however its description is given: by the plant's argument or on the parameter server."""
 
 import tempfile
@@ -6,8 +5,7 @@ import unittest
 from pathlib import Path
 
 import rospy
-import rostest
-from system.system_support import DRIVER, LOOP, Program, Robot, init_test_node, repository, wait_for
+from system.system_support import DRIVER, LOOP, Program, Robot, repository, wait_for
 
 PORT, STARBOARD = "port_joint", "starboard_joint"
 
@@ -63,8 +61,3 @@ class DescriptionTest(unittest.TestCase):
             self.assertEqual(rospy.get_param("robot_description"), free_robot(), "the user's, left as it was")
         finally:
             rospy.delete_param("robot_description")
-
-
-if __name__ == "__main__":
-    init_test_node("description_test")
-    rostest.rosrun("robot_control", "description", DescriptionTest)

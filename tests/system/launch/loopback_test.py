@@ -1,4 +1,3 @@
-#!/usr/bin/python3
 """The nodes of sim.launch listen on the loopback, unless set otherwise."""
 
 import os
@@ -11,7 +10,6 @@ import unittest
 from pathlib import Path
 from urllib.parse import urlparse
 
-import rostest
 from system.system_support import LIMIT, LOOP, repository, wait_for
 
 LOOPBACK, EVERYWHERE = "127.0.0.1", "0.0.0.0"
@@ -98,7 +96,3 @@ class LoopbackTest(unittest.TestCase):
     def test_the_argument_outweighs_the_environment(self) -> None:
         for node, addresses in self.listening("ip:=127.0.0.1", ROS_HOSTNAME=socket.gethostname()).items():
             self.assertEqual(addresses, {LOOPBACK}, node)
-
-
-if __name__ == "__main__":
-    rostest.rosrun("robot_control", "loopback", LoopbackTest)

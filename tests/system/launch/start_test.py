@@ -1,4 +1,3 @@
-#!/usr/bin/python3
 """A program that must not start refuses with a reason, and does not disturb running ones."""
 
 import os
@@ -11,7 +10,6 @@ from contextlib import contextmanager
 from pathlib import Path
 
 import rospy
-import rostest
 import yaml
 from geometry_msgs.msg import Twist, TwistStamped
 from robot_control.msg import SafetyStatus
@@ -23,7 +21,6 @@ from system.system_support import (
     LOOP,
     MONITOR,
     Program,
-    init_test_node,
     refusal,
     repository,
     running_robot,
@@ -64,10 +61,6 @@ def free_port() -> int:
 
 
 class StartTest(unittest.TestCase):
-    @classmethod
-    def setUpClass(cls) -> None:
-        init_test_node("start_test")
-
     def test_prints_its_usage_or_refuses_an_argument_without_a_master(self) -> None:
         environment = {"ROS_MASTER_URI": f"http://127.0.0.1:{free_port()}"}
         programs = [*LOOP, "telemetry"]
@@ -256,7 +249,3 @@ class StartTest(unittest.TestCase):
         for name in names:
             if rospy.has_param(name):
                 rospy.delete_param(name)
-
-
-if __name__ == "__main__":
-    rostest.rosrun("robot_control", "start", StartTest)

@@ -10,7 +10,7 @@ from nav_msgs.msg import Odometry
 from robot_control.msg import LegState, SafetyStatus
 from std_srvs.srv import Trigger
 from system.launch_support import Launch
-from system.system_support import LIMIT, LOOP_WITNESS, STALL_CAUSES, init_test_node, wait_for
+from system.system_support import LIMIT, LOOP_WITNESS, STALL_CAUSES, wait_for
 
 BUS = f"legs{os.getpid()}.{time.monotonic_ns()}"
 
@@ -26,8 +26,7 @@ class LegsTestCase(unittest.TestCase):
     stopped_at = 0.0
 
     @classmethod
-    def launch_quadbot(cls, name: str) -> None:
-        init_test_node(f"{name}_test")
+    def launch_quadbot(cls) -> None:
         rospy.Subscriber("leg_state", LegState, lambda message: setattr(cls, "legs", message))
         rospy.Subscriber("safety_status", SafetyStatus, cls.receive_safety)
         rospy.Subscriber("ground_truth/odom", Odometry, cls.receive_truth)

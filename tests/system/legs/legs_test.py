@@ -1,4 +1,3 @@
-#!/usr/bin/python3
 """sim.launch robot:=quadbot: a robot on legs stands up, sways, lifts a foot, moves its joints, is stopped and reset."""
 
 import math
@@ -7,7 +6,6 @@ import time
 from collections.abc import Callable
 
 import rospy
-import rostest
 from geometry_msgs.msg import Twist
 from robot_control.msg import BodyPose, FootTarget, RobotStatus
 from robot_control.srv import SetGait, SetPosture
@@ -24,7 +22,7 @@ QUADBOT = repository() / "urdf" / "quadbot.urdf"
 class LegsTest(LegsTestCase):
     @classmethod
     def setUpClass(cls) -> None:
-        cls.launch_quadbot("legs")
+        cls.launch_quadbot()
         cls.status: RobotStatus | None = None
         rospy.Subscriber("robot_status", RobotStatus, lambda message: setattr(cls, "status", message))
         cls.body_pose = rospy.Publisher("body_pose", BodyPose, queue_size=1, tcp_nodelay=True)
@@ -223,7 +221,3 @@ class LegsTest(LegsTestCase):
         self.assertIn("kind:=legs", text)
         wheels = refusal("leg_controller", f"_urdf:={repository() / 'urdf' / 'diffbot.urdf'}")
         self.assertIn("start diff_drive_controller instead", wheels)
-
-
-if __name__ == "__main__":
-    rostest.rosrun("robot_control", "legs_test", LegsTest)

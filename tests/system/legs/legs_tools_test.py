@@ -1,4 +1,3 @@
-#!/usr/bin/python3
 """The programs that drive a robot on wheels drive the quadbot: by a path, a goal, keys, a pad and a page."""
 
 import math
@@ -11,7 +10,6 @@ from pathlib import Path
 import actionlib
 import roslib.packages
 import rospy
-import rostest
 import yaml
 from actionlib_msgs.msg import GoalStatus
 from geometry_msgs.msg import PoseStamped, TwistStamped
@@ -53,7 +51,7 @@ class LegsToolsTest(LegsTestCase):
     def setUpClass(cls) -> None:
         cls.limited: TwistStamped | None = None
         cls.places: list[tuple[float, float]] = []
-        cls.launch_quadbot("legs_tools")
+        cls.launch_quadbot()
         rospy.Subscriber("cmd_vel_out", TwistStamped, lambda message: setattr(cls, "limited", message))
         wait_for("a place", lambda: cls.places, 2 * LIMIT)
 
@@ -186,7 +184,3 @@ class LegsToolsTest(LegsTestCase):
         browser.click("lie")
         wait_for("lying", lambda: self.legs.posture == "lying")
         self.assertEqual(browser.problems(), [])
-
-
-if __name__ == "__main__":
-    rostest.rosrun("robot_control", "legs_tools_test", LegsToolsTest)

@@ -1,4 +1,3 @@
-#!/usr/bin/python3
 """slam and localization on a running robot in the scene `room`: a map grows, is saved, and the robot is found in it."""
 
 import math
@@ -7,7 +6,6 @@ import unittest
 from pathlib import Path
 
 import rospy
-import rostest
 from geometry_msgs.msg import PoseWithCovarianceStamped, Twist
 from nav_msgs.msg import OccupancyGrid
 from robot_control.msg import LocalizationState
@@ -116,7 +114,3 @@ class MappingTest(RobotTestCase):
         finally:
             other.unregister()
             slam.end()
-
-
-if __name__ == "__main__":
-    rostest.rosrun("robot_control", "mapping", MappingTest)

@@ -1,4 +1,3 @@
-#!/usr/bin/python3
 """navigate on a running robot in the scene `room`: goals of its clients reach follow_path and end with a reason."""
 
 import math
@@ -8,7 +7,6 @@ from typing import Any
 
 import actionlib
 import rospy
-import rostest
 from actionlib_msgs.msg import GoalStatus
 from geometry_msgs.msg import PoseStamped
 from nav_msgs.msg import OccupancyGrid
@@ -126,7 +124,3 @@ class NavigationTest(RobotTestCase):
         self.assertTrue(client.wait_for_result(rospy.Duration(10.0)))
         self.assertEqual((client.get_state(), client.get_result().reason), (PREEMPTED, "cancelled"))
         self.robot.await_rest()
-
-
-if __name__ == "__main__":
-    rostest.rosrun("robot_control", "navigation", NavigationTest)

@@ -1,17 +1,15 @@
-#!/usr/bin/python3
 """The laser in simulated time: the plant publishes every scan, and each has the bits of ClosedLoop in that cycle."""
 
 import unittest
 
 import numpy as np
 import rospy
-import rostest
 from robot_control import ClosedLoop
 from robot_control.srv import Step
 from sensor_msgs.msg import LaserScan
 from std_srvs.srv import SetBool
 from system.navigation.navigation_support import share
-from system.system_support import CONTROLLER, DRIVER, ESTIMATOR, LIMIT, MONITOR, Robot, init_test_node, wait_for
+from system.system_support import CONTROLLER, DRIVER, ESTIMATOR, LIMIT, MONITOR, Robot, wait_for
 
 CYCLES, EVERY = 3001, 100
 """Cycles that are stepped at once, faster than real time; those between two scans."""
@@ -19,7 +17,6 @@ CYCLES, EVERY = 3001, 100
 
 class ScanLockstepTest(unittest.TestCase):
     def test_the_same_bits_in_every_scan(self) -> None:
-        init_test_node("scan_lockstep_test")
         scene = str(share("urdf/scenes/crowd.xml"))
         rospy.set_param("/use_sim_time", True)
         rospy.set_param("/robot/clock", "lockstep")
@@ -42,7 +39,3 @@ class ScanLockstepTest(unittest.TestCase):
             expected = loop.scan()
             self.assertEqual(message.header.stamp.to_nsec() - scans[0].header.stamp.to_nsec(), expected["stamp_ns"])
             self.assertEqual(np.float32(message.ranges).tobytes(), expected["ranges"].tobytes())
-
-
-if __name__ == "__main__":
-    rostest.rosrun("robot_control", "scan_lockstep", ScanLockstepTest)

@@ -1,4 +1,3 @@
-#!/usr/bin/python3
 """A flood on every input of the robot harms no deadline.
 
 Quiet and flooded spells alternate on one drive. The log gives the 99th percentile of the time from the driver's wake-up
@@ -15,7 +14,6 @@ import time
 from pathlib import Path
 
 import numpy as np
-import rostest
 from robot_control.data.run_log import read_log
 from system.losses_support import FAST, FULL_SPEED
 from system.system_support import Program, RobotTestCase, wait_for
@@ -106,7 +104,3 @@ class FloodTest(RobotTestCase):
         self.assertIn("clearance", sent)
         self.assertLessEqual(ratio, WORST_RATIO)
         self.assertTrue(all(node.running for node in self.robot.nodes.values()))
-
-
-if __name__ == "__main__":
-    rostest.rosrun("robot_control", "flood", FloodTest)

@@ -1,4 +1,3 @@
-#!/usr/bin/python3
 """The real-time threads of a driven robot are watched from outside, and their latencies are measured thrice.
 
 In the nightly run the kernel's tracepoints watch them, too, which see every system call and page fault of a thread.
@@ -18,7 +17,6 @@ from pathlib import Path
 import numpy as np
 import rosbag
 import rospy
-import rostest
 from diagnostic_msgs.msg import DiagnosticArray
 from nav_msgs.msg import Odometry
 from robot_control.data.run_log import FloatArray, Log, read_log
@@ -36,7 +34,6 @@ from system.system_support import (
     MONITOR,
     Program,
     Robot,
-    init_test_node,
     nightly,
     wait_for,
 )
@@ -56,7 +53,6 @@ class RealtimeLatencyTest(unittest.TestCase):
 
     @classmethod
     def setUpClass(cls) -> None:
-        init_test_node("realtime_latency_test")
         cls.folder = Path(tempfile.mkdtemp())
         cls.diagnostics: dict[str, dict[str, str]] = {}
         cls.warnings: list[str] = []
@@ -202,7 +198,3 @@ PUBLISHED = {DRIVER: "sensors", ESTIMATOR: "state", CONTROLLER: "command", MONIT
 
 def known(values: FloatArray) -> FloatArray:
     return values[~np.isnan(values)]
-
-
-if __name__ == "__main__":
-    rostest.rosrun("robot_control", "realtime_latency", RealtimeLatencyTest)

@@ -1,4 +1,3 @@
-#!/usr/bin/python3
 """A program makes more connections than the nodes have descriptors: the robot drives on, and e_stop_trigger works."""
 
 import contextlib
@@ -10,7 +9,6 @@ import xmlrpc.client
 from collections.abc import Iterator
 
 import rospy
-import rostest
 from robot_control.msg import SafetyStatus
 from system.system_support import DRIVER, MONITOR, RobotTestCase, wait_for
 
@@ -99,7 +97,3 @@ class DescriptorsTest(RobotTestCase):
                 stack.enter_context(connections(target, target.xmlrpc, DESCRIPTORS + 50))
             self.drive_on()
             self.stop()
-
-
-if __name__ == "__main__":
-    rostest.rosrun("robot_control", "descriptors", DescriptorsTest)

@@ -1,17 +1,14 @@
-#!/usr/bin/python3
 """The link of a remote teleop is cut while the robot drives: two networks, a cable between them. Needs root."""
 
 import signal
 import subprocess
-import sys
 import time
 import unittest
 
 import rospy
-import rostest
 from robot_control.msg import SafetyStatus
 from system.losses_support import FAST, Link, Master, enter_network_of_own
-from system.system_support import LIMIT, Robot, init_test_node, wait_for
+from system.system_support import LIMIT, Robot, wait_for
 
 HEARTBEAT_TIMEOUT = 0.5
 """s"""
@@ -30,37 +27,32 @@ def await_end(program: subprocess.Popen[bytes]) -> None:
         program.wait()
 
 
+REFUSED = ""
+try:
+    enter_network_of_own()
+except OSError as error:
+    REFUSED = f"no network namespace is granted ({error.strerror})"
+else:
+    LINK, MASTER = Link(), Master(Link.HERE)
+
+
+@unittest.skipIf(REFUSED, REFUSED)
 class LossesLinkTest(unittest.TestCase):
-    refused = ""
-    link: Link
-
-    @classmethod
-    def setUpClass(cls) -> None:
-        if cls.refused:
-            return
-        cls.link = Link()
-        cls.master = Master(Link.HERE)
-        init_test_node("losses_link")
-
     @classmethod
     def tearDownClass(cls) -> None:
-        if cls.refused:
-            return
         rospy.signal_shutdown("done")  # asks the master, whose address goes with the link
-        cls.link.end()
-        cls.master.kill()
+        LINK.end()
+        MASTER.kill()
 
     def setUp(self) -> None:
-        if self.refused:
-            self.skipTest(f"no network namespace is granted ({self.refused})")
-        self.link.plug(True)
+        LINK.plug(True)
         self.teleop: list[subprocess.Popen[bytes]] = []
         self.robot = Robot()
 
     def tearDown(self) -> None:
         # Senders end in order: the master announces a dying sender to the next controller, which may then miss another
         # one.
-        self.link.plug(True)
+        LINK.plug(True)
         for program in self.teleop:
             program.send_signal(signal.SIGCONT)
             program.send_signal(signal.SIGINT)
@@ -88,7 +80,7 @@ class LossesLinkTest(unittest.TestCase):
             time.sleep(0.02)
 
     def publish(self, *arguments: str) -> None:
-        self.teleop.append(self.link.run_there("rostopic", "pub", "-r", "20", *arguments))
+        self.teleop.append(LINK.run_there("rostopic", "pub", "-r", "20", *arguments))
 
     def publish_commands(self) -> None:
         self.publish("/cmd_vel", "geometry_msgs/Twist", "{linear: {x: 1.0}}")
@@ -108,7 +100,7 @@ class LossesLinkTest(unittest.TestCase):
     def cut(self) -> float:
         """Cuts the link; returns the seconds until the robot stands."""
         began = time.monotonic()
-        self.link.plug(False)
+        LINK.plug(False)
         wait_for("standstill", lambda: abs(self.robot.speed) < 0.01)
         return time.monotonic() - began
 
@@ -118,7 +110,7 @@ class LossesLinkTest(unittest.TestCase):
         print(f"  standstill {seconds:.2f} s after the cut, heartbeat_timeout {HEARTBEAT_TIMEOUT} s")
         self.assertIn("heartbeat_lost", self.robot.causes)
         self.assertLess(seconds, 10 * (HEARTBEAT_TIMEOUT + RAMP))
-        self.link.plug(True)
+        LINK.plug(True)
         time.sleep(2.0)  # TCP sends again; teleop never stopped requesting
         self.assertLess(abs(self.robot.speed), 0.01)
         self.assertEqual(self.robot.state, SafetyStatus.STOPPED)
@@ -137,11 +129,3 @@ class LossesLinkTest(unittest.TestCase):
         self.assertGreater(seconds, COMMAND_TIMEOUT - 0.1, "it came to rest for another reason")
         self.assertLess(seconds, 10 * (COMMAND_TIMEOUT + RAMP))
         self.assertNotIn("heartbeat_lost", self.robot.causes)
-
-
-if __name__ == "__main__":
-    try:
-        enter_network_of_own()
-    except OSError as error:
-        LossesLinkTest.refused = str(error.strerror)
-    sys.exit(rostest.rosrun("robot_control", "losses_link", LossesLinkTest))

@@ -1,10 +1,8 @@
-#!/usr/bin/python3
 """roscore is killed while the robot drives: existing connections stay, and the loop never calls the master."""
 
 import time
 
 import rospy
-import rostest
 from std_srvs.srv import Trigger
 from system.losses_support import FAST, FULL_SPEED, KEPT, Master
 from system.system_support import LOOP, RobotTestCase, wait_for
@@ -50,7 +48,3 @@ class LossesMasterTest(RobotTestCase):
         self.assertIn("e_stop", reset().message)
         robot.send_e_stop(False)
         wait_for("a release", lambda: bool(reset().success), every=lambda: robot.send(0.0, 0.0))
-
-
-if __name__ == "__main__":
-    rostest.rosrun("robot_control", "losses_master", LossesMasterTest)

@@ -1,4 +1,3 @@
-#!/usr/bin/python3
 """ROS time jumps while the robot drives in `clock: wall`: the loop counts cycles, and paces them by a clock that does
 not jump."""
 
@@ -11,7 +10,6 @@ from collections.abc import Callable
 from pathlib import Path
 
 import rospy
-import rostest
 from diagnostic_msgs.msg import DiagnosticArray
 from nav_msgs.msg import Odometry
 from rosgraph_msgs.msg import Clock
@@ -81,7 +79,3 @@ class LossesTimeTest(RobotTestCase):
         finally:
             rospy.set_param("/use_sim_time", False)
             publisher.unregister()
-
-
-if __name__ == "__main__":
-    rostest.rosrun("robot_control", "losses_time", LossesTimeTest)

@@ -1,21 +1,13 @@
-#!/usr/bin/python3
 """Any node may be killed with -9 and started again while the others run."""
 
-import itertools
-import signal
 import subprocess
 import sys
 import time
 
 import rospy
-import rostest
-from nav_msgs.msg import Odometry
 from robot_control.msg import SafetyStatus
-from sensor_msgs.msg import JointState
 from system.system_support import (
     CONTROLLER,
-    DRIVER,
-    ESTIMATOR,
     LIMIT,
     LOOP,
     MONITOR,
@@ -130,55 +122,6 @@ class RestartTest(RobotTestCase):
         sender.say("open")
         self.expect_refusal(sender)
 
-    def test_estimator_continues_where_it_was(self) -> None:
-        self.robot.drive_until("0.3 m", lambda: self.robot.distance > 0.3)
-        self.robot.nodes[ESTIMATOR].kill()
-        wait_for("estimator_lost", lambda: "estimator_lost" in self.robot.causes)
-        wait_for("its name", lambda: ESTIMATOR in self.robot.status.missing)
-        before, count = self.robot.distance, self.robot.odom_count
-        self.robot.start(ESTIMATOR)
-        wait_for("odometry", lambda: self.robot.odom_count > count)
-        # It stopped from 0.5 m/s meanwhile: less than 0.2 m with the brake. A jump to zero would be 0.3 m.
-        self.assertLess(abs(self.robot.distance - before), 0.2)
-        self.expect_latched("estimator_lost")
-
-    def test_stamps_follow_the_time_that_a_stopped_plant_lets_slip(self) -> None:
-        robot = self.robot
-        stamps: dict[str, list[float]] = {"odom": [], "joint_states": []}
-        subscribers = [
-            rospy.Subscriber("odom", Odometry, lambda m: stamps["odom"].append(m.header.stamp.to_sec())),
-            rospy.Subscriber(
-                "joint_states", JointState, lambda m: stamps["joint_states"].append(m.header.stamp.to_sec())
-            ),
-        ]
-        wait_for("messages before", lambda: all(stamps.values()))
-        plant = robot.nodes[DRIVER]
-        plant.send_signal(signal.SIGSTOP)
-        try:
-            time.sleep(3.0)  # time that slips
-            wait_for("driver_lost", lambda: "driver_lost" in robot.causes)
-        finally:
-            plant.send_signal(signal.SIGCONT)
-        self.expect_latched("driver_lost")
-        wait_for("stamps of now", lambda: abs(rospy.get_time() - robot.odom.header.stamp.to_sec()) < 1.0)
-        for subscriber in subscribers:
-            subscriber.unregister()
-        for name, times in stamps.items():
-            self.assertGreater(min(b - a for a, b in itertools.pairwise(times)), 0, f"{name}: stamps grow")
-
-    def test_a_latch_outlives_plant_and_monitor(self) -> None:
-        robot = self.robot
-        for order, number in (((DRIVER, MONITOR), signal.SIGKILL), ((MONITOR, DRIVER), signal.SIGTERM)):
-            robot.call("e_stop_trigger")
-            wait_for("the stop", lambda: "e_stop_service" in robot.causes)
-            for name in order:
-                robot.nodes[name].send_signal(number)
-                robot.nodes[name].wait()
-            robot.status = None
-            robot.start(*order)
-            wait_for("safety_status", lambda: robot.status is not None and robot.status.run > 1)
-            self.expect_latched("e_stop_service")
-
     def test_a_level_of_e_stop_outlives_the_monitor_until_its_publisher_says_false(self) -> None:
         robot = self.robot
         robot.send_e_stop(True)
@@ -194,27 +137,3 @@ class RestartTest(RobotTestCase):
         self.assertIn(f"{rospy.get_name()} (has sent nothing since safety_monitor was restarted)", refused.message)
         robot.send_e_stop(False)
         self.expect_latched("e_stop_topic")
-
-    def test_a_start_beside_a_living_sender_waits_for_a_zero_request(self) -> None:
-        robot = self.robot
-        for name in LOOP:
-            robot.nodes[name].end()
-        robot.status = None
-        robot.start()
-        wait_for(
-            "a robot that waits for a zero request",
-            lambda: robot.status is not None and robot.status.awaiting_zero_request,
-            every=lambda: robot.send(0.5, 0.2),
-        )
-        end = time.monotonic() + 2.0  # longer than cmd_vel_timeout
-        while time.monotonic() < end:
-            robot.send(0.5, 0.2)
-            self.assertEqual(robot.state, SafetyStatus.INIT)
-            self.assertLess(abs(robot.speed), 0.01)
-            time.sleep(0.02)
-        wait_for("READY", lambda: robot.state == SafetyStatus.READY, every=lambda: robot.send(0, 0))
-        robot.drive_until("0.5 m/s", robot.driving)
-
-
-if __name__ == "__main__":
-    rostest.rosrun("robot_control", "restart", RestartTest)

@@ -1,4 +1,3 @@
-#!/usr/bin/python3
 """calibrate.py beside a running robot: it measures, writes, and stops on request."""
 
 import contextlib
@@ -9,7 +8,6 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import rospy
-import rostest
 import yaml
 from system.system_support import (
     DRIVER,
@@ -17,7 +15,6 @@ from system.system_support import (
     Program,
     RobotTestCase,
     again_after_a_stall,
-    init_test_node,
     nightly,
     wait_for,
 )
@@ -29,7 +26,6 @@ SHORT = ("--truth", "--yes", "--distance=1", "--repeats=1", "--side=1", "--runs=
 class CalibrateTest(RobotTestCase):
     @classmethod
     def setUpClass(cls) -> None:
-        init_test_node(cls.__name__)
         for name, value in HIDDEN.items():
             rospy.set_param(f"{DRIVER}/{name}", value)
         super().setUpClass()
@@ -105,7 +101,3 @@ class CalibrateTest(RobotTestCase):
         words = self.refused("--truth")
         self.assertIn("It drives by itself and sees nothing", words)
         self.assertIn("there is no terminal", words)
-
-
-if __name__ == "__main__":
-    rostest.rosrun("robot_control", "calibrate", CalibrateTest)

@@ -1,4 +1,3 @@
-#!/usr/bin/python3
 """The calibration of state_estimator survives its end, and no other values replace it."""
 
 import shutil
@@ -8,9 +7,8 @@ from collections.abc import Callable
 from pathlib import Path
 
 import rospy
-import rostest
 import yaml
-from system.system_support import DRIVER, ESTIMATOR, RobotTestCase, init_test_node, refusal, wait_for
+from system.system_support import DRIVER, ESTIMATOR, RobotTestCase, refusal, wait_for
 
 LEFT = 0.02
 """Relative error of the left radius, hidden in the plant: the ratio is 1/1.02"""
@@ -19,7 +17,6 @@ LEFT = 0.02
 class CalibrationTest(RobotTestCase):
     @classmethod
     def setUpClass(cls) -> None:
-        init_test_node(cls.__name__)
         cls.folder = Path(tempfile.mkdtemp(prefix="calibration-test-"))
         cls.file = cls.folder / "learned.yaml"
         rospy.set_param(f"{DRIVER}/left_radius_error", LEFT)
@@ -97,7 +94,3 @@ class CalibrationTest(RobotTestCase):
         self.file.unlink()
         self.start_estimator()
         self.robot.release()
-
-
-if __name__ == "__main__":
-    rostest.rosrun("robot_control", "calibration", CalibrationTest)

@@ -1,4 +1,3 @@
-#!/usr/bin/python3
 """identify.py beside a running robot: it measures, writes, and stops on request."""
 
 import contextlib
@@ -9,7 +8,6 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import rospy
-import rostest
 import yaml
 from system.system_support import (
     CONTROLLER,
@@ -17,7 +15,6 @@ from system.system_support import (
     Program,
     RobotTestCase,
     again_after_a_stall,
-    init_test_node,
     nightly,
     wait_for,
 )
@@ -30,7 +27,6 @@ BEGINNING = 60.0
 class IdentifyTest(RobotTestCase):
     @classmethod
     def setUpClass(cls) -> None:
-        init_test_node(cls.__name__)
         rospy.set_param(f"{DRIVER}/motor_friction", FRICTION)
         rospy.set_param(f"{DRIVER}/payload", 3.0)
         super().setUpClass()
@@ -132,7 +128,3 @@ class IdentifyTest(RobotTestCase):
         self.addCleanup(sender.end)
         wait_for("the sender", lambda: "cmd_vel 1" in sender.output)
         self.assertIn("/send_cmd may send on cmd_vel", self.refused())
-
-
-if __name__ == "__main__":
-    rostest.rosrun("robot_control", "identify", IdentifyTest)

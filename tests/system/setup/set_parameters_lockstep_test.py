@@ -1,4 +1,3 @@
-#!/usr/bin/python3
 """set_parameter_map between the same two cycles: four nodes and the loop in one process give the same numbers."""
 
 import contextlib
@@ -8,7 +7,6 @@ from pathlib import Path
 
 import numpy as np
 import rospy
-import rostest
 from robot_control import ClosedLoop
 from robot_control.data.run_log import LogError, read_log
 from robot_control.srv import SetParameters, Step
@@ -21,7 +19,6 @@ from system.system_support import (
     MONITOR,
     Program,
     Robot,
-    init_test_node,
     wait_for,
 )
 
@@ -39,7 +36,6 @@ REQUESTS = (
 
 class SetParametersLockstepTest(unittest.TestCase):
     def setUp(self) -> None:
-        init_test_node("set_parameters_lockstep_test")
         folder = tempfile.TemporaryDirectory()
         self.addCleanup(folder.cleanup)
         self.log = Path(folder.name, "run.bag")
@@ -89,7 +85,3 @@ class SetParametersLockstepTest(unittest.TestCase):
         for name, values in read_log(self.log).items():
             np.testing.assert_array_equal(values, expected[name], err_msg=name)
         self.assertEqual(set(expected["tuning"]), {0.0, 1.0, 2.0})
-
-
-if __name__ == "__main__":
-    rostest.rosrun("robot_control", "set_parameters_lockstep", SetParametersLockstepTest)

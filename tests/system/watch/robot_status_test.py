@@ -1,11 +1,9 @@
-#!/usr/bin/python3
 """robot_status reports a robot from its absence to its stop."""
 
 import time
 import unittest
 
 import rospy
-import rostest
 from robot_control.msg import LegState, RobotKind, RobotStatus, SafetyStatus
 from system.system_support import (
     CONTROLLER,
@@ -13,7 +11,6 @@ from system.system_support import (
     STALL_CAUSES,
     Program,
     Robot,
-    init_test_node,
     truncated_messages,
     wait_for,
 )
@@ -23,7 +20,6 @@ WHEELED = ("differential_drive", CONTROLLER)
 
 class RobotStatusTest(unittest.TestCase):
     def setUp(self) -> None:
-        init_test_node("robot_status_test")
         self.reports: list[RobotStatus] = []
         self.robot = Robot()
         self.addCleanup(self.robot.end)
@@ -77,7 +73,3 @@ class RobotStatusTest(unittest.TestCase):
         self.robot.nodes[ESTIMATOR].kill()
         wait_for("the loss", lambda: "state_estimator is silent" in self.reports[-1].problems)
         self.assertTrue(self.status.running)
-
-
-if __name__ == "__main__":
-    rostest.rosrun("robot_control", "robot_status", RobotStatusTest)

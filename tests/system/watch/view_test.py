@@ -1,4 +1,3 @@
-#!/usr/bin/python3
 """view.launch on a display without a screen: RViz shows the robot, without an error or a warning in its log.
 
 ROBOT_CONTROL_SCREENSHOT=FILE.png keeps the picture, to be looked at.
@@ -16,7 +15,6 @@ from pathlib import Path
 
 import numpy as np
 import rospy
-import rostest
 from nav_msgs.msg import Path as PathMessage
 from system.system_support import Program, RobotTestCase, nightly, repository, wait_for
 
@@ -96,7 +94,3 @@ class ViewTest(RobotTestCase):
         import matplotlib.image
 
         matplotlib.image.imsave(os.environ["ROBOT_CONTROL_SCREENSHOT"], np.ascontiguousarray(picture))
-
-
-if __name__ == "__main__":
-    rostest.rosrun("robot_control", "view", ViewTest)

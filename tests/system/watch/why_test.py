@@ -1,11 +1,9 @@
-#!/usr/bin/python3
 """why.py answers beside a running robot, and beside none."""
 
 import signal
 import socket
 import time
 
-import rostest
 from system.system_support import LIMIT, LOOP, Program, RobotTestCase, wait_for
 
 
@@ -109,7 +107,3 @@ class WhyTest(RobotTestCase):
             program.end()
             self.robot.send_e_stop(False)
             self.robot.release()
-
-
-if __name__ == "__main__":
-    rostest.rosrun("robot_control", "why", WhyTest)

@@ -2,14 +2,12 @@
 
 #include "control/legged/ideal_legs.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 constexpr double kStep = 0.01;  // s
 using Positions = std::array<double, kLegsJoints>;
 
-class JointMotionOf : public testing::Test {
- protected:
+struct JointMotionOf : testing::Test {
   JointMotionOf() {
     for (std::size_t i = 0; i < kLegsJoints; ++i) {
       start_[i] = 0.1 * static_cast<double>(i);
@@ -82,8 +80,7 @@ TEST_F(JointMotionOf, StopsEachJointAsItsAccelerationAllows) {
 }
 
 /// The joints phase of the controller.
-class LyingJoints : public testing::Test {
- protected:
+struct LyingJoints : testing::Test {
   LyingJoints() {
     for (std::size_t i = 0; i < kLegsJoints; ++i) start_[i] = legs_.sensors.joints[i].position;
   }
@@ -170,5 +167,4 @@ TEST_F(LyingJoints, CarryTheirOwnWeightAlone) {
     EXPECT_NEAR(legs_.out.joints[i].effort, equations.bias[static_cast<Eigen::Index>(6 + i)], 1e-6) << i;
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

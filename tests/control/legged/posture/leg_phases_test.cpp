@@ -3,8 +3,7 @@
 #include "control/legged/ideal_legs.h"
 #include "control/legged/posture/ground_slope.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 double smooth(double part) {
   return part <= 0 ? 0 : part >= 1 ? 1 : part * part * (3 - 2 * part);
@@ -384,5 +383,4 @@ TEST(StandingLegs, NameARequestOfJoints) {
   EXPECT_EQ(legs.out.reasons, 0u);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -5,13 +5,11 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
-#include <optional>
 #include <random>
 
 #include "support/allocation_guard.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 using Qp = DualActiveSet<4, 8>;
 using Random = std::mt19937;
@@ -208,5 +206,4 @@ TEST(DualActiveSet, SolvesTheLargestProblemWithoutAllocation) {
   EXPECT_LT(slope.norm(), kPrecision * problem.gradient.norm());
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

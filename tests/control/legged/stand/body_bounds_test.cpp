@@ -4,8 +4,7 @@
 
 #include "control/legged/ideal_legs.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 class BodyBoundsOf : public testing::TestWithParam<std::string> {};
 
@@ -134,5 +133,4 @@ TEST(LyingDownTime, IsThatOfTheFootThenOfTheBodyThenOfTheRise) {
   EXPECT_NEAR(lying_down_time(robot), foot + n / w + 2 * w + 0.05 + 1.3, 1e-6);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -1,11 +1,8 @@
 /// The body of standing legs.
 
-#include <functional>
-
 #include "control/legged/ideal_legs.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 Request pose_of(const std::array<double, 6>& pose) {
   Request request;
@@ -259,5 +256,4 @@ TEST(BodyPose, AFootThatComesOutOfReachMovesItsJointsNoFasterThanTheyMay) {
   EXPECT_NE(legs.out.reasons & kReasonOutOfReach, 0u);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

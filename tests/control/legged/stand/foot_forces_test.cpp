@@ -4,10 +4,8 @@
 
 #include <Eigen/Geometry>
 #include <Eigen/QR>
-#include <limits>
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 /// Feet at four heights, and a load under which all push.
 FootForcesInput uneven() {
@@ -87,5 +85,4 @@ TEST(FootForces, AreZeroForALoadThatIsNoNumber) {
   for (const Eigen::Vector3d& force : foot_forces(input)) EXPECT_EQ(force, Eigen::Vector3d::Zero());
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -4,8 +4,7 @@
 
 #include "control/legged/ideal_legs.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 using Vector = Eigen::Matrix<double, kLeggedDofs, 1>;
 
@@ -153,5 +152,4 @@ TEST(LegEfforts, SmoothTheAcceleration) {
   EXPECT_GT(expected, 0.5);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

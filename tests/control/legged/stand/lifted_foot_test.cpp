@@ -2,8 +2,7 @@
 
 #include "control/legged/ideal_legs.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 Request lift_of(std::size_t leg, double x, double y, double height) {
   Request request = stance_of({ModeKind::kLift, leg});
@@ -11,8 +10,7 @@ Request lift_of(std::size_t leg, double x, double y, double height) {
   return request;
 }
 
-class LiftedFoot : public testing::TestWithParam<std::size_t> {
- protected:
+struct LiftedFoot : testing::TestWithParam<std::size_t> {
   static const IdealLegs& nominal() {
     static const IdealLegs kStanding = standing();
     return kStanding;
@@ -183,5 +181,4 @@ TEST_P(LiftedFoot, LeavesTheBodyItsNominalAttitude) {
 
 INSTANTIATE_TEST_SUITE_P(Legs, LiftedFoot, testing::Values(0, 1, 2, 3));
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -4,8 +4,7 @@
 
 #include <cmath>
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 constexpr double kRounding = 1e-12;
 
@@ -93,5 +92,4 @@ TEST(Foothold, StaysWithinReachOfTheLeg) {
   EXPECT_NEAR(beyond.y(), -0.47 * input.leg_length, kRounding);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -12,8 +12,7 @@
 #include "machine/gravity.h"
 #include "support/allocation_guard.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 constexpr double kMass = 12.7;           // kg
 constexpr double kHeight = 0.3;          // m, of the centre of gravity
@@ -330,5 +329,4 @@ INSTANTIATE_TEST_SUITE_P(Walks, RigidWalk,
                                          PlannedWalk{gait_named("walking_trot"), {0.5, 0, 0}},
                                          PlannedWalk{gait_named("crawl"), {0.2, 0, 0}}));
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

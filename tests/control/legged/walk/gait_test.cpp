@@ -3,12 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <random>
-#include <vector>
 
 #include "control/legged/walk/gait_table.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 constexpr int kParts = 1000;  // of a period
 
@@ -152,5 +150,4 @@ TEST(Gait, TimesGrowWithTheRootOfTheLegAndLengthsWithTheLeg) {
   EXPECT_EQ(larger.duty, trot.duty);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

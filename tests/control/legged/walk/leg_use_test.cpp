@@ -1,12 +1,9 @@
 #include "control/legged/walk/leg_use.h"
 
-#include <gtest/gtest.h>
-
 #include "control/legged/ideal_legs.h"
 #include "control/legged/walk/walking_speed.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 struct LegUseTest : testing::Test {
   LegModel robot = legged_robot("quadbot");
@@ -77,5 +74,4 @@ TEST_F(LegUseTest, GrowsWithALeanThatTurnsTheJointsFaster) {
   EXPECT_EQ(steady(twist, {0, 0, 0}), steady(twist));
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

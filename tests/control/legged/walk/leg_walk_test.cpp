@@ -5,8 +5,7 @@
 #include "control/legged/ideal_legs.h"
 #include "control/legged/walk/own_gaits.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 Request twist_of(double ahead, double left = 0, double turning = 0, const Mode& mode = {}) {
   Request request = stance_of(mode);
@@ -509,5 +508,4 @@ TEST(LegWalk, SetsAFootDownFirst) {
   EXPECT_TRUE(legs.walks());
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -2,8 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 const Eigen::Vector3d kFrom(0.1, -0.05, 0.02), kTo(0.3, 0.07, -0.01);
 constexpr double kTop = 0.09, kTime = 0.4;  // m, s
@@ -44,5 +43,4 @@ TEST(Swing, LeavesAndMeetsTheGroundWithoutSpeedAndWaitsThere) {
   }
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -9,8 +9,7 @@
 #include "signals/command_frame.h"
 #include "signals/legged/legged_command.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 constexpr double kPeriod = 0.001;  // s
 const LegControllerParameters kParameters{.max_linear_speed = 1.2,
@@ -175,5 +174,4 @@ TEST_F(TwistLimiterTest, TheStopDistanceIsThatOfTheRampAndOfHalfAPeriod) {
   }
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -1,14 +1,11 @@
 /// The laws of a walk, each over random states whose sensors and estimate fit each other.
 
-#include <gtest/gtest.h>
-
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <random>
-#include <vector>
 
 #include "control/legged/ideal_legs.h"
 #include "control/legged/walk/foothold.h"
@@ -16,8 +13,7 @@
 #include "control/legged/walk/swing.h"
 #include "control/legged/walk/walker.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 constexpr double kMillisecond = 0.001;  // s
 constexpr double kMu = 0.3;             // other than the default
@@ -641,5 +637,4 @@ TEST_F(WalkerLaws, KnowsTheFootThatIsFarthestFromItsPlace) {
   }
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

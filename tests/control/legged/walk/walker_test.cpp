@@ -2,17 +2,12 @@
 
 #include "control/legged/walk/walker.h"
 
-#include <gtest/gtest.h>
-
-#include <limits>
-
 #include "control/legged/walk/own_gaits.h"
 #include "control/legged/walk/walking_speed.h"
 #include "machine/legs/legs_corpus.h"
 #include "signals/legged/legged_command.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 /// quadbot in its nominal stance, whose estimate is right.
 struct WalkerTest : testing::Test {
@@ -90,5 +85,4 @@ TEST_F(WalkerTest, ACrawlIsSoSlowThatAFootReachesThroughItsStanceAfterTheEndOfTh
   EXPECT_DOUBLE_EQ(speeds[gait_named("trot")][0], 1.7);  // of any gait
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -1,16 +1,12 @@
 #include "control/legged/walk/walking_speed.h"
 
-#include <gtest/gtest.h>
-
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "control/legged/ideal_legs.h"
 #include "control/legged/walk/swing.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 constexpr double kFound = 0.015;  // of a speed: it is found by bisection, and at some places of a swing alone
 
@@ -175,5 +171,4 @@ TEST_F(WalkingSpeedTest, AnEmergencyEndsAWalkAfterTheSlowestAxisAndAPeriodOfTheC
   }
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

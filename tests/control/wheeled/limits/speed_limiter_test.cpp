@@ -4,7 +4,6 @@
 
 #include <cmath>
 #include <random>
-#include <utility>
 
 #include "control/wheeled/limits/limiter_properties.h"
 #include "signals/command_frame.h"
@@ -32,35 +31,6 @@ TEST(SpeedLimiter, ReachesOneMetrePerSecondInExactlyOneSecond) {
   EXPECT_EQ(limiter.step({1, 0}, kDt).linear, 1.0);
   EXPECT_EQ(limiter.acceleration().linear, 0.0);
   EXPECT_EQ(limiter.reasons(), 0u);
-}
-
-TEST(SpeedLimiter, DoesTheSameInReverseBitForBit) {
-  for (unsigned seed = 0; seed < 20; ++seed) {
-    std::mt19937 random(seed);
-    std::uniform_real_distribution<double> requested(-3, 3);
-    SpeedLimiter forward(kLimits);
-    SpeedLimiter reverse(kLimits);
-    PlanarTwist target;
-    for (int k = 0; k < 5000; ++k) {
-      if (k % 250 == 0) target = {requested(random), requested(random)};
-      const PlanarTwist ahead = forward.step(target, kDt);
-      const PlanarTwist back = reverse.step({-target.linear, -target.angular}, kDt);
-      ASSERT_EQ(ahead.linear, -back.linear) << "seed " << seed << " cycle " << k;
-      ASSERT_EQ(ahead.angular, -back.angular) << "seed " << seed << " cycle " << k;
-      ASSERT_EQ(forward.reasons(), reverse.reasons()) << "seed " << seed << " cycle " << k;
-    }
-  }
-}
-
-TEST(SpeedLimiter, KeepsTheCommandedCurvatureFromStandstillAndBackToIt) {
-  SpeedLimiter limiter(kLimits);
-  for (const double target : {1.0, 0.0}) {
-    for (int k = 0; k < (target > 0 ? 390 : 380); ++k) {
-      const PlanarTwist now = limiter.step({target * 0.5, target * 0.2}, kDt);
-      ASSERT_NEAR(now.angular, 0.4 * now.linear, 1e-13) << "cycle " << k;
-      ASSERT_TRUE(limiter.reasons() & kReasonCurvatureKept);
-    }
-  }
 }
 
 TEST(SpeedLimiter, KeepsTheCurvatureOfATooFastCommandAndSaysSo) {
@@ -149,43 +119,6 @@ TEST(SpeedLimiter, ReversesWithoutStoppingAndWithEachLimitOnItsSideOfZero) {
   const double before_zero = 1.5 / 10 / 2 + (1 - 0.0625) / 1.5 + 0.05;
   const double beyond_zero = 1 / 1.0 + 1.0 / 10 / 2;
   EXPECT_NEAR(cycles_to(limiter, {-1, 0}), 1000 * (before_zero + beyond_zero), 3);
-}
-
-TEST(SpeedLimiter, ReversesBothAxesOnTheLineThroughZero) {
-  SpeedLimiter limiter(kSmooth);
-  for (const double direction : {1.0, -1.0}) {
-    for (int k = 0; k < 2000; ++k) {
-      const PlanarTwist now = limiter.step({direction * 0.5, direction * 0.4}, kDt);
-      ASSERT_NEAR(now.angular, 0.8 * now.linear, 1e-12) << "cycle " << k;
-    }
-    EXPECT_EQ(limiter.value().linear, direction * 0.5);
-  }
-}
-
-TEST(SpeedLimiter, OvershootsATargetThatComesNearerByWhatIsUnavoidable) {
-  SpeedLimiter limiter(kSmooth);
-  for (int k = 0; k < 500; ++k) limiter.step({1, 0}, kDt);
-  const double speed = limiter.value().linear;
-  double highest = 0;
-  for (int k = 0; k < 2000; ++k) highest = std::fmax(highest, limiter.step({speed, 0}, kDt).linear);
-  const double unavoidable = 1.0 * 1.0 / (2 * 10);
-  EXPECT_LE(highest - speed, unavoidable);
-  EXPECT_GT(highest - speed, unavoidable - 1.0 * kDt) << "the acceleration of one cycle";
-  EXPECT_EQ(limiter.value().linear, speed);
-}
-
-TEST(SpeedLimiter, StopsAtZeroRatherThanBeyondItAndSaysSo) {
-  SpeedLimiter limiter(kSmooth);
-  for (int k = 0; k < 300; ++k) limiter.step({1, 0}, kDt);
-  while (limiter.value().linear > 0.02) limiter.step({-1, 0}, kDt);
-  std::uint64_t reasons = 0;
-  for (int k = 0; k < 100; ++k) {
-    ASSERT_GE(limiter.step({0, 0}, kDt).linear, 0) << k;
-    reasons |= limiter.reasons();
-  }
-  EXPECT_EQ(limiter.value().linear, 0);
-  EXPECT_EQ(limiter.acceleration().linear, 0);
-  EXPECT_TRUE(reasons & kReasonJerkYielded);
 }
 
 TEST(SpeedLimiter, SaysWhichLimitShapesTheMotion) {
@@ -408,23 +341,6 @@ TEST(SpeedLimiter, HasLimitsOfItsOwnInReverse) {
   EXPECT_NEAR(back.grows, 0.4, 1e-9);
   EXPECT_EQ(stop.end, 0);
   EXPECT_NEAR(stop.shrinks, 0.5, 1e-9);
-}
-
-TEST(SpeedLimiter, KeepsTheCurvatureOfASlowReverse) {
-  SpeedLimiter limiter(with_a_reverse_gear());
-  for (int k = 0; k < 3000; ++k) {
-    const PlanarTwist twist = limiter.step({-0.8, 0.4}, 1e-3);
-    ASSERT_NEAR(twist.angular, -0.5 * twist.linear, 1e-12) << k;
-  }
-  EXPECT_EQ(limiter.value().linear, -0.2);
-}
-
-TEST(SpeedLimiter, StandsWhereReverseIsForbidden) {
-  SpeedLimits limits = with_a_reverse_gear();
-  limits.linear.reverse_speed = 0;
-  SpeedLimiter limiter(limits);
-  drive_to(limiter, 0.5);
-  EXPECT_EQ(drive_to(limiter, -0.5).end, 0);
 }
 
 }  // namespace robot_control::tests

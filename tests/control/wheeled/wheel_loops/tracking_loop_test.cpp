@@ -6,7 +6,6 @@
 #include <cmath>
 #include <numbers>
 #include <random>
-#include <vector>
 
 namespace robot_control::tests {
 

@@ -4,7 +4,6 @@
 
 #include <cmath>
 #include <deque>
-#include <limits>
 
 #include "control/wheeled/wheel_loops/wheel_loop.h"
 #include "support/constants.h"

@@ -4,7 +4,6 @@
 
 #include <cmath>
 
-#include "support/allocation_guard.h"
 #include "support/constants.h"
 
 namespace robot_control::tests {
@@ -194,16 +193,6 @@ TEST(WheelLoop, HoldsAnIntegralWithinTheEffortLimit) {
   loop.step({.velocity = -10}, 1);
   loop.step({.velocity = -10}, 1);
   EXPECT_LT(loop.integral(), kLimit);
-}
-
-TEST(WheelLoop, DoesNotAllocate) {
-  WheelLoop loop = seeded();
-  const AllocationGuard guard;
-  for (int k = 0; k < 100; ++k) {
-    loop.measure({.position = 0.01 * k}, k % 3 + 1, k % 10 > 0);
-    loop.step({.velocity = 1, .acceleration = 1, .feed_forward = 0.1}, k % 3 + 1);
-  }
-  EXPECT_EQ(guard.count(), 0u);
 }
 
 TEST(WheelLoop, ForgetsWhatItCarriedWithoutAnIntegrator) {

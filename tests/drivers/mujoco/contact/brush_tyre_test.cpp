@@ -1,7 +1,5 @@
 /// The promises of the brush tyre, on robots that slide.
 
-#include <gtest/gtest.h>
-
 #include <cmath>
 
 #include "drivers/mujoco/constants.h"

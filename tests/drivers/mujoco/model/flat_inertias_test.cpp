@@ -1,7 +1,5 @@
 /// Inertias of flat and thin parts, as drawn or as repaired, are valid in every orientation.
 
-#include <gtest/gtest.h>
-
 #include <Eigen/Geometry>
 #include <random>
 

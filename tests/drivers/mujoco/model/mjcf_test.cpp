@@ -2,7 +2,6 @@
 
 #include "drivers/mujoco/model/mjcf.h"
 
-#include <gtest/gtest.h>
 #include <mujoco/mujoco.h>
 
 #include "drivers/mujoco/constants.h"

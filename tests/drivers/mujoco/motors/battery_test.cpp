@@ -2,8 +2,6 @@
 
 #include "drivers/mujoco/motors/battery.h"
 
-#include <gtest/gtest.h>
-
 #include "drivers/mujoco/plant_fixture.h"
 #include "support/message_of.h"
 

@@ -1,12 +1,8 @@
 /// An arm on a robot on wheels: joints that the controller does not drive have motors, and their brakes hold them.
 
-#include <gtest/gtest.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <sstream>
-#include <stdexcept>
 
 #include "drivers/mujoco/constants.h"
 #include "drivers/mujoco/motors/brake_limits.h"

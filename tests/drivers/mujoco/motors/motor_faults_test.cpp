@@ -5,11 +5,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <vector>
 
 #include "drivers/mujoco/constants.h"
 #include "drivers/mujoco/two_wheels.h"
-#include "support/allocation_guard.h"
 
 namespace robot_control::tests {
 
@@ -117,17 +115,6 @@ TEST_F(MotorFaultsTest, ABlockedRotorHoldsAFreeWheelAgainstTwiceTheMotorsTorque)
   // The wheel comes in with 10 rad/s: a = 1/2 leaves half of it in each step, at most 10·h·(1 + 1/2 + …) = 20 mrad,
   // and the load's own share.
   EXPECT_LT(farthest, 0.02 + 2 * load * 4 * kStep * kStep / kInertia);
-}
-
-TEST_F(MotorFaultsTest, NeverAllocate) {
-  const std::vector<JointCommand> commands(3);
-  const AllocationGuard guard;
-  for (std::size_t kind = 0; kind < kFaultKinds; ++kind) {
-    InjectedFaults faults{};
-    faults[0] = {FaultComponent::kMotor, kLeftWheel, static_cast<FaultKind>(kind)};
-    for (int i = 0; i < 50; ++i) faults_.receive(faults, cycle_++, commands);
-  }
-  EXPECT_EQ(guard.count(), 0u);
 }
 
 }  // namespace robot_control::tests

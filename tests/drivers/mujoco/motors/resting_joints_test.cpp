@@ -1,7 +1,5 @@
 /// Held joints whose range does not contain zero: they begin, and stay, where the range is nearest to it.
 
-#include <gtest/gtest.h>
-
 #include <algorithm>
 #include <array>
 

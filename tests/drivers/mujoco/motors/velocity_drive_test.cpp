@@ -4,8 +4,6 @@
 
 #include <gtest/gtest.h>
 
-#include <limits>
-
 namespace robot_control::tests {
 
 constexpr double kStep = 0.001;     // s

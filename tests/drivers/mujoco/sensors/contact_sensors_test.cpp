@@ -1,8 +1,6 @@
 /// The forces of the ground on the wheels hold whatever stands, accelerates and leans. diffbot's centre of gravity is
 /// 0.06 m behind the axle and its ball caster 0.25 m, so the wheels carry 0.76 of the weight.
 
-#include <gtest/gtest.h>
-
 #include <Eigen/Geometry>
 
 #include "drivers/mujoco/plant_fixture.h"

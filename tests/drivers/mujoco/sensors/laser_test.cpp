@@ -2,8 +2,6 @@
 
 #include "drivers/mujoco/sensors/laser.h"
 
-#include <gtest/gtest.h>
-
 #include <cmath>
 
 #include "drivers/mujoco/plant_fixture.h"

@@ -8,12 +8,9 @@
 
 #include <cmath>
 #include <numbers>
-#include <string>
-#include <vector>
 
 #include "drivers/driver.h"
 #include "drivers/mujoco/two_wheels.h"
-#include "support/allocation_guard.h"
 #include "support/message_of.h"
 
 namespace robot_control::tests {
@@ -258,18 +255,6 @@ TEST_F(SensorErrorsTest, DoNotDependOnErrorsOfOtherKinds) {
   }
 }
 
-TEST_F(SensorErrorsTest, AreTheSameBitsForTheSameSeedAndAfterAReset) {
-  SensorErrors first = errors();
-  const Record one = record(first, 1000);
-  EXPECT_EQ(record(1000).gyro, one.gyro);
-  first.reset();
-  const Record again = record(first, 1000);
-  EXPECT_EQ(again.gyro, one.gyro);
-  EXPECT_EQ(again.accelerometer, one.accelerometer);
-  parameters_.seed = 8;
-  EXPECT_NE(record(1000).gyro, one.gyro);
-}
-
 TEST_F(SensorErrorsTest, CountTheAngle) {
   SensorErrors encoder = errors();
   double last = 0;
@@ -373,15 +358,6 @@ TEST_F(SensorErrorsTest, AreNoneWhenSwitchedOff) {
     EXPECT_EQ(measurement.imu.linear_acceleration[2], 9.81);
     EXPECT_EQ(measurement.imu.angular_velocity[0], 0);
   }
-}
-
-TEST_F(SensorErrorsTest, NeverAllocate) {
-  parameters_.sensor_delay = 10;
-  SensorErrors all = errors();
-  Measurement measurement;
-  const AllocationGuard guard;
-  for (int i = 0; i < 1000; ++i) all.step(measurement);
-  EXPECT_EQ(guard.count(), 0u);
 }
 
 }  // namespace robot_control::tests

@@ -1,7 +1,5 @@
 #include "estimation/common/inertial/rate_tracker.h"
 
-#include <gtest/gtest.h>
-
 #include <random>
 
 #include "estimation/wheeled/estimator_fixture.h"

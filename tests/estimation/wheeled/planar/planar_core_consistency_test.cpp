@@ -3,7 +3,6 @@
 
 #include <Eigen/Cholesky>
 #include <deque>
-#include <utility>
 
 #include "estimation/wheeled/planar/planar_core_fixture.h"
 #include "support/positive_definite.h"

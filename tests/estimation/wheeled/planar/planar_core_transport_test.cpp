@@ -1,7 +1,5 @@
 // Compares the transport of the planar core's covariance in a step with derivatives of the step by differences.
 
-#include <functional>
-
 #include "estimation/wheeled/planar/planar_core_fixture.h"
 
 namespace robot_control::tests {

@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <cmath>
 #include <random>
-#include <vector>
 
 #include "estimation/wheeled/slip/slip_detector.h"
 #include "estimation/wheeled/slip/wheel_slide.h"

@@ -6,7 +6,6 @@
 
 #include <cmath>
 #include <random>
-#include <utility>
 
 namespace robot_control::tests {
 

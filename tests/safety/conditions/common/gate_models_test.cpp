@@ -2,15 +2,12 @@
 
 #include <gtest/gtest.h>
 
-#include <map>
 #include <random>
-#include <vector>
 
 #include "safety/conditions/common/gate_conditions.h"
 #include "safety/conditions/common/machine_conditions.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 using Causes = std::map<std::uint64_t, std::pair<double, double>>;  // cause → value, limit
 
@@ -235,5 +232,4 @@ TEST(GateModels, RandomReportsOfAMachineAreJudgedAsTheHeaderSaysInEveryRun) {
   EXPECT_EQ(seen.size(), 5U);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -2,12 +2,10 @@
 
 #include "safety/monitor_fixture.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 /// The driver reports that the machine is starting. No joint and no IMU reports.
-class MachineStartTest : public MonitorTest {
- protected:
+struct MachineStartTest : MonitorTest {
   MachineStartTest() {
     new_run();
     begin_start();
@@ -79,5 +77,4 @@ TEST_F(MachineStartTest, AnEmergencyStopLatchesMeanwhile) {
   EXPECT_EQ(permit_.state, SupervisorState::kStopped);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

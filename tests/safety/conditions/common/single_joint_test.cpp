@@ -1,27 +1,18 @@
 // One joint of a machine fails. The cause names this joint, and the reaction comes as early as if all joints failed.
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <functional>
-#include <limits>
-#include <string>
-
 #include "safety/conditions/common/frame_conditions.h"
 #include "safety/conditions/common/machine_conditions.h"
 #include "safety/conditions/common/sensor_presence.h"
 #include "safety/latch/active_causes.h"
 #include "safety/monitor_fixture.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 constexpr double kCycle = 1e-3;
 constexpr std::size_t kJoints = 4;
 constexpr std::uint64_t kPersistence = 10;  ///< cycles of encoders_lost by default
 
-class SingleJointTest : public testing::Test {
- protected:
+struct SingleJointTest : testing::Test {
   SingleJointTest() {
     sensors_.joint_count = kJoints;
     set_joints_valid(sensors_, kValidMotion);
@@ -132,8 +123,7 @@ TEST_F(SingleJointTest, ANumberThatIsNotFiniteCountsOnlyWhereItIsValid) {
 }
 
 /// The whole monitor, in motion; the second wheel's joint fails.
-class FailingJointTest : public MonitorTest {
- protected:
+struct FailingJointTest : MonitorTest {
   FailingJointTest() {
     begin_with(without_heartbeat());
     drive();
@@ -158,5 +148,4 @@ TEST_F(FailingJointTest, FaultyStopsTheRobotAndIsNamed) {
   expect_named(kCauseDriverFault);
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -3,20 +3,16 @@
 #include "safety/conditions/legged/legged_conditions.h"
 
 #include <deque>
-#include <functional>
-#include <limits>
 #include <numbers>
 #include <random>
 
 #include "machine/legs/legs_corpus.h"
 #include "signals/names.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 /// Quadbot stands: joints, forces of its feet and its command are those of the healthy case.
-class LeggedConditionsTest : public testing::Test {
- protected:
+struct LeggedConditionsTest : testing::Test {
   LeggedConditionsTest() {
     for (std::size_t leg = 0; leg < kLegs; ++leg) {
       const LegKinematics& kinematics = robot_.legs[leg].kinematics;
@@ -419,8 +415,7 @@ TEST_F(LeggedConditionsTest, AFootThatCarriesNothingIsAWarning) {
 }
 
 /// Quadbot trots on the spot: each pair of feet bears for 0.2 s, and lifts its knees by 0.3 rad in its swing.
-class WalkingConditionsTest : public LeggedConditionsTest {
- protected:
+struct WalkingConditionsTest : LeggedConditionsTest {
   WalkingConditionsTest() { command_.legged.phase = LegPhase::kWalking; }
 
   /// Returns as `run`. `change` is called after the joints and their commands of this cycle are set.
@@ -572,8 +567,7 @@ TEST_F(WalkingConditionsTest, AMotorThatGivesNoTorqueHalfOfTheTimeBrakes) {
 }
 
 /// A motor of a knee in its swings, with 20 N·m/rad, 0.5 N·m·s/rad, and a torque that changes its sign every 50 ms.
-class SwingingMotorTest : public WalkingConditionsTest {
- protected:
+struct SwingingMotorTest : WalkingConditionsTest {
   SwingingMotorTest() { motors_obey_ = false; }
 
   /// Returns as `walk`. The motor gives `part` of what the command of `late` cycles before demands. The encoder reports
@@ -785,5 +779,4 @@ TEST_F(LeggedConditionsTest, FeetAreJudgedOnlyWhileItStands) {
   }
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

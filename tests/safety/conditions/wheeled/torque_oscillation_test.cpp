@@ -2,32 +2,23 @@
 
 #include "safety/monitor_fixture.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 /// It drives at 5 rad/s with motors of 3 N·m; the limit is 0.3 of that for 1 s. A wheel drives 0.065 kg·m².
-class TorqueOscillationTest : public MonitorTest {
- protected:
+struct TorqueOscillationTest : MonitorTest {
   static constexpr double kLimit = 3;  // N·m
   static constexpr double kInertia = 0.065;
 
-  TorqueOscillationTest() { begin({}); }
+  TorqueOscillationTest() { begin(0); }
 
   /// Begins with this torque per rad of a count.
-  void begin(double count_ripple,
-             const Condition& condition = {.limit = 0.3, .persistence = 1.0, .reaction = Reaction::kBrake}) {
+  void begin(double count_ripple) {
     SafetyParameters chosen = parameters();
     chosen.heartbeat_timeout = 0;
-    chosen.torque_oscillation = condition;
+    chosen.torque_oscillation = {.limit = 0.3, .persistence = 1.0, .reaction = Reaction::kBrake};
     chosen.wheel_effort.reaction = chosen.power.reaction = Reaction::kOff;
     chosen.count_ripple.fill(count_ripple);
-    monitor_ = SafetyMonitor(chosen, robot(), kPeriod);
-    ask_for(0);  // a run begins with a zero request
-    turn_wheels(0);
-    new_run();
-    steps(kStart);
-    drive();
-    steps(100);
+    drive_with(chosen, robot());
   }
 
   void pull(std::size_t wheel, double effort) {
@@ -69,14 +60,6 @@ TEST_F(TorqueOscillationTest, IsNoneBelowItsLimitOrForAMoment) {
   EXPECT_EQ(permit_.causes | permit_.warnings, 0u);
 }
 
-// The torque is full and constant, up a slope.
-TEST_F(TorqueOscillationTest, IsNoneWhereTheTorqueIsLargeAndSteady) {
-  pull(0, kLimit);
-  pull(1, kLimit);
-  steps(5000);
-  EXPECT_EQ(permit_.causes | permit_.warnings, 0u);
-}
-
 // The target goes to and fro at 5 Hz by ±46 rad/s², which takes all the torque there is.
 TEST_F(TorqueOscillationTest, IsNoneWhereThePlannedMotionAsksForIt) {
   double wanted = kSpeed;
@@ -111,38 +94,4 @@ TEST_F(TorqueOscillationTest, IsNoneThatTheGateMakesOfASteadyCommand) {
   EXPECT_EQ(permit_.causes | permit_.warnings, 0u);
 }
 
-TEST_F(TorqueOscillationTest, IsNoneOfTheBrake) {
-  stand();
-  alternate(kLimit, 5);
-  EXPECT_EQ(permit_.causes | permit_.warnings, 0u);
-}
-
-TEST_F(TorqueOscillationTest, IsNoneOfSamplesThatAreMissing) {
-  for (int k = 0; k < 3000; ++k) {
-    sensors_.joints[1].effort = std::nan("");
-    step();
-    if (permit_.causes != 0) break;
-  }
-  EXPECT_EQ(permit_.causes & kCauseTorqueOscillation, 0u);
-}
-
-// The ripple of a torque is that since the first target: what it was before does not count.
-TEST_F(TorqueOscillationTest, IsNoneOfATorqueThatIsSteadySinceTheFirstTarget) {
-  sensors_.joints[1].effort = kLimit;
-  begin(0, {.limit = 0.1, .persistence = 0, .reaction = Reaction::kBrake});
-  for (int k = 0; k < 200; ++k) {
-    command_.joints[1].effort = k / 8 % 2 == 0 ? kLimit : -kLimit;
-    step();
-  }
-  EXPECT_EQ(permit_.causes | permit_.warnings, 0u);
-}
-
-TEST_F(TorqueOscillationTest, IsWarnedOfAfterAPartOfItsPersistence) {
-  begin(0, {.limit = 0.3, .persistence = 0.4, .reaction = Reaction::kBrake});
-  alternate(kLimit, 2);
-  EXPECT_EQ(permit_.causes, std::uint64_t{kCauseTorqueOscillation});
-  EXPECT_NEAR(static_cast<double>(first_warning_), 0.5 * 400 + 50, 30);
-}
-
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

@@ -3,17 +3,14 @@
 // are.
 
 #include <cmath>
-#include <map>
 #include <numbers>
-#include <optional>
 #include <random>
 
 #include "machine/wheeled/scrub.h"
 #include "safety/conditions/wheeled/wheeled_conditions.h"
 #include "safety/monitor_fixture.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 constexpr double kModelPeriod = 2e-3;  // s
 constexpr double kModelQuantum = 2 * std::numbers::pi / 4096;
@@ -472,5 +469,4 @@ TEST(WheelModels, RandomDrivesAreJudgedAsTheHeadersSayInEveryRun) {
   EXPECT_EQ(seen.size(), 9U) << "every condition was active";
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

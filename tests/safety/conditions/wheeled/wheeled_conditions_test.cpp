@@ -5,8 +5,7 @@
 
 #include "safety/monitor_fixture.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
 constexpr double kPeriod = 1e-3;
 
@@ -15,8 +14,7 @@ double tolerance(double speed) {
   return speed * kPeriod / 0.02;
 }
 
-class WheeledConditionsTest : public testing::Test {
- protected:
+struct WheeledConditionsTest : testing::Test {
   WheeledConditionsTest() {
     set_joints_valid(sensors_, kValidMotion);
     sensors_.valid = kValidGyro;
@@ -166,5 +164,4 @@ TEST_F(WheeledConditionsTest, SeveralWheelsOnOneSideScrub) {
   }
 }
 
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests

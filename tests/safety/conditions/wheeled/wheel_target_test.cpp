@@ -2,23 +2,19 @@
 
 #include "safety/monitor_fixture.h"
 
-namespace robot_control {
-namespace {
+namespace robot_control::tests {
 
-class WheelFollowingTest : public MonitorTest {
- protected:
-  WheelFollowingTest() {
+struct WheelTargetTest : MonitorTest {
+  WheelTargetTest() {
     SafetyParameters chosen = without_heartbeat();
     chosen.yaw_rate.reaction = Reaction::kOff;
-    begin_with(chosen);
-    drive();
-    steps(100);
+    drive_with(chosen, robot());
   }
 };
 
 // The target goes from 5 rad/s to −5 rad/s at 10 rad/s², and the drive reaches 6 rad/s²: up to 4 rad/s against the
 // target.
-TEST_F(WheelFollowingTest, AWeakDriveThatTurnsRoundIsNotWrong) {
+TEST_F(WheelTargetTest, AWeakDriveThatTurnsRoundIsNotWrong) {
   double wanted = kSpeed;
   double speed = kSpeed;
   while (speed > -kSpeed) {
@@ -32,7 +28,7 @@ TEST_F(WheelFollowingTest, AWeakDriveThatTurnsRoundIsNotWrong) {
 }
 
 // It needs 0.2 s from 5 rad/s to the limit of 3.75 rad/s, and loses 0.18 rad/s within the persistence of 50 ms.
-TEST_F(WheelFollowingTest, AWheelThatSlowsDownAfterItsTargetJumpedIsNotWrong) {
+TEST_F(WheelTargetTest, AWheelThatSlowsDownAfterItsTargetJumpedIsNotWrong) {
   target(-kSpeed);
   for (double speed = kSpeed; speed > -kSpeed; speed -= 6 * kPeriod) {
     turn_wheels(speed);
@@ -41,91 +37,14 @@ TEST_F(WheelFollowingTest, AWheelThatSlowsDownAfterItsTargetJumpedIsNotWrong) {
   }
 }
 
-TEST_F(WheelFollowingTest, AWheelThatKeepsTurningWronglyIs) {
-  target(-kSpeed);
-  steps(50 + 1);
-  EXPECT_EQ(permit_.causes, std::uint64_t{kCauseWrongDirection});
-}
-
-TEST_F(WheelFollowingTest, AWheelThatWasWrongAtAHigherSpeedIsReportedNoLater) {
-  turn_wheels(2 * kSpeed);
-  target(2 * kSpeed);
-  steps(200);
-  target(-2 * kSpeed);
-  steps(30);
-  turn_wheels(kSpeed);
-  target(kSpeed);
-  steps(200);
-  target(-kSpeed);
-  steps(49);
-  EXPECT_EQ(permit_.causes, 0u);
-  step();
-  EXPECT_EQ(permit_.causes, std::uint64_t{kCauseWrongDirection});
-}
-
-// It slows down by 6 rad/s² as in the first test, but the target jumped: 10 rad/s against it.
-TEST_F(WheelFollowingTest, AWheelThatIsFarFromFollowingIsWrongThoughItSlowsDown) {
-  turn_wheels(2 * kSpeed);
-  target(2 * kSpeed);
-  steps(200);
-  target(-2 * kSpeed);
-  for (int k = 0; k < 50 + 1; ++k) {
-    turn_wheels(2 * kSpeed - 6 * k * kPeriod);
-    step();
-  }
-  EXPECT_EQ(permit_.causes, std::uint64_t{kCauseWrongDirection});
-}
-
-// Runaway has 3.75 rad/s and 0.15 s. A speed that is 95 rad/s too high is 25 times as much: a 25th of that time
-// suffices, and the window.
-TEST_F(WheelFollowingTest, TheFasterAWheelRunsAwayTheSoonerItIsReported) {
-  turn_wheels(100);
-  steps(20 + 150 / 25 + 1);
-  EXPECT_NE(permit_.causes & (kCauseRunaway | kCauseWheelSpeed), 0u);
-}
-
-TEST_F(WheelFollowingTest, AWheelThatStaysBelowItsTargetButTurnsIsNotStalled) {
+TEST_F(WheelTargetTest, AWheelThatStaysBelowItsTargetButTurnsIsNotStalled) {
   turn_wheels(0.25 * kSpeed);
   steps(5000);
   EXPECT_EQ(permit_.causes, 0u);
 }
 
-// kStall at kPushedSpeed takes 0.25 s; a quantum and the window of the speed are less than 30 ms. The target alone
-// would take 2.5 s.
-TEST_F(WheelFollowingTest, AWheelThatStandsThoughItsMotorPushesIsStalledHoweverSlowItsTarget) {
-  target(0.2);
-  turn_wheels(0);
-  for (std::size_t i = 0; i < kWheels; ++i) sensors_.joints[i].effort = 0.6 * robot().joints[i].effort_limit;
-  steps(240);
-  EXPECT_EQ(permit_.causes, 0u);
-  steps(40);
-  EXPECT_EQ(permit_.causes, std::uint64_t{kCauseStall});
-}
-
-// It pushes above 1.2 times its friction, and from 0.9 of its effort limit on in any case.
-TEST_F(WheelFollowingTest, AWheelWithMuchFrictionIsStalledAboveItHoweverSlowItsTarget) {
-  const auto stalls = [&](double friction, double torque) {
-    DriveTrain stiff = robot();
-    for (JointModel& joint : stiff.joints) joint.friction = friction * joint.effort_limit;
-    monitor_ = SafetyMonitor(without_heartbeat(), stiff, kPeriod);
-    ask_for(0);
-    turn_wheels(0);
-    new_run();
-    steps(kStart);
-    ask_for(0.02);
-    target(0.2);
-    for (std::size_t i = 0; i < kWheels; ++i) sensors_.joints[i].effort = torque * stiff.joints[i].effort_limit;
-    steps(300);
-    return permit_.causes == kCauseStall;
-  };
-  EXPECT_FALSE(stalls(0.5, 0.58));
-  EXPECT_TRUE(stalls(0.5, 0.62));
-  EXPECT_FALSE(stalls(1, 0.88));
-  EXPECT_TRUE(stalls(1, 0.92));
-}
-
 // The left encoder is stuck, and its target passes 0: the gyro alone shows that the wheel turns.
-TEST_F(WheelFollowingTest, AWheelThatStandsThoughTheGyroShowsThatItTurnsIsStalledHoweverSlowItsTarget) {
+TEST_F(WheelTargetTest, AWheelThatStandsThoughTheGyroShowsThatItTurnsIsStalledHoweverSlowItsTarget) {
   constexpr double kUnseen = 4;  // rad/s of yaw, beyond limit and tolerance
   target(0.01);
   turn_wheels(0);
@@ -141,16 +60,8 @@ TEST_F(WheelFollowingTest, AWheelThatStandsThoughTheGyroShowsThatItTurnsIsStalle
   EXPECT_EQ(permit_.causes, std::uint64_t{kCauseStall});
 }
 
-// On ice the robot turns on while its wheels follow their targets.
-TEST_F(WheelFollowingTest, AWheelThatFollowsIsNotStalledWhateverTheGyroShows) {
-  sensors_.imu.angular_velocity[2] = 5;
-  steps(2000);
-  EXPECT_EQ(permit_.causes, 0u);
-}
-
 /// 64 counts a turn give one in 0.49 s at 0.2 rad/s. The motors push all the time, as inside a skid steer's curve.
-class CoarseEncoderTest : public WheelFollowingTest {
- protected:
+struct CoarseEncoderTest : WheelTargetTest {
   static constexpr double kSlow = 0.2;             // rad/s
   static constexpr double kCount = 64 * kQuantum;  // rad
 
@@ -186,7 +97,7 @@ TEST_F(CoarseEncoderTest, AWheelThatStandsIsStalledOnceItsCountIsOverdue) {
 }
 
 // At 30 rad/s the 0.3 rad of kStall take 10 cycles; corrupt_frame, the true cause, takes 3.
-TEST_F(WheelFollowingTest, AnAbsurdTargetDoesNotMakeAStallOfOneCycle) {
+TEST_F(WheelTargetTest, AnAbsurdTargetDoesNotMakeAStallOfOneCycle) {
   DriveTrain limited = robot();
   for (std::size_t i = 0; i < kWheels; ++i) limited.joints[i].velocity_limit = 30;
   monitor_ = SafetyMonitor(parameters(), limited, kPeriod);
@@ -198,27 +109,14 @@ TEST_F(WheelFollowingTest, AnAbsurdTargetDoesNotMakeAStallOfOneCycle) {
   EXPECT_EQ(permit_.causes & kCauseStall, 0u);
 }
 
-TEST_F(WheelFollowingTest, WithoutATargetNothingIsCompared) {
-  target(0);
-  turn_wheels(0);
-  steps(3000);
-  EXPECT_EQ(permit_.causes, 0u);
-}
-
-TEST_F(WheelFollowingTest, WhatTheGateDidNotPassIsNotCompared) {
+TEST_F(WheelTargetTest, WhatTheGateDidNotPassIsNotCompared) {
   gate_works_ = false;
   target(-kSpeed);
   steps(kLoss);
   EXPECT_EQ(permit_.causes, std::uint64_t{kCauseGateRefuses});
 }
 
-TEST_F(WheelFollowingTest, AWheelThatTurnsUnderATargetOfZeroRunsAway) {
-  for (JointCommand& joint : command_.joints) joint.velocity = 0;  // in kEffort
-  steps(180);
-  EXPECT_EQ(permit_.causes, std::uint64_t{kCauseRunaway});
-}
-
-TEST_F(WheelFollowingTest, ARobotThatSwingsAboutItsRestDoesNotStop) {
+TEST_F(WheelTargetTest, ARobotThatSwingsAboutItsRestDoesNotStop) {
   target(0);
   for (int i = 0; i < 3500; ++i) {
     turn_wheels(0.3 * std::cos(10.0 * i * kPeriod));  // ±30 mrad
@@ -227,7 +125,7 @@ TEST_F(WheelFollowingTest, ARobotThatSwingsAboutItsRestDoesNotStop) {
   EXPECT_EQ(permit_.causes, std::uint64_t{kCauseNotStopping});
 }
 
-TEST_F(WheelFollowingTest, ARobotWithoutEncodersIsNotSaidToMove) {
+TEST_F(WheelTargetTest, ARobotWithoutEncodersIsNotSaidToMove) {
   target(0);
   turn_wheels(0);
   set_joints_valid(sensors_, 0);
@@ -235,15 +133,7 @@ TEST_F(WheelFollowingTest, ARobotWithoutEncodersIsNotSaidToMove) {
   EXPECT_EQ(permit_.causes, std::uint64_t{kCauseEncodersLost});
 }
 
-TEST_F(WheelFollowingTest, ACommandThatDescendsFromAnOldStateIsStaleAfterLossCycles) {
-  fresh_state_ = false;
-  steps(kLoss - 1);
-  EXPECT_EQ(permit_.causes, 0u);
-  step();
-  EXPECT_EQ(permit_.causes, std::uint64_t{kCauseCommandStale});
-}
-
-TEST_F(WheelFollowingTest, ACommandIsStaleAsLateInANewRun) {
+TEST_F(WheelTargetTest, ACommandIsStaleAsLateInANewRun) {
   ask_for(0);
   turn_wheels(0);
   fresh_state_ = false;
@@ -254,7 +144,7 @@ TEST_F(WheelFollowingTest, ACommandIsStaleAsLateInANewRun) {
   EXPECT_EQ(permit_.causes, std::uint64_t{kCauseCommandStale});
 }
 
-TEST_F(WheelFollowingTest, ACommandIsNotStaleForWantOfAState) {
+TEST_F(WheelTargetTest, ACommandIsNotStaleForWantOfAState) {
   fresh_state_ = false;
   input_.state = nullptr;
   steps(kLoss);
@@ -262,8 +152,7 @@ TEST_F(WheelFollowingTest, ACommandIsNotStaleForWantOfAState) {
 }
 
 /// Two axles, of which the fixture has one wheel each: in a turn on the spot either scrubs with `kScrub`.
-class ScrubbingTest : public WheelFollowingTest {
- protected:
+struct ScrubbingTest : WheelTargetTest {
   static constexpr double kScrub = 0.1 * 6 * 9.81 * 0.6247;  ///< N·m: 12 kg, friction 1 (scrub_test.cpp)
 
   ScrubbingTest() {
@@ -275,13 +164,7 @@ class ScrubbingTest : public WheelFollowingTest {
     SafetyParameters chosen = derived_limits(parameters(), scrubbing, 15);
     chosen.yaw_rate.reaction = Reaction::kOff;
     chosen.heartbeat_timeout = 0;
-    monitor_ = SafetyMonitor(chosen, scrubbing, kPeriod);
-    ask_for(0);
-    turn_wheels(0);
-    new_run();
-    steps(kStart);
-    drive();
-    steps(100);
+    drive_with(chosen, scrubbing);
   }
 
   /// Turns on the spot with kSpeed; the wheels turn with `speed` and have `torque`, both towards their targets.
@@ -307,26 +190,4 @@ TEST_F(ScrubbingTest, WheelsWhoseTorqueIsBelowTheirFrictionAndGrowsAreStalledLat
   EXPECT_LT(k * kPeriod, (1 + Stall::kMaxExcusedShare) * usual + kSpeedWindow);
 }
 
-TEST_F(ScrubbingTest, WheelsWhoseTorqueDoesNotGrowAreStalledAsAnyOther) {
-  int k = 0;
-  turn(0, 0.5 * kScrub);
-  for (; permit_.causes == 0 && k < 2000; ++k) step();
-  EXPECT_EQ(permit_.causes, std::uint64_t{kCauseStall});
-  EXPECT_LT(k * kPeriod, kStall / kSpeed + kSpeedWindow + 2 * Stall::kBuildUp);
-}
-
-TEST_F(ScrubbingTest, WheelsThatStandUnderMoreTorqueThanFrictionAre) {
-  turn(0, 3.5 * kScrub);
-  steps(400);
-  EXPECT_EQ(permit_.causes, std::uint64_t{kCauseStall});
-}
-
-TEST_F(ScrubbingTest, WheelsThatStandWhileDrivingStraightAreStalledAsAnyOther) {
-  turn_wheels(0);
-  for (std::size_t i = 0; i < kWheels; ++i) sensors_.joints[i].effort = 0.5;
-  steps(400);
-  EXPECT_EQ(permit_.causes, std::uint64_t{kCauseStall});
-}
-
-}  // namespace
-}  // namespace robot_control
+}  // namespace robot_control::tests
