@@ -153,6 +153,15 @@ TEST_P(DriveAndDevice, GetsReadyWithoutTorqueAndRunsWhenItIsEnabled) {
   EXPECT_TRUE(rig_.runs());
 }
 
+TEST_P(DriveAndDevice, SaysThatItWaitsWhileTheDeviceIsOff) {
+  device_->inject(DeviceFault::kOff);
+  rig_.run(2);
+  EXPECT_EQ(state(), DrivePhase::kStarting);
+  EXPECT_THAT(rig_.drive().words(), HasSubstr("wheel_1 (node 1): starting; the drive waits for a first frame"));
+  device_->inject(DeviceFault::kNone);
+  EXPECT_TRUE(rig_.runs());
+}
+
 TEST_P(DriveAndDevice, AppliesTheCommandedTorqueWithinOneStepOfTheProtocol) {
   ASSERT_TRUE(rig_.runs());
   std::mt19937_64 random(7);
@@ -220,6 +229,15 @@ TEST_P(DriveAndDevice, NightlyLossesAndClocksStopNothingInHalfAnHour) {
   drive_with_losses(GetParam(), 1800);
 }
 
+TEST_P(DriveAndDevice, NoticesWithinItsMaximumSilenceThatTheCableIsOut) {
+  ASSERT_TRUE(rig_.runs());
+  rig_.bus().connect(rig_.host(), false);
+  int cycles = 0;
+  for (; state() == DrivePhase::kRunning && cycles < 100; ++cycles) rig_.cycle();
+  EXPECT_LE(cycles, 22);
+  EXPECT_THAT(rig_.drive().words(), HasSubstr("fault; the drive is silent"));
+}
+
 TEST_P(DriveAndDevice, HasNoTorqueAfterItsWatchdogWhenTheHostDies) {
   ASSERT_TRUE(rig_.runs());
   rig_.command_all({.enabled = true, .torque = 1});
@@ -240,6 +258,20 @@ TEST_P(DriveAndDevice, HasNoTorqueAfterItsWatchdogWhenTheHostDies) {
     rig_.run(1);
     EXPECT_LT(rig_.motor().velocity, speed + 1);  // It coasts.
   }
+}
+
+TEST_P(DriveAndDevice, StaysInFaultUntilTheReset) {
+  ASSERT_TRUE(rig_.runs());
+  rig_.command_all({.enabled = true, .torque = 0.2});
+  device_->inject(DeviceFault::kEncoder);
+  ASSERT_TRUE(fails());
+  device_->inject(DeviceFault::kNone);
+  rig_.command_all({.enabled = true, .torque = 2});
+  rig_.run(3);
+  EXPECT_EQ(state(), DrivePhase::kFault);
+  EXPECT_EQ(rig_.motor().torque, 0);
+  rig_.reset();
+  EXPECT_TRUE(rig_.runs());
 }
 
 TEST_P(DriveAndDevice, AFaultThatRemainsIsReportedAgainAfterTheReset) {

@@ -242,6 +242,26 @@ TEST(OdriveDrive, APositionIsNoZeroBeforeTheAxisIsInClosedLoop) {
   }
 }
 
+TEST(OdriveDrive, ThatTakesSpeedsBrakesByItselfWhenItsAnswersAreLost) {
+  OdrivePair pair = odrive_pair(2);
+  pair.drive.drive.takes_speeds = true;
+  pair.device.speed_gain = 0.1;
+  DeviceRig rig;
+  OdriveDevice& device = add(rig, pair);
+  ASSERT_TRUE(rig.runs());
+  rig.command_all({.enabled = true, .speed = 4});
+  rig.run(2);
+  ASSERT_NEAR(rig.motor().velocity, 10, 0.5);
+  rig.answers = false;
+  rig.run(2);
+  EXPECT_EQ(device.state(), AxisState::kClosedLoopControl);
+  EXPECT_NEAR(rig.motor().velocity, 0, 0.05);
+  rig.answers = true;
+  rig.run(1);
+  EXPECT_EQ(rig.drive().status().state, DrivePhase::kFault);
+  EXPECT_NEAR(rig.motor().velocity, 0, 0.05);
+}
+
 TEST(OdriveDrive, IsIdleAgainWhenItIsNotEnabled) {
   DeviceRig rig;
   OdriveDevice& device = add(rig, odrive_pair(2));
@@ -260,7 +280,8 @@ TEST(OdriveDrive, AnErrorAtTheStartWaitsForTheReset) {
   device.inject(DeviceFault::kReleased);  // The cause is gone, its error bits remain.
   EXPECT_FALSE(rig.runs(3));
   EXPECT_THAT(rig.drive().words(), HasSubstr("reports an error: MISSING_ESTIMATE"));
-  rig.reset();
+  rig.command_all({.enabled = true, .reset = true});
+  rig.cycle();
   EXPECT_TRUE(rig.runs());
 }
 

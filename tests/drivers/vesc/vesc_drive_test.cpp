@@ -129,6 +129,25 @@ TEST(VescDrive, AnOrderToEveryDriveIsThatOfAnotherProgram) {
   EXPECT_THAT(rig.drive().words(), HasSubstr("is commanded by another program, with frame 0x1FF"));
 }
 
+TEST(VescDrive, ThatTakesSpeedsBrakesByItselfWhenItsAnswersAreLost) {
+  VescPair pair = vesc_pair(2);
+  pair.drive.drive.takes_speeds = true;
+  pair.device.speed_gain = 0.1;
+  DeviceRig rig;
+  add(rig, pair);
+  ASSERT_TRUE(rig.runs());
+  rig.command_all({.enabled = true, .speed = 4});
+  rig.run(2);
+  ASSERT_NEAR(rig.motor().velocity, 10, 0.5);
+  rig.answers = false;
+  rig.run(2);
+  EXPECT_NEAR(rig.motor().velocity, 0, 0.05);
+  rig.answers = true;
+  rig.run(1);
+  EXPECT_EQ(rig.drive().status().state, DrivePhase::kFault);
+  EXPECT_NEAR(rig.motor().velocity, 0, 0.05);
+}
+
 TEST(VescDrive, TheTimeoutBrakesWithItsCurrent) {
   VescPair pair = vesc_pair(2);
   pair.device.brake_current = 5;
