@@ -1,6 +1,7 @@
 #include "robots/robot_kind.h"
 
 #include "machine/bodies/rigid_bodies.h"
+#include "machine/legs/leg_chains.h"
 #include "machine/legs/leg_model.h"
 #include "machine/wheeled/drive_train.h"
 #include "robots/differential_drive.h"

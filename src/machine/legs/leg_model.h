@@ -61,10 +61,6 @@ double usual_rotor_inertia(double mass, double leg_length) noexcept;
 /// Returns the model that a machine is. Throws RobotError for a machine without legs.
 const LegModel& leg_model_of(const MachineModel& machine);
 
-/// Returns true if at least two chains on the root body are legs, or legs with a joint more. Such a machine is for
-/// read_legs to accept or refuse, others are not.
-bool has_legs(const RigidBodies& bodies);
-
 /// Throws RobotError for a number of legs other than four, and for two legs at one corner. It throws RobotError for
 /// joints without effort or speed limits, feet without a shape, other joints that move, and wheels on legs. A knee that
 /// cannot bend as the parameters say is refused, too, and so is what read_machine refuses.
