@@ -31,7 +31,7 @@ bool fixed_to_root(const RigidBodies& robot, const std::string& link) {
 }
 
 std::string words(const Eigen::Vector3d& v) {
-  return list({number(v.x() + 0.0), number(v.y() + 0.0), number(v.z() + 0.0)});  // no "-0"
+  return list({length(v.x()), length(v.y()), length(v.z())});
 }
 
 Eigen::Quaterniond rotation_of(const Eigen::Vector3d& rpy) {

@@ -2,6 +2,7 @@
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <cmath>
 
 #include "machine/description/urdf_document.h"
 #include "machine/description/wording.h"
@@ -11,7 +12,9 @@ namespace {
 
 std::string moments(const Eigen::Matrix3d& inertia) {
   const Eigen::Vector3d p = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(inertia).eigenvalues();
-  return number(p[0]) + ", " + number(p[1]) + ", " + number(p[2]);
+  const double rounding = 1e-12 * p.cwiseAbs().maxCoeff();
+  const auto text = [&](double moment) { return number(std::abs(moment) <= rounding ? 0 : moment); };
+  return text(p[0]) + ", " + text(p[1]) + ", " + text(p[2]);
 }
 
 }  // namespace

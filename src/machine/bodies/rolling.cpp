@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "machine/bodies/shape_support.h"
 #include "machine/description/wording.h"
@@ -127,6 +128,20 @@ std::vector<const Profile*> tyre_of(const std::vector<Profile>& profiles, double
   return {};
 }
 
+/// Returns the rpy that a cylinder lacks which would roll with it; "" if none would.
+std::string lacking_turn(const RigidBody& body) {
+  const Shape* const shape = rolling_shape(body);
+  if (shape == nullptr || shape->type != ShapeType::kCylinder) return "";
+  if (!shape->in_body.linear().isApprox(Eigen::Matrix3d::Identity())) return "";
+  for (const auto& [turned, rpy] :
+       {std::pair{Eigen::Vector3d(M_PI / 2, 0, 0), "1.5708 0 0"}, {Eigen::Vector3d(0, M_PI / 2, 0), "0 1.5708 0"}}) {
+    Shape lying = *shape;
+    lying.in_body.linear() = Eigen::AngleAxisd(turned.norm(), turned.normalized()).toRotationMatrix();
+    if (around(lying, body.joint.axis)) return rpy;
+  }
+  return "";
+}
+
 void measure_shapes(const RigidBody& body, RollingMeasure& measure) {
   const Eigen::Vector3d& axle = body.joint.axis;
   std::vector<Profile> profiles;
@@ -135,8 +150,12 @@ void measure_shapes(const RigidBody& body, RollingMeasure& measure) {
   for (const Profile& profile : profiles) reach = std::max(reach, profile.reach);
   const std::vector<const Profile*> tyre = tyre_of(profiles, reach);
   if (!(reach > 0) || tyre.empty()) {
+    const std::string turn = lacking_turn(body);
+    measure.nearly = !turn.empty();
     measure.objection =
-        "its shape does not lie round about the axle, from which it reaches as far as " + number(reach) + " m";
+        measure.nearly
+            ? "its cylinder lies across the axle: did you forget rpy=\"" + turn + "\" of the cylinder?"
+            : "its shape does not lie round about the axle, from which it reaches as far as " + number(reach) + " m";
     return;
   }
   reach = 0;

@@ -30,6 +30,7 @@ inline constexpr double kTrueRunning = 0.005;
 
 struct RollingMeasure {
   std::string objection;    ///< why it does not roll, with numbers; empty: it rolls
+  bool nearly = false;      ///< one number of the file keeps it from rolling, and `objection` names it
   double out_of_round = 0;  ///< m by which the farthest corner exceeds the radius; 0: runs true
   Vector3 centre_base{};    ///< m, centre of the shape
   double radius = 0;        ///< m

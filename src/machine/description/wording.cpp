@@ -1,6 +1,7 @@
 #include "machine/description/wording.h"
 
 #include <algorithm>
+#include <cmath>
 #include <sstream>
 
 namespace robot_control {
@@ -18,6 +19,10 @@ std::string number(double value) {
   text.imbue(std::locale::classic());
   text << value;
   return text.str();
+}
+
+std::string length(double metres) {
+  return number(std::round(1e6 * metres) / 1e6 + 0.0);  // no "-0"
 }
 
 std::string list(const std::vector<std::string>& names) {

@@ -12,6 +12,9 @@ std::string joint_element(const std::string& name);
 /// Returns six significant digits: "0.1", "1e-09".
 std::string number(double value);
 
+/// Returns a length in m, rounded to a micrometre, so that it does not show what is left of a sum of zero.
+std::string length(double metres);
+
 /// Returns "a, b, c", or "none" for an empty list.
 std::string list(const std::vector<std::string>& names);
 

@@ -26,11 +26,15 @@ Eigen::Vector3d axis_in_base(const RigidBody& body);
 /// that branches ends there.
 std::vector<BodyChain> leg_chains(const RigidBodies& robot);
 
-/// Returns true if at least two chains on the root body are legs, or legs with a joint more. Such a machine is for
-/// read_legs to accept or refuse, others are not.
+/// Returns the chains of at least two joints that do not end in a wheel: legs, and what may be meant as a leg.
+std::vector<BodyChain> limbs_of(const RigidBodies& robot);
+
+/// Returns true if at least two chains on the root body are legs, or legs with a joint more. It also returns true for
+/// four limbs on a machine without wheels. Such a machine is for read_legs to accept or refuse, others are not.
 bool has_legs(const RigidBodies& bodies);
 
-/// Throws RobotError if the chains are not four legs, or if anything else moves.
+/// Throws RobotError if the chains are not four legs, or if anything else moves. If four limbs are almost legs, it
+/// names the difference.
 void refuse_other_chains(const RigidBodies& robot, const std::vector<BodyChain>& chains);
 
 }  // namespace robot_control

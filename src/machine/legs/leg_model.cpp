@@ -5,8 +5,10 @@
 #include <cstddef>
 #include <limits>
 #include <numbers>
+#include <utility>
 #include <vector>
 
+#include "machine/bodies/posed_bodies.h"
 #include "machine/bodies/rigid_bodies.h"
 #include "machine/bodies/rolling.h"
 #include "machine/bodies/shape_support.h"
@@ -97,6 +99,12 @@ std::array<Chain, kLegs> placed(const RigidBodies& robot, const std::vector<Body
   return result;
 }
 
+std::size_t joints_on_limbs(const RigidBodies& robot) {
+  std::size_t joints = 0;
+  for (const BodyChain& limb : limbs_of(robot)) joints += limb.bodies.size();
+  return joints;
+}
+
 JointRange range_of(const BodyJoint& joint) {
   if (!(joint.lower < joint.upper)) return {-kInfinite, kInfinite};
   return {joint.lower, joint.upper};
@@ -141,20 +149,69 @@ bool stands(const LegGeometry& geometry, double bend) {
   return leg.reached(geometry.hip + geometry.upper + below).has_value();
 }
 
-double bend_of(const RigidBodies& robot, const LegGeometry& geometry, const Chain& chain, bool front, KneeBend wanted) {
-  const double middle = front ? -1 : 1;
-  if (wanted == KneeBend::kDerived) {
-    const double forward = room(geometry, 1), backward = room(geometry, -1);
-    if (std::min(forward, backward) < kMinBendBothWays) return forward >= backward ? 1 : -1;
-    return !stands(geometry, middle) && stands(geometry, -middle) ? -middle : middle;
+using Geometries = std::array<LegGeometry, kLegs>;
+using Bends = std::array<double, kLegs>;
+
+double towards_the_middle(std::size_t leg) {
+  return leg < 2 ? -1 : 1;
+}
+
+double derived_bend(const LegGeometry& geometry, double middle) {
+  const double forward = room(geometry, 1), backward = room(geometry, -1);
+  if (std::min(forward, backward) < kMinBendBothWays) return forward >= backward ? 1 : -1;
+  return !stands(geometry, middle) && stands(geometry, -middle) ? -middle : middle;
+}
+
+const char* side_of(double bend) {
+  return bend > 0 ? "forward" : "backward";
+}
+
+const std::string& knee_of(const RigidBodies& robot, const Chain& chain) {
+  return robot.bodies[chain[2]].joint.name;
+}
+
+/// Both knees of a pair, front or rear, point to one side. If the ranges do not allow that, one of them is mirrored.
+Bends paired(const RigidBodies& robot, const Geometries& geometries, const std::array<Chain, kLegs>& places,
+             Bends bends) {
+  if (bends[0] == bends[1] && bends[2] == bends[3]) return bends;
+  const auto allowed = [&](double front, double rear) {
+    for (std::size_t leg = 0; leg < kLegs; ++leg) {
+      const double bend = leg < 2 ? front : rear;
+      if (bend != bends[leg] && room(geometries[leg], bend) < kMinBendBothWays) return false;
+    }
+    return true;
+  };
+  for (const auto& [front, rear] : {std::pair{-1.0, 1.0}, {-1.0, -1.0}, {1.0, 1.0}, {1.0, -1.0}}) {
+    if (allowed(front, rear)) return {front, front, rear, rear};
   }
-  const bool forward = wanted == KneeBend::kForward || wanted == (front ? KneeBend::kOutwards : KneeBend::kMiddle);
-  const double bend = forward ? 1 : -1;
-  if (room(geometry, bend) >= kMinBendBothWays) return bend;
-  refuse(robot.source, joint_element(robot.bodies[chain[2]].joint.name),
-         std::string("robot/knee_bend lets this knee point ") + (forward ? "forward" : "backward") +
-             ", which its range does not allow",
-         "Leave robot/knee_bend out, or set the other side");
+  const double majority = bends[0] + bends[1] + bends[2] + bends[3];
+  std::size_t odd = bends[0] != bends[1] ? 1 : 3;  // of the pair that differs, and the one that differs from the others
+  if (bends[odd] * majority > 0) --odd;
+  const std::string others = majority == 0 ? knee_of(robot, places[odd - 1]) + " points " : "the other three point ";
+  refuse(robot.source, joint_element(knee_of(robot, places[odd])),
+         std::string("the range of this knee lets it point ") + side_of(bends[odd]) + " alone, and " + others +
+             side_of(-bends[odd]),
+         "Mirror its <limit lower=\"…\" upper=\"…\"/> or its <axis xyz=\"…\">");
+}
+
+Bends bends_of(const RigidBodies& robot, const Geometries& geometries, const std::array<Chain, kLegs>& places,
+               KneeBend wanted) {
+  Bends bends{};
+  for (std::size_t leg = 0; leg < kLegs; ++leg) {
+    const double middle = towards_the_middle(leg);
+    if (wanted == KneeBend::kDerived) {
+      bends[leg] = derived_bend(geometries[leg], middle);
+      continue;
+    }
+    const bool forward = wanted == KneeBend::kForward || wanted == (leg < 2 ? KneeBend::kOutwards : KneeBend::kMiddle);
+    bends[leg] = forward ? 1 : -1;
+    if (room(geometries[leg], bends[leg]) >= kMinBendBothWays) continue;
+    refuse(
+        robot.source, joint_element(knee_of(robot, places[leg])),
+        std::string("robot/knee_bend lets this knee point ") + side_of(bends[leg]) + ", which its range does not allow",
+        "Leave robot/knee_bend out, or set the other side");
+  }
+  return wanted == KneeBend::kDerived ? paired(robot, geometries, places, bends) : bends;
 }
 
 void require_limits(const RigidBodies& robot, const BodyJoint& joint) {
@@ -201,9 +258,10 @@ LegModel read_legs(const RobotDescription& description, const MachineParameters&
   const auto bodies = std::make_shared<const RigidBodies>(read_rigid_bodies(description));
   refuse_too_many_joints(*bodies);
   const std::vector<BodyChain> chains = leg_chains(*bodies);
-  if (chains.size() != kLegs && leg_chains(read_moving_bodies(description)).size() == kLegs) {
+  if (chains.size() != kLegs && !bodies->massless.empty() &&
+      joints_on_limbs(read_moving_bodies(description)) > joints_on_limbs(*bodies)) {
     refuse(bodies->source, "<robot>",
-           "nearly a quadruped, but these links have no <inertial>, and count as fixed: " + list(bodies->massless),
+           "almost a quadruped: these links have no <inertial>, and count as fixed: " + list(bodies->massless),
            "Give each link of a leg its <inertial> with <mass> and <inertia>");
   }
   refuse_other_chains(*bodies, chains);
@@ -226,6 +284,7 @@ LegModel read_legs(const RobotDescription& description, const MachineParameters&
   }
   model.belly = belly.height;
   model.lying_pitch = std::atan2(belly.down.x(), -belly.down.z());
+  Geometries geometries;
   for (std::size_t i = 0; i < kLegs; ++i) {
     for (const std::size_t index : places[i]) {
       const RigidBody& body = bodies->bodies[index];
@@ -234,19 +293,19 @@ LegModel read_legs(const RobotDescription& description, const MachineParameters&
     }
     const RigidBody& last = bodies->bodies[places[i][2]];
     const Foot foot = foot_of(*bodies, last);
-    LegGeometry geometry = geometry_of(*bodies, places[i], foot.centre);
-    geometry.bend = bend_of(*bodies, geometry, places[i], i < 2, legs.knee_bend);
-    model.legs[i].kinematics = LegKinematics(geometry);
+    geometries[i] = geometry_of(*bodies, places[i], foot.centre);
     model.legs[i].foot_radius = foot.radius;
-    model.legs[i].knee_radius = knee_radius(*bodies, model.legs[i].kinematics, places[i]);
-    model.legs[i].lying = lying_posture(*bodies, model.legs[i].kinematics, places[i], belly);
-    for (std::size_t j = 0; j < kLegJoints; ++j) {
-      JointModel& joint = model.joints[kLegJoints * i + j];
-      joint.rest_position = model.legs[i].lying[j];
-    }
     model.contacts.push_back(last.name);
   }
-  read_masses(*bodies, parameters, model.leg_length(), model);
+  const Bends bends = bends_of(*bodies, geometries, places, legs.knee_bend);
+  for (std::size_t i = 0; i < kLegs; ++i) {
+    model.legs[i].kinematics = bent(geometries[i], bends[i]);
+    model.legs[i].knee_radius = knee_radius(*bodies, model.legs[i].kinematics, places[i]);
+    model.legs[i].lying = lying_posture(*bodies, model.legs[i].kinematics, places[i], belly);
+    for (std::size_t j = 0; j < kLegJoints; ++j)
+      model.joints[kLegJoints * i + j].rest_position = model.legs[i].lying[j];
+  }
+  read_masses(resting(*bodies, model.joints), parameters, model.leg_length(), model);
   model.rotor_inertia = legs.leg_rotor_inertia.value_or(usual_rotor_inertia(model.mass, model.leg_length()));
   for (JointModel& joint : model.joints) joint.rotor_inertia = model.rotor_inertia;
   read_imu(*bodies, parameters, model.leg_length(), model);

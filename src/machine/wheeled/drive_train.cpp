@@ -160,7 +160,7 @@ void note_unequal_loads(const DriveTrainParameters& parameters, DriveTrain& mode
   const Eigen::Vector2d offset = centre_from_axles(model);
   if (offset.norm() <= kCentral * model.wheel_base) return;
   model.notes.push_back({RobotNote::Kind::kSuspicious, "robot/wheel_base_multiplier",
-                         "the centre of gravity lies " + number(offset.x()) + " m before and " + number(offset.y()) +
+                         "the centre of gravity lies " + length(offset.x()) + " m before and " + length(offset.y()) +
                              " m left of the middle of the wheels, the multiplier is that of equal loads"});
 }
 

@@ -53,7 +53,7 @@ void note_tipping(DriveTrain& robot) {
     }
     note(robot, "<robot>",
          "nothing within 3° of the ground carries it on one side of its centre of gravity (x " +
-             number(robot.centre_of_gravity_base[0]) +
+             length(robot.centre_of_gravity_base[0]) +
              " m): it falls over, or leans on what should not touch the ground. Look at where its wheels and casters "
              "stand, and how low they reach");
     return;

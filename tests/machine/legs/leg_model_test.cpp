@@ -198,11 +198,17 @@ TEST_F(LegRefusals, NameAnAxisThatIsFarFromThatOfALeg) {
 TEST_F(LegRefusals, NameLinksWithoutInertial) {
   const std::string weightless = without(legs_, inertial("0.5", kSmall));
   EXPECT_THAT(refusal(body_ + weightless),
-              HasSubstr("nearly a quadruped, but these links have no <inertial>, and count as fixed: a_calf, a_hip, "
+              HasSubstr("almost a quadruped: these links have no <inertial>, and count as fixed: a_calf, a_hip, "
                         "a_thigh, b_calf"));
   EXPECT_TRUE(has_legs(read_moving_bodies(robot_of(body_ + weightless))));
   EXPECT_TRUE(
       has_legs(read_moving_bodies(robot_of(link("trunk", collision("<box size=\"0.4 0.2 0.1\"/>")) + weightless))));
+}
+
+TEST_F(LegRefusals, NameWhatKeepsFourLimbsFromBeingLegs) {
+  const std::string hips = replaced(legs_, R"(<axis xyz="1 0 0"/>)", R"(<axis xyz="0 0 1"/>)");
+  EXPECT_THAT(refusal(body_ + hips), HasSubstr("almost a quadruped: the hip's axis is z, and a leg turns about x, y"));
+  EXPECT_TRUE(has_legs(read_moving_bodies(robot_of(body_ + hips))));
 }
 
 TEST_F(LegRefusals, NameABodyWithoutAShape) {

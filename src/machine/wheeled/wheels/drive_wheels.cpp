@@ -24,6 +24,14 @@ double lowest_point(const WheelModel& wheel) {
   return wheel.centre_base[2] - wheel.radius;
 }
 
+constexpr double kNearAxle = 10 * M_PI / 180;  // an axis within it is meant to be lateral
+
+std::string joined(const std::vector<std::string>& sentences) {
+  std::string text;
+  for (const std::string& sentence : sentences) text += (text.empty() ? "" : "; ") + sentence;
+  return text;
+}
+
 double suspension_travel(const RigidBodies& robot, std::size_t body) {
   double travel = 0;
   for (std::size_t i = robot.bodies[body].parent; i != 0; i = robot.bodies[i].parent) {
@@ -69,7 +77,7 @@ class Search {
 
   std::vector<RollingBody> drive_wheels() const {
     if (candidates_.empty()) {
-      refuse_unclear("no drive wheels found: " + (rejected_.empty() ? "no joint turns" : rejected_));
+      refuse_unclear("no drive wheels found: " + (rejected_.empty() ? "no joint turns" : joined(rejected_)));
     }
     std::vector<RollingBody> driven;
     for (const RollingBody& candidate : candidates_) {
@@ -85,13 +93,15 @@ class Search {
     std::string objection = sort_into_pairs(robot_, pairs);
     if (objection.empty() && !bound) objection = hanging_objection(pairs);
     if (objection.empty()) return pairs;
-    std::string text = "which wheels drive is not clear: ";
+    const std::vector<std::string> nearly(rejected_.begin(), rejected_.begin() + near_);
+    std::string text = nearly.empty() ? "" : joined(nearly) + "; and without it ";
+    text += "which wheels drive is not clear: ";
     if (bound) text += "the file says that " + list(names_of(driven)) + " are driven, but ";
     text += objection + ". Candidates: ";
     for (const RollingBody& candidate : candidates_) {
       text += (&candidate == &candidates_.front() ? "" : "; ") + described(robot_, candidate);
     }
-    if (!rejected_.empty()) text += ". Not: " + rejected_;
+    if (!rejected_.empty()) text += ". Not: " + joined(rejected_);
     refuse_unclear(text);
   }
 
@@ -125,10 +135,13 @@ class Search {
            "turn about the lateral (y) axis and have a round <collision> shape";
   }
 
-  void reject(const std::string& joint, const std::string& reason) {
-    rejected_ += (rejected_.empty() ? "" : "; ") + joint + ": " + reason;
-    if (robot_.unsaid_axes.contains(joint)) rejected_ += " (and no <axis xyz=\"…\"> is given)";
-    if (robot_.turned_joints.contains(joint)) rejected_ += " (and its <origin rpy=\"…\"> looks like degrees)";
+  /// One that is `nearly` a wheel comes before the others.
+  void reject(const std::string& joint, const std::string& reason, bool nearly = false) {
+    std::string text = joint + ": " + reason;
+    if (robot_.unsaid_axes.contains(joint)) text += " (and no <axis xyz=\"…\"> is given)";
+    if (robot_.turned_joints.contains(joint)) text += " (and its <origin rpy=\"…\"> looks like degrees)";
+    rejected_.insert(nearly ? rejected_.begin() + near_ : rejected_.end(), text);
+    if (nearly) ++near_;
   }
 
   void consider(std::size_t index) {
@@ -144,10 +157,12 @@ class Search {
     const RollingMeasure measure = measure_wheel(body);
     const bool turns = body.joint.type != JointType::kPrismatic;
     if (turns && axle_tilt(measure) > kAxleTolerance) {
-      return reject(joint, "its axis is " + number(axle_tilt(measure) * 180 / M_PI) + "° off the lateral (y) axis of " +
-                               robot_.bodies[0].name + ", 0.2° are allowed");
+      return reject(joint,
+                    "its axis is " + number(axle_tilt(measure) * 180 / M_PI) + "° off the lateral (y) axis of " +
+                        robot_.bodies[0].name + ", 0.2° are allowed",
+                    axle_tilt(measure) < kNearAxle);
     }
-    if (!measure.objection.empty()) return reject(joint, measure.objection);
+    if (!measure.objection.empty()) return reject(joint, measure.objection, measure.nearly);
     if (const RigidBody* swivel = swivel_of(robot_, index); swivel != nullptr) {
       return reject(joint, std::string("it stands behind a swivel, ") + swivel->joint.name +
                                (is_steered(*swivel, body, measure) ? ", which steers it" : ""));
@@ -197,16 +212,17 @@ class Search {
       const double away = std::abs(candidate.wheel.centre_base[1] - middle);
       if (away > std::max(kFloorTolerance, std::min(0.1 * candidate.wheel.radius, half / 2))) return false;
       reject(robot_.bodies[candidate.body].joint.name,
-             "it stands on the middle line, y " + number(middle) + " m, halfway between the outermost wheels");
+             "it stands on the middle line, y " + length(middle) + " m, halfway between the outermost wheels");
       return true;
     });
   }
 
   const RigidBodies& robot_;
   std::vector<RollingBody> candidates_;
-  std::vector<RollingBody> hanging_;  // candidates above the floor
-  std::size_t rolling_ = 0;           // number of candidates at any height
-  std::string rejected_;
+  std::vector<RollingBody> hanging_;                                 // candidates above the floor
+  std::size_t rolling_ = 0;                                          // number of candidates at any height
+  std::vector<std::string> rejected_;                                // joints with the reason
+  std::ptrdiff_t near_ = 0;                                          // number of the first ones that are nearly wheels
   std::optional<std::pair<std::size_t, std::size_t>> roller_wheel_;  // body of the first one, and number of its rollers
 };
 
@@ -229,7 +245,7 @@ void note_lying_names(const RigidBodies& robot, const RollingBody& wheel, std::v
   if (left ? says_left(names) || !says_right(names) : says_right(names) || !says_left(names)) return;
   notes.push_back({RobotNote::Kind::kSuspicious, joint_element(body.joint.name),
                    std::string("its name says ") + (left ? "right" : "left") + ", but it is the " +
-                       (left ? "left" : "right") + " wheel: y is " + number(wheel.wheel.centre_base[1]) + " m"});
+                       (left ? "left" : "right") + " wheel: y is " + length(wheel.wheel.centre_base[1]) + " m"});
 }
 
 void note_out_of_round(const RigidBodies& robot, const RollingBody& wheel, std::vector<RobotNote>& notes) {

@@ -17,12 +17,12 @@ std::string pair_objection(const RigidBodies& robot, const RollingBody& left, co
   const double base = a.centre_base[1] - b.centre_base[1];
   const double tolerance = std::max(kMinTolerance, kPairTolerance * base);
   if (std::abs(a.centre_base[0] - b.centre_base[0]) > tolerance) {
-    return names + " do not stand on one axle: x is " + number(a.centre_base[0]) + " and " + number(b.centre_base[0]) +
+    return names + " do not stand on one axle: x is " + length(a.centre_base[0]) + " and " + length(b.centre_base[0]) +
            " m";
   }
   if (std::abs(a.centre_base[1] + b.centre_base[1] - 2 * middle) > 2 * tolerance) {
-    return names + " are not equally far from the middle line: y is " + number(a.centre_base[1]) + " and " +
-           number(b.centre_base[1]) + " m";
+    return names + " are not equally far from the middle line: y is " + length(a.centre_base[1]) + " and " +
+           length(b.centre_base[1]) + " m";
   }
   return "";
 }
@@ -39,8 +39,8 @@ std::string radius_objection(const RigidBodies& robot, const std::vector<Rolling
 }  // namespace
 
 std::string described(const RigidBodies& robot, const RollingBody& wheel) {
-  return robot.bodies[wheel.body].joint.name + " (x " + number(wheel.wheel.centre_base[0]) + " m, y " +
-         number(wheel.wheel.centre_base[1]) + " m, radius " + number(wheel.wheel.radius) + " m)";
+  return robot.bodies[wheel.body].joint.name + " (x " + length(wheel.wheel.centre_base[0]) + " m, y " +
+         length(wheel.wheel.centre_base[1]) + " m, radius " + number(wheel.wheel.radius) + " m)";
 }
 
 std::string sort_into_pairs(const RigidBodies& robot, std::vector<RollingBody>& wheels) {
