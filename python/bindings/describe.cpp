@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "bindings/wheeled/describe_wheels.h"
+#include "control/legged/stand/nominal_stance.h"
 #include "machine/bodies/posed_bodies.h"
 #include "machine/bodies/rigid_bodies.h"
 #include "machine/description/mesh.h"
@@ -100,13 +101,26 @@ py::dict leg_dict(const LegModel& robot, std::size_t leg) {
       "lying"_a = plain(lying), "lying_foot"_a = plain(kinematics.position(lying)));
 }
 
+/// Returns the robot as it stands.
+py::dict standing_dict(const LegModel& robot, const NominalStance& stance) {
+  using namespace py::literals;
+  std::map<std::string, double> angles;
+  for (std::size_t i = 0; i < kLegsJoints; ++i) angles[robot.joints[i].name] = stance.motion.angles[i];
+  py::list places;
+  for (const RigidBody& body : posed(*robot.bodies, angles).bodies) {
+    for (const Shape& shape : body.shapes) places.append(plain(body.in_root * shape.in_body));
+  }
+  return py::dict("floor"_a = robot.belly - nominal_height(robot),
+                  "centre_of_gravity"_a = plain(stance.equations.centre_of_gravity), "in_base"_a = places);
+}
+
 py::dict describe_legs(const LegModel& robot) {
-  std::map<std::string, double> lying;
-  for (const JointModel& joint : robot.joints) lying[joint.name] = joint.rest_position;
-  py::dict result = machine_dict(robot, posed(*robot.bodies, lying), "legs", "leg");
+  py::dict result = machine_dict(robot, resting(*robot.bodies, robot.joints), "legs", "leg");
   py::list legs;
   for (std::size_t leg = 0; leg < kLegs; ++leg) legs.append(leg_dict(robot, leg));
   result["belly"] = robot.belly;
+  const NominalStance stance = nominal_stance(robot);
+  if (!stance.short_leg) result["upright"] = standing_dict(robot, stance);
   result["rotor_inertia"] = robot.rotor_inertia;
   result["legs"] = legs;
   return result;

@@ -22,6 +22,7 @@ namespace robot_control {
 ///   casters   the same without side and sign
 /// A robot on legs, whose bodies are shown lying (machine/legs/lying_posture.h), also has
 ///   belly     m, height of the body's lowest point; rotor_inertia kg·m²
+///   upright   {floor m, centre_of_gravity, in_base (of each shape)}: the robot as it stands, if its legs reach that far
 ///   legs      [{place "front_left" | …, joints [3], hip, knee, foot (m, at the zero pose), foot_radius, length,
 ///             bends "forward" | "backward", lying [3] rad, lying_foot}]
 pybind11::dict describe(const MachineModel& robot);

@@ -35,8 +35,9 @@
 #include "control/wheeled/wheel_loops/wheel_loop_stability.h"
 #include "drivers/driver.h"
 #include "drivers/mujoco/model/mujoco_model.h"
-#include "drivers/mujoco/mujoco_plant.h"
 #include "log/fields/trace_fields.h"
+#include "machine/bodies/rigid_bodies.h"
+#include "machine/gravity.h"
 #include "machine/legs/leg_model.h"
 #include "robots/robot_kind.h"
 #include "robots/wheeled/start_check.h"
@@ -120,8 +121,10 @@ DriveTrain robot_of(const Parameters& parameters) {
   return read_drive_train(load_description(parameters.urdf), parameters.robot);
 }
 
+/// Returns the machine as a loop of these parameters has it.
 std::unique_ptr<MachineModel> machine_of(const Parameters& parameters) {
-  return read_robot(load_description(parameters.urdf), parameters);
+  const RobotDescription description = load_description(parameters.urdf);
+  return read_robot(description, limited_by_drives(parameters, description));
 }
 
 /// Returns the machine as described: without the errors of the field, which add a load beside its centre of gravity.
@@ -130,22 +133,19 @@ MujocoPlantParameters without_errors(MujocoPlantParameters parameters) {
   return parameters;
 }
 
-/// Places the robot in the scene and waits for rest. Returns how far it leans in rad and the share of its weight on the
-/// drive wheels, or on the legs. `unloaded` names the drive wheels that carry nothing, and the bodies that touch the
-/// ground instead. Throws ParameterError as Robot::require_drivable.
-py::dict stand(const Parameters& parameters) {
-  const std::unique_ptr<MachineModel> robot = machine_of(parameters);
-  compose(parameters, *robot)->require_drivable();
-  MujocoPlant plant(*robot, without_errors(parameters.plant), parameters.loop.period());
-  plant.start();
-  TruthFrame truth;
-  plant.truth(truth);
+/// Starts a loop with the robot in the scene. Returns how far it leans at rest in rad, and the share of its weight on
+/// the drive wheels, or on the legs. `unloaded` names the drive wheels that carry nothing, and the bodies that touch
+/// the ground instead. Throws what the start of a loop throws.
+py::dict stand(Parameters parameters) {
+  parameters.plant = without_errors(parameters.plant);
+  ClosedLoop loop(parameters);
+  loop.step();
+  const TruthFrame& truth = loop.row().driver->truth;
   const double load = std::accumulate(truth.normal_force.begin(), truth.normal_force.end(), 0.0);
   const Quaternion& q = truth.pose_world.orientation;
-  const mjModel& model = *plant.model().model;
-  const double weight = model.body_subtreemass[plant.model().base_body] * mju_norm3(model.opt.gravity);
-  return py::dict("lean"_a = 2 * std::asin(std::min(1.0, std::hypot(q[0], q[1]))), "carried"_a = load / weight,
-                  "unloaded"_a = plant.warning());
+  const double mass = total_mass(*loop.robot().machine().bodies) + parameters.plant.payload;
+  return py::dict("lean"_a = 2 * std::asin(std::min(1.0, std::hypot(q[0], q[1]))),
+                  "carried"_a = load / (mass * kGravity), "unloaded"_a = loop.warning());
 }
 
 Parameters parameters_from(const std::string& path, const LayerValues& values) {

@@ -90,6 +90,9 @@ class ClosedLoop {
   /// Returns the reason why the log has ended; "" if it has not.
   const std::string& log_problem() const noexcept { return log_problem_; }
 
+  /// Returns what is suspicious about the machine; "" if nothing is.
+  std::string warning() const { return machine_->warning(); }
+
   const Robot& robot() const noexcept { return *robot_; }
   const Parameters& parameters() const noexcept { return parameters_; }
 

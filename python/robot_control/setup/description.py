@@ -31,11 +31,12 @@ def mjcf(urdf: str | PathLike[str], params: str | PathLike[str] | None = None) -
 
 
 def stand(urdf: str | PathLike[str], params: str | PathLike[str] | None = None) -> dict[str, Any]:
-    """The robot's rest in the scene, brakes on. `lean` is its tilt [rad], `carried` the part of its weight on the drive
-    wheels. `unloaded` names the wheels without load and the links that touch the ground instead, "" if there are none.
+    """Starts a loop with the robot, as `ClosedLoop` does, and returns its rest in the scene, brakes on.
+
+    `lean` is its tilt [rad], `carried` the part of its weight on the drive wheels, or on the legs. `unloaded` names the
+    wheels without load and the links that touch the ground instead, "" if there are none.
 
     Raises:
-        RobotError, ParameterError: as `describe`.
-        DriverError: it falls over, does not come to rest, or its wheels do not reach the ground.
+        RobotError, ParameterError, DriverError: as `ClosedLoop`.
     """
     return _robot_control.stand(*layered(params, urdf))

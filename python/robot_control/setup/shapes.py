@@ -13,10 +13,24 @@ RINGS = 24  # of a sphere, pole to pole
 
 
 def ground_height(robot: dict[str, Any]) -> float:
-    """z of the floor that the drive wheels touch, or on which a robot with legs lies, m."""
+    """z of the floor that the drive wheels touch, or on which a robot with legs lies or stands, m."""
+    if "floor" in robot:
+        return float(robot["floor"])
     if robot["kind"] == "legs":
         return float(robot["belly"])
     return min(float(wheel["centre"][2]) - float(wheel["radius"]) for wheel in robot["wheels"])
+
+
+def poses(robot: dict[str, Any]) -> list[dict[str, Any]]:
+    """The robot in each `pose`: as it is; of one on legs, "lying" and "standing"."""
+    if robot["kind"] != "legs":
+        return [robot | {"pose": ""}]
+    lying = robot | {"pose": "lying"}
+    if "upright" not in robot:
+        return [lying]
+    upright = robot["upright"]
+    shapes = [shape | {"in_base": place} for shape, place in zip(robot["shapes"], upright["in_base"], strict=True)]
+    return [lying, robot | upright | {"pose": "standing", "shapes": shapes}]
 
 
 def triangles_in_base(shape: dict[str, Any]) -> Array:

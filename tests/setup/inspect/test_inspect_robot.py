@@ -2,7 +2,6 @@
 
 import json
 import os
-import re
 import subprocess
 import sys
 from pathlib import Path
@@ -218,23 +217,9 @@ def test_a_robot_that_does_not_stand_is_reported_all_the_same(tmp_path):
     done = inspect(tmp_path / "sled.urdf")
     assert done.returncode == 1
     assert "left_wheel_joint" in done.stdout
-    assert "does not stand" in done.stderr
+    assert "refused: " in done.stderr
     assert "wheels bear no load" in done.stderr
     assert len(done.stderr.splitlines()) == 1
-
-
-def test_a_robot_whose_knees_are_too_weak_is_refused_as_by_the_loop(tmp_path):
-    weak = tmp_path / "weak.urdf"
-    weak.write_text(re.sub(r'effort="[0-9.]+"', 'effort="3"', (ROOT / "urdf/quadbot.urdf").read_text()))
-    done = inspect(weak)
-    from robot_control import ClosedLoop
-
-    with pytest.raises(ValueError, match="for half of the weight") as refused:
-        ClosedLoop(urdf=str(weak))
-    assert done.returncode == 1
-    assert "front left" in done.stdout
-    assert str(refused.value) in done.stderr
-    assert "cannot be driven" in done.stderr
 
 
 def test_a_wheel_that_hangs_in_the_air_is_named_with_what_stands_instead(tmp_path):

@@ -4,42 +4,45 @@ import argparse
 import json
 import sys
 
-from robot_control._robot_control import DriverError, ParameterError
+from robot_control._robot_control import DriverError, ParameterError, RobotError
 from robot_control.files.files import escaped, fit_for_message, given_path, one_message, write_text
 from robot_control.files.output_files import check_outputs
 from robot_control.setup.description import Description, describe, mjcf, stand
 from robot_control.setup.inspect.report import report
 from robot_control.ui.picture_file import check_picture
 
+REFUSALS = (DriverError, ParameterError, RobotError)
+REFUSED = "inspect_robot.py: refused"
+
 
 def main(arguments: list[str] | None = None) -> None:
-    """Prints the report; exits with 1 and one message when the robot is refused, does not stand or cannot be driven."""
+    """Prints the report. If a loop refuses the robot, the loop's sentence comes first, and the exit code is 1."""
     options = _parser().parse_args(arguments)
 
-    fallen = None
+    refused = ""
     with one_message("inspect_robot.py", DriverError, OSError, ValueError):
         check_outputs([options.mjcf, options.picture], [options.file, options.params])
         if options.picture is not None:
             check_picture(options.picture)
-        robot = describe(options.file, options.params)
+        with one_message(REFUSED, *REFUSALS):
+            robot = describe(options.file, options.params)
+        try:
+            robot["standing"] = stand(options.file, options.params)
+        except REFUSALS as error:
+            robot["refused"] = refused = fit_for_message(str(error))
+            print(f"{REFUSED}: {refused}", file=sys.stderr)
         if options.mjcf is not None:
             write_text(options.mjcf, mjcf(options.file, options.params))
         if options.picture is not None:
             from robot_control.setup.inspect.picture import draw_robot
 
             draw_robot(robot, options.picture)
-        try:
-            robot["standing"] = stand(options.file, options.params)
-        except DriverError as error:
-            fallen = f"it does not stand: {error}"
-        except ParameterError as error:
-            fallen = f"it cannot be driven: {error}"
     print(_json(robot) if options.json else report(robot))
     for written in (options.mjcf, options.picture):
         if written is not None:
             print(escaped(f"wrote {written}"), file=sys.stderr)
-    if fallen is not None:
-        sys.exit(f"inspect_robot.py: understood, but {fit_for_message(fallen)}")
+    if refused:
+        sys.exit(1)
 
 
 def _parser() -> argparse.ArgumentParser:
@@ -50,7 +53,9 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument("--params", type=given_path, metavar="YAML", help=meaning)
     parser.add_argument("--json", action="store_true", help="the same as JSON")
     parser.add_argument("--mjcf", type=given_path, metavar="OUT.xml", help="write the model that MuJoCo simulates")
-    parser.add_argument("--picture", type=given_path, metavar="OUT.png", help="draw the robot")
+    parser.add_argument(
+        "--picture", type=given_path, metavar="OUT.png", help="draw the robot, one on legs lying and standing"
+    )
     return parser
 
 

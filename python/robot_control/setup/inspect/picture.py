@@ -1,4 +1,6 @@
-"""Draws a robot as it was understood: from the front corner, from its right, from above; in true scale."""
+"""Draws a robot as it was understood: from the front corner, from its right, from above; in true scale. A robot on legs
+is drawn as it lies and as it stands.
+"""
 
 from __future__ import annotations
 
@@ -17,13 +19,13 @@ from scipy.ndimage import uniform_filter
 
 from robot_control.robot.pose import rotation
 from robot_control.setup.inspect.rendering import Array, Part, View, Window, render
-from robot_control.setup.shapes import ground_height, triangles_in_base
+from robot_control.setup.shapes import ground_height, poses, triangles_in_base
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
+    from matplotlib.figure import SubFigure
 
 LEFT, RIGHT, CASTER, OTHER, BODY = "#2f6fb7", "#d2553f", "#5d8f4e", "#c9a24b", "#c3c9d0"
 INK, SOFT, FLOOR = "#22262b", "#7b838c", "#9aa1a9"
@@ -34,28 +36,35 @@ PIXELS = 1000  # width of a rendered view
 
 
 def draw_robot(robot: dict[str, Any], path: Path) -> None:
-    """Writes a PNG of 1760 × 990 pixels."""
-    ground = ground_height(robot)
-    parts = _parts(robot)
+    """Writes a PNG of 1760 × 990 pixels for each pose, one below the other."""
+    shown = poses(robot)
     style = {"font.size": 11, "axes.titlesize": 12, "axes.titleweight": "bold", "axes.titlelocation": "left"}
     with mpl.rc_context(style):
-        figure = plt.figure(figsize=(16, 9), dpi=110)
-        figure.text(0.02, 0.955, robot["name"] or "robot", fontsize=19, fontweight="bold", color=INK)
-        figure.text(0.02, 0.923, _subtitle(robot), fontsize=12, color=SOFT)
-        corner = figure.add_axes((0.01, 0.07, 0.53, 0.84))
-        side = figure.add_axes((0.56, 0.52, 0.43, 0.40))
-        above = figure.add_axes((0.56, 0.03, 0.43, 0.44))
-        _draw_corner(corner, robot, parts, ground)
-        _draw_side(side, robot, parts, ground)
-        _draw_above(above, robot, parts)
-        _legend(figure, robot)
+        figure = plt.figure(figsize=(16, 9 * len(shown)), dpi=110)
+        for panel, pose in zip(figure.subfigures(len(shown), 1, squeeze=False).flat, shown, strict=True):
+            _draw_pose(panel, pose)
         figure.savefig(path)
         plt.close(figure)
 
 
+def _draw_pose(figure: SubFigure, robot: dict[str, Any]) -> None:
+    ground = ground_height(robot)
+    parts = _parts(robot)
+    figure.text(0.02, 0.955, robot["name"] or "robot", fontsize=19, fontweight="bold", color=INK)
+    figure.text(0.02, 0.923, _subtitle(robot), fontsize=12, color=SOFT)
+    corner = figure.add_axes((0.01, 0.07, 0.53, 0.84))
+    side = figure.add_axes((0.56, 0.52, 0.43, 0.40))
+    above = figure.add_axes((0.56, 0.03, 0.43, 0.44))
+    _draw_corner(corner, robot, parts, ground)
+    _draw_side(side, robot, parts, ground)
+    _draw_above(above, robot, parts)
+    _legend(figure, robot)
+
+
 def _subtitle(robot: dict[str, Any]) -> str:
     if robot["kind"] == "legs":
-        return f"{robot['mass']:.4g} kg · 4 legs of {_length(min(leg['length'] for leg in robot['legs']))} · lying"
+        length = _length(min(leg["length"] for leg in robot["legs"]))
+        return f"{robot['mass']:.4g} kg · 4 legs of {length} · {robot['pose']}"
     count = len(robot["wheels"])
     base = f"wheel base {_length(robot['wheel_base'])}"
     if robot["wheel_base_multiplier"] != 1:
@@ -153,7 +162,7 @@ def _draw_shadow(axes: Axes, parts: list[Part], ground: float, size: float) -> N
     alpha = render(flat, CORNER, Window(*extent), width)[..., 3] / 255
     blur = max(1, round(0.02 * size * width / (extent[1] - extent[0])))
     shadow = np.zeros((*alpha.shape, 4))
-    shadow[..., 3] = 0.22 * uniform_filter(alpha, 2 * blur + 1, mode="constant")
+    shadow[..., 3] = 0.22 * np.clip(uniform_filter(alpha, 2 * blur + 1, mode="constant"), 0, 1)  # rounding
     axes.imshow(shadow, extent=extent, zorder=2, interpolation="bilinear")
 
 
@@ -282,7 +291,7 @@ def _dimension_across(axes: Axes, left: tuple[float, float], right: tuple[float,
     )  # fmt: skip
 
 
-def _legend(figure: Figure, robot: dict[str, Any]) -> None:
+def _legend(figure: SubFigure, robot: dict[str, Any]) -> None:
     what = robot["kind"]
     entries: list[Any] = [Patch(color=LEFT, label=f"left {what}"), Patch(color=RIGHT, label=f"right {what}")]
     if robot.get("casters", ()):

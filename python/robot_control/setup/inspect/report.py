@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from typing import Any
 
 from robot_control.files.files import escaped_lines
-from robot_control.setup.shapes import ground_height
+from robot_control.setup.shapes import ground_height, poses
 from robot_control.ui.table import table
 
 WIDTH = 110
@@ -30,17 +30,25 @@ def report(robot: dict[str, Any]) -> str:
 
 
 def _body(robot: dict[str, Any]) -> list[str]:
-    x, y, z = robot["centre_of_gravity"]
     imu = robot["imu"]
     place = f"{imu['link']} at {_vector(imu['position'])}" if imu["link"] else f"none: taken as in {robot['base_link']}"
     yaw_inertia = f", yaw inertia {robot['yaw_inertia']:.4g} kg·m²" if "yaw_inertia" in robot else ""
     return [
         f"base               {robot['base_link']}, floor at z {ground_height(robot):.4g} m",
         f"mass               {robot['mass']:.5g} kg{yaw_inertia}",
-        f"centre of gravity  {_vector((x, y, z))}, {z - ground_height(robot):.4g} m above the floor",
+        *_centres(robot),
         f"IMU                {place}",
         *_standing(robot),
     ]
+
+
+def _centres(robot: dict[str, Any]) -> Iterator[str]:
+    head = "centre of gravity"
+    for pose in poses(robot):
+        centre = pose["centre_of_gravity"]
+        where = f", {pose['pose']}" if pose["pose"] else ""
+        yield f"{head:<19}{_vector(centre)}, {centre[2] - ground_height(pose):.4g} m above the floor{where}"
+        head = ""
 
 
 def _standing(robot: dict[str, Any]) -> list[str]:
@@ -131,4 +139,4 @@ def _notes(robot: dict[str, Any], kind: str) -> list[str]:
 
 
 def _vector(values: tuple[float, ...] | list[float]) -> str:
-    return "(" + ", ".join(f"{value + 0.0:.4g}" for value in values) + ") m"
+    return "(" + ", ".join(f"{round(value, 6) + 0.0:.4g}" for value in values) + ") m"  # to a micrometre, and no -0
