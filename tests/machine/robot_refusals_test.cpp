@@ -161,7 +161,7 @@ TEST(RobotRefusals, AWheelShapeBesideItsAxle) {
               names("left_wheel_joint", "round about the axle"));
   EXPECT_THAT(refusal(diffbot_with(kLeftLink, "<collision>\n      <origin rpy=\"1.5707963267948966 0 0\"/>",
                                    "<collision>\n      <origin rpy=\"0 0 0\"/>")),
-              names("left_wheel_joint", "round about the axle"));
+              names("left_wheel_joint", "did you forget rpy=\"1.5708 0 0\" of the cylinder?"));
 }
 
 TEST(RobotRefusals, AMovingLinkOfZeroOrNegativeMass) {

@@ -124,7 +124,7 @@ TEST(ScrubMultiplier, IsDoubtfulForUnequalLoads) {
                            joint({.name = "bed", .child = "cargo", .type = "fixed", .axis = ""});
   // 10 of 24 kg
   EXPECT_THAT(notes_of(read_drive_train(robot_of(text), {}), RobotNote::Kind::kSuspicious),
-              HasSubstr("-0.0416667 m left"));
+              HasSubstr("-0.041667 m left"));
   EXPECT_THAT(notes_of(read_drive_train(robot_of(axles({"0.2", "-0.2"})), {}), RobotNote::Kind::kSuspicious),
               Not(HasSubstr("equal loads")));
 }

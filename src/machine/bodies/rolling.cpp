@@ -154,7 +154,7 @@ void measure_shapes(const RigidBody& body, RollingMeasure& measure) {
     measure.nearly = !turn.empty();
     measure.objection =
         measure.nearly
-            ? "its cylinder lies across the axle: did you forget rpy=\"" + turn + "\" of the cylinder?"
+            ? "its cylinder lies across the axle (did you forget rpy=\"" + turn + "\" of the cylinder?)"
             : "its shape does not lie round about the axle, from which it reaches as far as " + number(reach) + " m";
     return;
   }

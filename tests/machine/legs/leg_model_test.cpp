@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "machine/bodies/rigid_bodies.h"
+#include "machine/legs/leg_chains.h"
 #include "machine/legs/leg_dynamics.h"
 #include "machine/legs/legs_corpus.h"
 #include "machine/legs/lying_posture.h"

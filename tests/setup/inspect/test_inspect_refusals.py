@@ -153,7 +153,7 @@ MISTAKES: dict[str, tuple[Dog | Cart, str]] = {
     "a body without shape": (Dog(body=""), "a robot on legs lies on its body, which has no shape"),
     "a cylinder without rpy": (
         Cart(rpy="0 0 0"),
-        'left_joint: its cylinder lies across the axle: did you forget rpy="1.5708 0 0" of the cylinder',
+        'left_joint: its cylinder lies across the axle .did you forget rpy="1.5708 0 0" of the cylinder',
     ),
     "one cylinder without rpy": (Cart(rpy_of_right="0 0 0"), "right_joint: its cylinder lies across the axle"),
     "axles 6 degrees off": (

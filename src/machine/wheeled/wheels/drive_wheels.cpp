@@ -94,6 +94,7 @@ class Search {
     if (objection.empty() && !bound) objection = hanging_objection(pairs);
     if (objection.empty()) return pairs;
     const std::vector<std::string> nearly(rejected_.begin(), rejected_.begin() + near_);
+    const std::vector<std::string> others(rejected_.begin() + near_, rejected_.end());
     std::string text = nearly.empty() ? "" : joined(nearly) + "; and without it ";
     text += "which wheels drive is not clear: ";
     if (bound) text += "the file says that " + list(names_of(driven)) + " are driven, but ";
@@ -101,7 +102,7 @@ class Search {
     for (const RollingBody& candidate : candidates_) {
       text += (&candidate == &candidates_.front() ? "" : "; ") + described(robot_, candidate);
     }
-    if (!rejected_.empty()) text += ". Not: " + joined(rejected_);
+    if (!others.empty()) text += ". Not: " + joined(others);
     refuse_unclear(text);
   }
 
