@@ -36,13 +36,13 @@ inline constexpr std::uint64_t kLayoutVersion = 5;
 /// The first bytes of every shared object, LatestFrames or Ring. `magic` to `retired` have the same place in every
 /// layout version, so that a process can check and retire an object that it cannot read.
 struct ChannelHead {
-  std::atomic<std::uint64_t> magic;                 ///< kChannelMagic, stored last when the object is made
-  std::uint64_t layout_version;                     ///< kLayoutVersion
-  std::uint64_t frame_bytes;                        ///< sizeof(Frame)
-  std::uint64_t slots;                              ///< number of slots for frames
-  std::atomic<std::uint64_t> retired;               ///< 1: the name belongs to another object now, which must be mapped
-  std::atomic<std::uint64_t> attached_run;          ///< run whose sensors the writer of this channel waits on
-  std::atomic<std::uint64_t> robot_hash;            ///< MachineModel::hash of the writer's robot; sensors channel only
+  std::atomic<std::uint64_t> magic;         ///< kChannelMagic, stored last when the object is made
+  std::uint64_t layout_version;             ///< kLayoutVersion
+  std::uint64_t frame_bytes;                ///< sizeof(Frame)
+  std::uint64_t slots;                      ///< number of slots for frames
+  std::atomic<std::uint64_t> retired;       ///< 1: the name belongs to another object now, which must be mapped
+  std::atomic<std::uint64_t> attached_run;  ///< run whose sensors the writer of this channel waits on
+  std::atomic<std::uint64_t> robot_hash;  ///< of the writer's robot: MachineModel::hash (sensors), stop_owner (permit)
   std::array<std::atomic<char>, 256> robot_source;  ///< file of that robot, zero-terminated
 };
 

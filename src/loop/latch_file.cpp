@@ -1,8 +1,10 @@
 #include "loop/latch_file.h"
 
 #include <array>
+#include <cctype>
 #include <cerrno>
 #include <chrono>
+#include <cstdio>
 #include <ctime>
 #include <filesystem>
 #include <optional>
@@ -11,6 +13,7 @@
 
 #include "files/input_file.h"
 #include "files/output_file.h"
+#include "machine/model_hash.h"
 #include "rt/clock.h"
 #include "signals/checksum.h"
 #include "signals/names.h"
@@ -157,12 +160,27 @@ void LatchFile::finish(std::uint64_t causes, std::uint64_t first_cause) {
   wait();
 }
 
-std::string latch_path(const std::string& setting, const std::string& host, const std::string& name_space) {
+std::uint64_t stop_owner(const MachineModel& machine) {
+  ModelHash hash;
+  hash.add(machine.name);
+  for (const std::size_t joint : driven_joint_indices(machine)) hash.add(machine.joints[joint].name);
+  return hash.value();
+}
+
+std::string latch_path(const std::string& setting, const std::string& host, const std::string& name_space,
+                       const MachineModel& robot) {
   std::error_code ignored;
   if (setting.empty() || (!setting.ends_with('/') && !std::filesystem::is_directory(setting, ignored))) return setting;
   std::string name = "latch." + host;
   for (const char c : name_space) name += c == '/' ? '.' : c;
   while (name.ends_with('.')) name.pop_back();
+  constexpr std::size_t kMaxName = 64;  // of 255 bytes that a file name may have
+  name += '.';
+  for (const char c : robot.name.substr(0, kMaxName))
+    name += std::isalnum(static_cast<unsigned char>(c)) != 0 ? c : '_';
+  std::array<char, 10> identity{};
+  std::snprintf(identity.data(), identity.size(), ".%08x", static_cast<unsigned>(stop_owner(robot) & 0xffffffffU));
+  name += identity.data();
   return setting + (setting.ends_with('/') ? "" : "/") + name;
 }
 

@@ -18,6 +18,8 @@
 #include <future>
 #include <string>
 
+#include "machine/machine_model.h"
+
 namespace robot_control {
 
 struct LatchRecord {
@@ -70,8 +72,13 @@ class LatchFile {
   std::future<std::string> writing_;
 };
 
-/// The path of the record: `setting` itself, or, if that is a folder (it ends with '/', or exists as one), the file
-/// latch.<host>.<name space, '/' as '.'> in it.
-std::string latch_path(const std::string& setting, const std::string& host, const std::string& name_space);
+/// Returns what tells one robot from another as the owner of a latched stop: its name and those of the joints that it
+/// drives. A change of its sizes, masses or parameters does not change it.
+std::uint64_t stop_owner(const MachineModel& machine);
+
+/// The path of the record: `setting` itself, unless it is a folder (it ends with '/', or exists as one). In a folder
+/// each robot has a file of its own (stop_owner): latch.<host>.<name space, '/' as '.'>.<name of the robot>.<identity>.
+std::string latch_path(const std::string& setting, const std::string& host, const std::string& name_space,
+                       const MachineModel& robot);
 
 }  // namespace robot_control

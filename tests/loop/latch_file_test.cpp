@@ -9,6 +9,7 @@
 
 #include "signals/permit.h"
 #include "support/file_content.h"
+#include "support/matchers.h"
 #include "support/temporary_folder.h"
 
 namespace robot_control::tests {
@@ -117,11 +118,17 @@ TEST_F(LatchFileTest, ALinkToNothingIsALatchForItsDiskMayNotBeMounted) {
   EXPECT_EQ(found().causes, 0u) << "after a reset, once it is there";
 }
 
-TEST(LatchPath, IsAFileNamedAfterHostAndNamespaceInAFolder) {
-  EXPECT_EQ(latch_path("/var/stop", "arm", "/robot2"), "/var/stop");
-  EXPECT_EQ(latch_path("/var/stops/", "arm", "/"), "/var/stops/latch.arm");
-  EXPECT_EQ(latch_path("/var/stops/", "arm", "/fleet/robot2"), "/var/stops/latch.arm.fleet.robot2");
-  EXPECT_EQ(latch_path("", "arm", "/"), "");
+TEST(LatchPath, IsAFileNamedAfterHostNamespaceAndRobotInAFolder) {
+  MachineModel robot;
+  robot.name = "../a dog";
+  EXPECT_EQ(latch_path("/var/stop", "arm", "/robot2", robot), "/var/stop");
+  EXPECT_THAT(latch_path("/var/stops/", "arm", "/", robot), StartsWith("/var/stops/latch.arm.___a_dog."));
+  const std::string path = latch_path("/var/stops/", "arm", "/fleet/robot2", robot);
+  EXPECT_THAT(path, StartsWith("/var/stops/latch.arm.fleet.robot2.___a_dog."));
+  EXPECT_EQ(latch_path("", "arm", "/", robot), "");
+  robot.joints.resize(1);
+  robot.joints[0].name = "hip";
+  EXPECT_NE(latch_path("/var/stops/", "arm", "/fleet/robot2", robot), path) << "another robot of that name";
 }
 
 }  // namespace robot_control::tests

@@ -5,6 +5,22 @@
 #include "signals/robot_kinds.h"
 
 namespace robot_control {
+namespace {
+
+/// A stop that is latched in the channel belongs to the robot that it stopped. If that was another one, it ends here.
+FrameWriter<Permit> owned_by(const MachineModel& robot, Output<Permit>& output) {
+  ChannelHead& head = output.writer.memory()->head;
+  const std::uint64_t stopped = announced_robot(head).hash;
+  if (stopped != 0 && stopped != stop_owner(robot)) {
+    Permit none;
+    none.head.run = MonitorCycle::kRunBeforeDriver;
+    output.writer.publish(none);
+  }
+  announce_robot(head, stop_owner(robot), robot.name);
+  return output.writer;
+}
+
+}  // namespace
 
 MonitorProcess::MonitorProcess(const Parameters& parameters, const Robot& robot, const std::string& bus)
     : ConsumerProcess(parameters, robot, bus,
@@ -14,7 +30,7 @@ MonitorProcess::MonitorProcess(const Parameters& parameters, const Robot& robot,
       latch_file_(parameters.latch_file),
       loss_ns_(static_cast<std::int64_t>(parameters.safety.loss_cycles) * parameters.loop.period_ns()),
       cycle_(robot.make_monitor(), robot_.hash, loss_ns_,
-             {&sensors_.reader, &state_.reader, &command_.reader, output_.writer},
+             {&sensors_.reader, &state_.reader, &command_.reader, owned_by(robot_, output_)},
              load_script(parameters.loop.command_script), clock(),
              {.causes = latch_file_.found().causes, .first_cause = latch_file_.found().first_cause}),
       inherited_(cycle_.permit()) {
