@@ -89,6 +89,13 @@ inline std::vector<Word> words_of(DriverName) {
   return words;
 }
 
+/// The kind of the robot.
+enum class KindChoice { kDerived, kOnWheels, kOnLegs };  ///< derived: found in the URDF (robots/robot_kind.h)
+
+inline std::vector<Word> words_of(KindChoice) {
+  return {{"derived", KindChoice::kDerived}, {"wheels", KindChoice::kOnWheels}, {"legs", KindChoice::kOnLegs}};
+}
+
 /// The IMU of a real machine.
 enum class ImuChoice {
   kDriver,  ///< what the driver measures, if anything
@@ -102,6 +109,7 @@ inline std::vector<Word> words_of(ImuChoice) {
 
 struct Parameters {
   std::string urdf;  ///< path, relative to the folder of the file that names it
+  KindChoice kind = KindChoice::kDerived;
   DriveTrainParameters robot;
   LegParameters legs;  ///< in the block `robot`, too
   LoopParameters loop;

@@ -11,18 +11,20 @@
 
 namespace robot_control {
 
-MachineKind kind_of(const RobotDescription& description) {
+MachineKind kind_of(const RobotDescription& description, KindChoice choice) {
+  if (choice != KindChoice::kDerived)
+    return choice == KindChoice::kOnLegs ? MachineKind::kOnLegs : MachineKind::kOnWheels;
   return has_legs(read_moving_bodies(description)) ? MachineKind::kOnLegs : MachineKind::kOnWheels;
 }
 
 std::unique_ptr<MachineModel> read_robot(const RobotDescription& description, const Parameters& parameters) {
-  if (kind_of(description) == MachineKind::kOnLegs)
+  if (kind_of(description, parameters.kind) == MachineKind::kOnLegs)
     return std::make_unique<LegModel>(read_legs(description, parameters.robot, parameters.legs));
   return std::make_unique<DriveTrain>(read_drive_train(description, parameters.robot));
 }
 
 Parameters limited_by_drives(const Parameters& parameters, const RobotDescription& description) {
-  const bool unlimited = parameters.drives.empty() || kind_of(description) == MachineKind::kOnLegs;
+  const bool unlimited = parameters.drives.empty() || kind_of(description, parameters.kind) == MachineKind::kOnLegs;
   return unlimited ? parameters : within_drives(parameters, description);
 }
 

@@ -1,7 +1,7 @@
 #pragma once
-/// The kind of a robot follows from its URDF.
+/// The kind of a robot follows from its URDF, unless Parameters::kind names it.
 ///
-///   legs     at least two chains of joints on the root body are legs (machine/legs/leg_model.h)
+///   legs     has_legs of machine/legs/leg_chains.h
 ///   wheels   every other robot
 
 #include <memory>
@@ -16,7 +16,7 @@ namespace robot_control {
 enum class MachineKind { kOnWheels, kOnLegs };
 
 /// Throws RobotError as read_moving_bodies.
-MachineKind kind_of(const RobotDescription& description);
+MachineKind kind_of(const RobotDescription& description, KindChoice choice = KindChoice::kDerived);
 
 /// Returns the parameters within what the drives of Parameters::drives can do (robots/wheeled/within_drives.h); those
 /// of a robot on legs are as given. Throws as read_robot, and ParameterError with all problems of the drive file.

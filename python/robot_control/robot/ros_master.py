@@ -50,6 +50,14 @@ class Master:
         code, _, state = answer
         return state if code == 1 else None
 
+    def text(self, name: str) -> str:
+        """The text that the server holds as `name` (absolute); "" if it holds none."""
+        try:
+            answer: Any = self._proxy.getParam(self._own, name)
+        except NO_ANSWER:
+            return ""
+        return answer[2] if answer[0] == 1 and isinstance(answer[2], str) else ""
+
     def register_again(self) -> bool:
         """Registers this node with a master that was started again; its living connections stay. True if it is done.
 

@@ -1,8 +1,13 @@
 #include "ros/nodes/launch_end.h"
 
 #include <signal.h>
+#include <sys/socket.h>
+#include <sys/un.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <cerrno>
+#include <cstddef>
 #include <cstdlib>
 #include <fstream>
 #include <sstream>
@@ -19,13 +24,35 @@ bool is_roslaunch(const std::string& command_line) {
   return false;
 }
 
-bool end_launch() {
+bool launched() {
   if (std::getenv(kEndsLaunch) == nullptr) return false;
-  const pid_t parent = getppid();
-  std::ifstream file("/proc/" + std::to_string(parent) + "/cmdline", std::ios::binary);
+  std::ifstream file("/proc/" + std::to_string(getppid()) + "/cmdline", std::ios::binary);
   std::stringstream command_line;
   command_line << file.rdbuf();
-  return is_roslaunch(command_line.str()) && kill(parent, SIGINT) == 0;
+  return is_roslaunch(command_line.str());
+}
+
+std::string launched_nodes() {
+  const std::string parent = std::to_string(getppid());
+  std::ifstream file("/proc/" + parent + "/task/" + parent + "/children");
+  std::string nodes;
+  std::getline(file, nodes);
+  return nodes;
+}
+
+bool first_to_refuse() {
+  // A name in the abstract name space belongs to one socket, and ends with it.
+  static const int held = socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+  const std::string name = "robot_control.refused." + std::to_string(getppid());
+  sockaddr_un address{};
+  address.sun_family = AF_UNIX;
+  std::copy(name.begin(), name.end(), address.sun_path + 1);
+  const auto length = static_cast<socklen_t>(offsetof(sockaddr_un, sun_path) + 1 + name.size());
+  return bind(held, reinterpret_cast<const sockaddr*>(&address), length) == 0 || errno != EADDRINUSE;
+}
+
+bool end_launch() {
+  return launched() && kill(getppid(), SIGINT) == 0;
 }
 
 }  // namespace robot_control

@@ -11,6 +11,7 @@
 #include <cstdio>
 #include <exception>
 #include <filesystem>
+#include <utility>
 
 #include "bus/bus_cleanup.h"
 #include "ros/network/accepted_sockets.h"
@@ -121,6 +122,39 @@ void await_interrupt() {
   for (const std::int64_t end = monotonic_ns() + kLimit; !interrupted.load() && monotonic_ns() < end;) sleep_ns(kLook);
 }
 
+/// Waits until roslaunch starts no more nodes.
+void await_launched() {
+  constexpr std::int64_t kQuiet = 2'000'000'000;   // ns; it starts several nodes in a second
+  constexpr std::int64_t kLimit = 20'000'000'000;  // ns
+  constexpr std::int64_t kLook = 50'000'000;       // ns
+  std::string nodes = launched_nodes();
+  std::int64_t since_ns = monotonic_ns();
+  for (const std::int64_t end = since_ns + kLimit; !interrupted.load() && monotonic_ns() < end; sleep_ns(kLook)) {
+    if (std::string now = launched_nodes(); now != nodes) {
+      nodes = std::move(now);
+      since_ns = monotonic_ns();
+    }
+    if (monotonic_ns() - since_ns > kQuiet) return;
+  }
+}
+
+constexpr const char* kStartRefused = "start_refused";  // parameter that why.py shows while no node runs
+
+/// Prints the reason. A robot or a setup that is refused ends the launch, in which the other nodes refuse it, too.
+void refuse(const NodeProgram& program, const std::exception& error) {
+  const bool all = dynamic_cast<const SetupError*>(&error) != nullptr ||
+                   dynamic_cast<const ParameterError*>(&error) != nullptr ||
+                   dynamic_cast<const RobotError*>(&error) != nullptr;
+  const bool ends = program.in_loop && (all || program.name == program_of(Role::kDriver)) && launched();
+  if (ends && interrupted.load()) return;  // another node has said why, and the launch ends
+  const bool first = !ends || first_to_refuse();
+  if (first) std::fprintf(stderr, "%s: refused:\n%s\n", program.name.c_str(), error.what());
+  if (first && all && program.in_loop) ros::param::set(kStartRefused, std::string(error.what()));
+  if (!ends) return;
+  if (first) await_launched();
+  if (!first || end_launch()) await_interrupt();
+}
+
 class NodeLoop {
  public:
   NodeLoop(Node& node, const Setup& setup, ros::NodeHandle& handle)
@@ -215,9 +249,10 @@ int run_node(int argc, char** argv, const NodeProgram& program) {
     }
     for (const std::string& text : setup.unexpected_overrides) ROS_INFO("%s", text.c_str());
     for (const std::string& text : setup.parameters.warnings) ROS_WARN("%s", text.c_str());
-    if (!setup.unread_description.empty()) ROS_WARN("%s", setup.unread_description.c_str());
+    if (!setup.unread_description.empty() && !launched()) ROS_WARN("%s", setup.unread_description.c_str());
     for (const std::string& text : node->rate_notes()) ROS_WARN("%s", text.c_str());
     node->connect(handle);
+    if (program.in_loop) ros::param::del(kStartRefused);
     ros::AsyncSpinner callbacks(kCallbackThreads);
     if (!node->calls_callbacks()) callbacks.start();
     NodeLoop(*node, setup, handle).run();
@@ -227,7 +262,7 @@ int run_node(int argc, char** argv, const NodeProgram& program) {
     return 0;
   } catch (const std::exception& error) {
     if (ros::isInitialized()) forget_argument();
-    std::fprintf(stderr, "%s: refused:\n%s\n", name.c_str(), error.what());
+    refuse(program, error);
     return 1;
   }
 }

@@ -60,9 +60,7 @@ class TelemetryNode final : public Node {
         process_(with_blocks_of_other_nodes(setup.parameters), *composed_, setup.bus) {}
 
   void connect(ros::NodeHandle& /*handle*/) override {
-    if (const std::string& path = process_.bag_path(); !path.empty()) {
-      ROS_INFO("log: %s; telemetry.quota = %g GB", absolute(path).c_str(), quota_);
-    }
+    if (setup_.parameters.telemetry.record != RecordMode::kRequest) log_path();
     if (const std::string& path = process_.black_box_path(); !path.empty()) {
       ROS_INFO("black box: %s", absolute(path).c_str());
     }
@@ -87,6 +85,7 @@ class TelemetryNode final : public Node {
     }
     for (const std::string& note : process_.take_notes()) ROS_WARN("black box: %s", note.c_str());
     process_.request_recording(requested_.load());
+    if (process_.recording()) log_path();
     const std::string problem = process_.problem();
     if (problem == reported_) return;
     if (!problem.empty()) ROS_ERROR("%s. The loop goes on, its rows are counted and lost", problem.c_str());
@@ -103,7 +102,7 @@ class TelemetryNode final : public Node {
     for (const std::string& note : process_.take_notes()) ROS_WARN("black box: %s", note.c_str());
     const TelemetryCounts counts = process_.counts();
     const auto number = [](std::uint64_t value) { return static_cast<unsigned long long>(value); };
-    if (!process_.bag_path().empty()) {
+    if (path_logged_) {
       ROS_INFO("%llu rows in %s, %llu dropped, %llu overwritten, %llu not taken by the disk", number(counts.bag_rows),
                process_.bag_path().c_str(), number(counts.dropped), number(counts.overwritten),
                number(counts.bag_unwritten));
@@ -131,6 +130,12 @@ class TelemetryNode final : public Node {
   }
 
  private:
+  /// Logs once where the log is written.
+  void log_path() {
+    if (process_.bag_path().empty() || std::exchange(path_logged_, true)) return;
+    ROS_INFO("log: %s; telemetry.quota = %g GB", absolute(process_.bag_path()).c_str(), quota_);
+  }
+
   static std::string absolute(const std::string& path) {
     return std::filesystem::absolute(path).lexically_normal().string();
   }
@@ -158,8 +163,9 @@ class TelemetryNode final : public Node {
 
   const Setup& setup_;
   bool lockstep_;
-  bool precedes_;         ///< this thread is still to be given a higher priority
-  double quota_;          ///< GB
+  bool precedes_;  ///< this thread is still to be given a higher priority
+  double quota_;   ///< GB
+  bool path_logged_ = false;
   std::string reported_;  ///< problem that was reported last
   std::atomic<bool> requested_{false};
   std::unique_ptr<Robot> composed_;

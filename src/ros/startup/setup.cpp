@@ -29,7 +29,7 @@ std::string installed_config() {
 
 /// Keys of a block that launch files set from their arguments; roslaunch prints them.
 constexpr const char* kSetByLaunch =
-    "driver drives urdf clock command_script bus wait_for_nodes wait_for_telemetry latch_file directory "
+    "driver drives urdf kind clock command_script bus wait_for_nodes wait_for_telemetry latch_file directory "
     "record black_box scene seed cycles laser.rate map initial_pose speed unknown_is_free";
 
 constexpr const char* kYamlPath = "the path of a YAML file";
@@ -128,7 +128,7 @@ std::string other_controller(const std::string& node, const MachineModel& machin
   const bool legs = kind == MachineKind::kOnLegs;
   return "robot '" + machine.name + "' of " + machine.source + " is on " + (legs ? "legs" : "wheels") + ", and " +
          node + " controls robots on " + (legs ? "wheels" : "legs") + ": start " + own +
-         " instead (robot.launch, sim.launch: kind:=" + (legs ? "legs" : "wheels") + ")";
+         " instead, as robot.launch and sim.launch do";
 }
 
 void read_machine(const std::string& node, const std::vector<Overlay>& overlays, Setup& setup, std::string& problems) {
@@ -176,8 +176,10 @@ void fill_setup(const std::string& node, bool in_loop, Setup& setup) {
   std::string& directory = setup.parameters.telemetry.directory;
   directory =
       (directory.empty() ? caller_folder().string() : resolved_path(directory)) + ros::this_node::getNamespace();
-  setup.parameters.latch_file =
-      latch_path(resolved_path(setup.parameters.latch_file), host_name(), ros::this_node::getNamespace());
+  if (setup.machine != nullptr) {
+    setup.parameters.latch_file = latch_path(resolved_path(setup.parameters.latch_file), host_name(),
+                                             ros::this_node::getNamespace(), *setup.machine);
+  }
   setup.bus = setup.parameters.loop.bus;
   if (setup.bus.empty()) setup.bus = bus_name(ros::master::getURI(), ros::this_node::getNamespace());
 }

@@ -1,6 +1,11 @@
 #include "ros/nodes/launch_end.h"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <array>
+
+#include "support/processes/child_process.h"
 
 namespace robot_control::tests {
 
@@ -21,6 +26,20 @@ TEST(LaunchEnd, LeavesALaunchAloneThatDoesNotAskForIt) {
   setenv(kEndsLaunch, "true", 1);
   EXPECT_FALSE(end_launch()) << "this test's parent is no roslaunch";
   unsetenv(kEndsLaunch);
+}
+
+TEST(LaunchEnd, KnowsTheFirstOfSeveralProcessesThatRefuse) {
+  std::array<int, 2> told{};
+  ASSERT_EQ(pipe(told.data()), 0);
+  const ChildProcess first([&] {
+    const char answer = first_to_refuse() ? 'y' : 'n';
+    if (::write(told[1], &answer, 1) == 1) pause();
+    return 0;
+  });
+  char answer = 0;
+  ASSERT_EQ(::read(told[0], &answer, 1), 1);
+  EXPECT_EQ(answer, 'y');
+  EXPECT_EQ(ChildProcess([] { return first_to_refuse() ? 1 : 0; }).wait(), 0) << "the first one lives";
 }
 
 }  // namespace robot_control::tests

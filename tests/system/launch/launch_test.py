@@ -1,6 +1,7 @@
 """sim.launch: a run that ends by itself, its log, its bag, a namespace of its own."""
 
 import os
+import re
 import signal
 import tempfile
 import time
@@ -13,9 +14,9 @@ import rosgraph
 import rospy
 from robot_control.data.record.main import TOPICS
 from robot_control.data.run_log import read_log
-from robot_control.msg import SafetyStatus
+from robot_control.msg import RobotKind, SafetyStatus
 from system.launch_support import LAUNCH_LIMIT, Launch
-from system.system_support import ESTIMATOR, MONITOR, Robot, refusal, repository, wait_for
+from system.system_support import ESTIMATOR, MONITOR, Latest, Robot, refusal, repository, wait_for
 from tf2_msgs.msg import TFMessage
 
 COMMANDS = {"cmd_vel", "cmd_vel_stamped", "joy_vel", "key_vel", "console_vel", "path_vel", "pause"}
@@ -145,6 +146,43 @@ class LaunchTest(unittest.TestCase):
         self.assertEqual([plant["scene"], plant["seed"], plant["laser"]], ["", "", {"rate": ""}])
         self.assertEqual([rospy.get_param(f"/robot/{name}") for name in ("urdf", "command_script", "bus")], [""] * 3)
         self.assertTrue(rospy.get_param("/diff_drive_controller/config").endswith("/robot_params.yaml"))
+
+    def test_a_robot_that_is_refused_is_refused_once_and_ends_the_launch(self) -> None:
+        urdf = self.out.parents[2] / "refused.urdf"
+        shipped = repository() / "urdf"
+        for text, reason in (  # all nodes refuse the first one, its controller alone the second
+            ((shipped / "diffbot.urdf").read_text().replace('"continuous"', '"fixed"'), "no drive wheels found"),
+            (re.sub(r'effort="[0-9.]+"', 'effort="3"', (shipped / "quadbot.urdf").read_text()), "half of the weight"),
+        ):
+            urdf.write_text(text)
+            launch = Launch(f"urdf:={urdf}", f"bus:={self.bus}")
+            self.addCleanup(launch.end)
+            launch.wait()
+            self.assertEqual(launch.output.count(reason), 1, launch.output)
+            for alarm in ("REQUIRED process", "has died", "Traceback"):
+                self.assertNotIn(alarm, launch.output)
+            self.assertIn(reason, rospy.get_param("/start_refused"))
+
+    def test_the_kind_is_found_and_a_stop_belongs_to_its_robot(self) -> None:
+        urdf = self.out.parents[2] / "dog.urdf"
+        urdf.write_text((repository() / "urdf" / "quadbot.urdf").read_text())
+        robot, kind = Robot("robot4"), Latest("/robot4/robot_kind", RobotKind)
+        rospy.set_param("/robot4/robot_description", "<robot name='left over'/>")
+        dog = Launch(f"urdf:={urdf}", "ns:=robot4", f"bus:={self.bus}")
+        self.addCleanup(dog.end)
+        wait_for("its kind", lambda: kind.message and "leg_controller" in kind.message.nodes)
+        wait_for("the loop", lambda: robot.state in {SafetyStatus.READY, SafetyStatus.INIT})
+        robot.call("e_stop_trigger")
+        wait_for("the stop", lambda: robot.state == SafetyStatus.STOPPED)
+        dog.end()
+        for unwanted in ("robot_description", "log: "):  # it was typed; no log is written without `telemetry`
+            self.assertNotIn(unwanted, dog.output)
+        rospy.delete_param("/robot4/robot_description")
+        robot.status = None
+        self.addCleanup(Launch("ns:=robot4", f"bus:={self.bus}").end)
+        wait_for("its status", lambda: robot.status is not None)
+        wait_for("the end of INIT", lambda: robot.state != SafetyStatus.INIT, every=lambda: robot.send(0, 0))
+        self.assertNotIn("e_stop_service", robot.causes)
 
     def test_drives_the_urdf_it_is_given(self) -> None:
         urdf = self.out.parents[2] / "other.urdf"

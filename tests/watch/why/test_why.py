@@ -142,6 +142,13 @@ def test_a_master_alone_is_no_robot():
     assert answer.commands == ("roslaunch robot_control sim.launch",)
 
 
+def test_a_robot_that_was_refused_is_named_with_the_reason():
+    refused = "robot.urdf: <robot>: 2 legs found.\n  /robot/rate = 500 overrides robot.rate"
+    answer = judge(Facts(master="http://127.0.0.1:11311", refused=refused))
+    assert answer.headline.endswith("because it was refused: robot.urdf: <robot>: 2 legs found.")
+    assert answer.actions == (("integrator", "/robot/rate = 500 overrides robot.rate"),)
+
+
 def test_it_names_the_namespace_in_which_a_robot_runs():
     facts = Facts(master="http://127.0.0.1:11311", elsewhere=("/robot2",))
     assert "rosrun robot_control why.py __ns:=/robot2" in judge(facts).commands

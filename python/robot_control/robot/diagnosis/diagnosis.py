@@ -63,6 +63,10 @@ def _no_nodes(facts: Facts) -> Answer | None:
         to_do = (("", "start it with the robot, or set ROS_MASTER_URI to where it runs"),)
         return Answer(Verdict.STOPPED, f"There is no ROS master at {facts.master}.", to_do, (_launch(facts),))
     absent = missing_nodes(facts)
+    if safety is None and len(absent) == len(facts.loop) and facts.refused:
+        why, *more = facts.refused.splitlines()
+        actions = tuple(("integrator", line.strip()) for line in more)
+        return Answer(Verdict.STOPPED, f"No node of the robot runs, because it was refused: {why}", actions)
     if safety is None and len(absent) == len(facts.loop):
         where = "" if facts.namespace == "/" else f" in {facts.namespace}"
         commands = [_launch(facts)]

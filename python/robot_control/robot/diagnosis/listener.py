@@ -32,6 +32,7 @@ class Listener:
         self.master = Master(rospy.get_name())
         self._state: Sequence[Any] | None = None
         self._queried_at = 0.0
+        self._refused = ""
         self._registered = True  # with the present master, by all of its topics
         self._safety = Latest("safety_status", SafetyStatus, check=lambda message: safety_of(message, 0.0, 0.0))
         self._reports = Diagnostics()
@@ -49,6 +50,7 @@ class Listener:
             return
         self._queried_at = now
         self._state = self.master.state()
+        self._refused = self.master.text(rospy.resolve_name("start_refused")) if self._state is not None else ""
         if self._state is not None and not (self._registered and rospy.get_name() in nodes_of(self._state)):
             self._registered = self.master.register_again()
 
@@ -87,6 +89,7 @@ class Listener:
             master=self.master.uri,
             master_answers=self._state is not None,
             namespace=self.namespace,
+            refused=self._refused,
             kind=kind,
             safety=self.safety(now),
             reports={below(self.namespace, name): report for name, report in reports.items()},

@@ -66,6 +66,7 @@ class Facts:
     master: str  # URI
     master_answers: bool = True
     namespace: str = "/"
+    refused: str = ""  # why the last start was refused, in lines
     kind: Kind = field(default_factory=Kind)
     safety: Safety | None = None
     reports: Mapping[str, Report] = field(default_factory=dict)  # by node, below the namespace
