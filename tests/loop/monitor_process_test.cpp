@@ -18,13 +18,11 @@ struct MonitorProcessTest : testing::Test {
 
   /// A monitor of this robot leaves a latched stop.
   void stop(const DriveTrain& robot) {
-    const MonitorProcess monitor(parameters_, DifferentialDrive(parameters_, robot), bus_.name());
-    ForeignChannel<LatestFrames<Permit>> channel(bus_.name(), ChannelNames::kPermit);
-    channel.poll();
+    MonitorProcess(parameters_, DifferentialDrive(parameters_, robot), bus_.name());
     Permit permit;
     permit.head.run = 5;
     permit.causes = permit.first_cause = kCauseStall;
-    FrameWriter<Permit>(const_cast<LatestFrames<Permit>*>(channel.memory())).publish(permit);
+    Output<Permit>(bus_.name(), ChannelNames::kPermit).writer.publish(permit);
   }
 
   bool stopped_at_start(const DriveTrain& robot) {

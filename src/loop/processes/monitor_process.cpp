@@ -7,16 +7,28 @@
 namespace robot_control {
 namespace {
 
+/// Returns the text that an earlier monitor has left; a channel that is taken over announces no robot.
+std::string left_source(const ChannelHead& head) {
+  std::string text;
+  for (const std::atomic<char>& byte : head.robot_source) {
+    const char c = byte.load(std::memory_order_acquire);
+    if (c == '\0') break;
+    text += c;
+  }
+  return text;
+}
+
 /// A stop that is latched in the channel belongs to the robot that it stopped. If that was another one, it ends here.
 FrameWriter<Permit> owned_by(const MachineModel& robot, Output<Permit>& output) {
   ChannelHead& head = output.writer.memory()->head;
-  const std::uint64_t stopped = announced_robot(head).hash;
-  if (stopped != 0 && stopped != stop_owner(robot)) {
+  const std::string owner = std::to_string(stop_owner(robot));
+  const std::string stopped = left_source(head);
+  if (!stopped.empty() && stopped != owner) {
     Permit none;
     none.head.run = MonitorCycle::kRunBeforeDriver;
     output.writer.publish(none);
   }
-  announce_robot(head, stop_owner(robot), robot.name);
+  announce_robot(head, stop_owner(robot), owner);
   return output.writer;
 }
 

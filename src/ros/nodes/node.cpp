@@ -149,9 +149,9 @@ void refuse(const NodeProgram& program, const std::exception& error) {
   if (ends && interrupted.load()) return;  // another node has said why, and the launch ends
   const bool first = !ends || first_to_refuse();
   if (first) std::fprintf(stderr, "%s: refused:\n%s\n", program.name.c_str(), error.what());
+  if (first && ends) await_launched();  // a node that starts meanwhile deletes the parameter
   if (first && all && program.in_loop) ros::param::set(kStartRefused, std::string(error.what()));
   if (!ends) return;
-  if (first) await_launched();
   if (!first || end_launch()) await_interrupt();
 }
 
