@@ -65,6 +65,13 @@ MujocoPlant::MujocoPlant(const MachineModel& robot, const MujocoPlantParameters&
   check_battery(parameters.battery_voltage, parameters.battery_resistance);
 }
 
+std::unique_ptr<Simulator> MujocoPlant::clone() const {
+  std::unique_ptr<MujocoPlant> copy(new MujocoPlant(*this));
+  if (data_) copy->data_ = MujocoData(mj_copyData(nullptr, model_.model.get(), data_.get()));
+  if (laser_) copy->laser_ = std::make_shared<Laser>(copy->model_, parameters_, origin_, period_);
+  return copy;
+}
+
 void MujocoPlant::start() {
   if (faults_ & kFaultSimulationError) {
     throw DriverError("mujoco_plant: MuJoCo raised an error (" + std::string(fault_message()) +
@@ -90,7 +97,7 @@ void MujocoPlant::start() {
   settled_ = false;
   settle();
   // The origin is the same after every start. The laser is made once, because another thread uses it.
-  if (parameters_.laser.rate > 0 && !laser_) laser_ = std::make_unique<Laser>(model_, parameters_, origin_, period_);
+  if (parameters_.laser.rate > 0 && !laser_) laser_ = std::make_shared<Laser>(model_, parameters_, origin_, period_);
   state_ = DriverState::kRunning;
   cycle_ = 0;
   measure();

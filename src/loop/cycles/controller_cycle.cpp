@@ -17,6 +17,10 @@ ControllerCycle::ControllerCycle(std::unique_ptr<ControllerLaw> controller, std:
   trace_.tuning = controller_->tuning();
 }
 
+ControllerCycle::ControllerCycle(const ControllerCycle& other, const Channels& channels) : ControllerCycle(other) {
+  channels_ = channels;
+}
+
 /// Takes over every member but the command itself, which script and inbox share.
 void ControllerCycle::take_over(const VelocityCommand& arrived) noexcept {
   VelocityCommand merged = received_ = arrived;

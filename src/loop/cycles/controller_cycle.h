@@ -29,6 +29,9 @@ class ControllerCycle {
   ControllerCycle(std::unique_ptr<ControllerLaw> controller, std::uint64_t robot_hash, const Channels& channels,
                   CommandScript script, Now now);
 
+  /// Continues as `other` would, on channels with the same frames.
+  ControllerCycle(const ControllerCycle& other, const Channels& channels);
+
   /// In from the outside: one ordinary thread stores, this cycle loads.
   LatestValue<VelocityCommand>& inbox() noexcept { return inbox_; }
 
@@ -49,12 +52,13 @@ class ControllerCycle {
   const LawSnapshot* snapshot() const noexcept { return snapshots_.taken(); }
 
  private:
+  ControllerCycle(const ControllerCycle& other) = default;
   void take_over(const VelocityCommand& arrived) noexcept;
   void enter_run(std::uint64_t run) noexcept;
   void receive(std::uint64_t cycle) noexcept;
   void tune() noexcept;
 
-  std::unique_ptr<ControllerLaw> controller_;
+  OwnedLaw<ControllerLaw> controller_;
   CycleClock clock_;
   Channels channels_;
   CommandScript script_;

@@ -10,7 +10,7 @@ namespace robot_control {
 
 DriverCycle::DriverCycle(Driver& driver, const MachineModel& robot, const Channels& channels, std::int64_t period_ns,
                          Now now, const GateParameters& gate)
-    : driver_(driver),
+    : driver_(&driver),
       simulator_(simulator_of(driver)),
       channels_(channels),
       gate_(joint_limits(robot), gate, static_cast<double>(period_ns) * 1e-9),
@@ -19,6 +19,12 @@ DriverCycle::DriverCycle(Driver& driver, const MachineModel& robot, const Channe
       snapshots_(LawName::kGate) {
   require_stop_actions(driver, gate, robot);
   announce_robot(channels_.sensors.memory()->head, robot.hash, robot.source);
+}
+
+DriverCycle::DriverCycle(const DriverCycle& other, Driver& driver, const Channels& channels) : DriverCycle(other) {
+  driver_ = &driver;
+  simulator_ = simulator_of(driver);
+  channels_ = channels;
 }
 
 void DriverCycle::begin_run(std::uint64_t run) noexcept {
@@ -71,7 +77,7 @@ GateInput DriverCycle::latch() noexcept {
 /// A restarted monitor counts from 0.
 void DriverCycle::follow_resets(const GateInput& input) noexcept {
   if (input.permit_found != Lookup::kFrame) return;
-  if (resets_ && input.permit->resets_handled > *resets_) driver_.reset();
+  if (resets_ && input.permit->resets_handled > *resets_) driver_->reset();
   resets_ = input.permit->resets_handled;
 }
 
@@ -82,7 +88,7 @@ void DriverCycle::step() noexcept {
 
   SensorFrame& sensors = trace_.sensors;
   follow_resets(input);
-  driver_.read(sensors);
+  driver_->read(sensors);
   sensors.head = {.run = run_, .cycle = cycle_, .stamp_ns = stamp_ns};
   sensors.driver_instance = driver_instance_;
   sensors.gate = gate_.report();
@@ -101,7 +107,7 @@ void DriverCycle::step() noexcept {
 
   snapshots_.copy_if_due(gate_, calls_.law, sensors.head);
   const std::span<const JointCommand> commands = gate_.step(input);
-  driver_.write(commands);
+  driver_->write(commands);
   trace_.gate = gate_.report();
   calls_.command = used(input.command_found, *input.command);
   calls_.permit = used(input.permit_found, *input.permit);

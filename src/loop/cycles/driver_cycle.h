@@ -34,6 +34,9 @@ class DriverCycle {
   DriverCycle(Driver& driver, const MachineModel& robot, const Channels& channels, std::int64_t period_ns, Now now,
               const GateParameters& gate = {});
 
+  /// Continues as `other` would, with a machine in the same state, on channels with the same frames.
+  DriverCycle(const DriverCycle& other, Driver& driver, const Channels& channels);
+
   /// The number of this process; see SensorFrame::driver_instance.
   void set_driver_instance(std::uint64_t driver_instance) noexcept {
     driver_instance_ = calls_.law.process = driver_instance;
@@ -84,11 +87,12 @@ class DriverCycle {
   const LawSnapshot* snapshot() const noexcept { return snapshots_.taken(); }
 
  private:
+  DriverCycle(const DriverCycle& other) = default;
   GateInput latch() noexcept;
   void follow_resets(const GateInput& input) noexcept;
   void publish_last_as(DriverState state) noexcept;
 
-  Driver& driver_;
+  Driver* driver_;
   Simulator* simulator_;  ///< null before hardware
   Channels channels_;
   Gate gate_;

@@ -8,10 +8,17 @@ EstimatorCycle::EstimatorCycle(std::unique_ptr<EstimatorLaw> estimator, std::uin
                                const FrameReader<SensorFrame>& sensors, FrameWriter<StateFrame> state, Now now)
     : estimator_(std::move(estimator)),
       clock_(now),
-      sensors_channel_(sensors),
+      sensors_channel_(&sensors),
       state_channel_(state),
       robot_hash_(robot_hash),
       snapshots_(LawName::kEstimator) {}
+
+EstimatorCycle::EstimatorCycle(const EstimatorCycle& other, const FrameReader<SensorFrame>& sensors,
+                               FrameWriter<StateFrame> state)
+    : EstimatorCycle(other) {
+  sensors_channel_ = &sensors;
+  state_channel_ = state;
+}
 
 void EstimatorCycle::enter_run(const FrameHead& head) noexcept {
   StateFrame last;
@@ -23,10 +30,10 @@ void EstimatorCycle::enter_run(const FrameHead& head) noexcept {
 
 bool EstimatorCycle::step() noexcept {
   const std::int64_t woke_ns = clock_.now();
-  const Found<SensorFrame> found = sensors_channel_.find_newest(buffer_);
+  const Found<SensorFrame> found = sensors_channel_->find_newest(buffer_);
   const SensorFrame& sensors = *found.frame;
   if (found.lookup != Lookup::kFrame) return false;
-  if (!current(sensors_channel_, sensors.head, robot_hash_)) return false;
+  if (!current(*sensors_channel_, sensors.head, robot_hash_)) return false;
   const Arrival arrival = clock_.compare(sensors.head);
   if (arrival == Arrival::kOld) return false;
   if (arrival == Arrival::kNewRun) enter_run(sensors.head);

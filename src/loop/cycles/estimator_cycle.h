@@ -25,6 +25,9 @@ class EstimatorCycle {
   EstimatorCycle(std::unique_ptr<EstimatorLaw> estimator, std::uint64_t robot_hash,
                  const FrameReader<SensorFrame>& sensors, FrameWriter<StateFrame> state, Now now);
 
+  /// Continues as `other` would, on channels with the same frames.
+  EstimatorCycle(const EstimatorCycle& other, const FrameReader<SensorFrame>& sensors, FrameWriter<StateFrame> state);
+
   /// True when there was a new sensor frame of the driver's current run, and a state was computed from it and
   /// published.
   bool step() noexcept;
@@ -46,11 +49,12 @@ class EstimatorCycle {
   const LawSnapshot* snapshot() const noexcept { return snapshots_.taken(); }
 
  private:
+  EstimatorCycle(const EstimatorCycle& other) = default;
   void enter_run(const FrameHead& head) noexcept;
 
-  std::unique_ptr<EstimatorLaw> estimator_;
+  OwnedLaw<EstimatorLaw> estimator_;
   CycleClock clock_;
-  const FrameReader<SensorFrame>& sensors_channel_;
+  const FrameReader<SensorFrame>* sensors_channel_;
   FrameWriter<StateFrame> state_channel_;
   std::uint64_t robot_hash_;
   PoseRequest requested_;  ///< the requesting thread's

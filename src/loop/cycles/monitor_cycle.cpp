@@ -19,6 +19,10 @@ MonitorCycle::MonitorCycle(std::unique_ptr<MonitorLaw> monitor, std::uint64_t ro
   inherit(latch);
 }
 
+MonitorCycle::MonitorCycle(const MonitorCycle& other, const Channels& channels) : MonitorCycle(other) {
+  channels_ = channels;
+}
+
 void MonitorCycle::inherit(InheritedLatch latch) noexcept {
   Permit last;
   const Lookup found = channels_.permit.reader().last_whole(last);

@@ -36,6 +36,9 @@ class MonitorCycle {
   MonitorCycle(std::unique_ptr<MonitorLaw> monitor, std::uint64_t robot_hash, std::int64_t loss_ns,
                const Channels& channels, CommandScript script, Now now, InheritedLatch latch = {});
 
+  /// Continues as `other` would, on channels with the same frames.
+  MonitorCycle(const MonitorCycle& other, const Channels& channels);
+
   /// In from the outside: one ordinary thread stores, this cycle loads.
   LatestValue<OperatorInput>& inbox() noexcept { return inbox_; }
 
@@ -69,6 +72,13 @@ class MonitorCycle {
   const LawSnapshot* snapshot() const noexcept { return snapshots_.taken(); }
 
  private:
+  /// This cycle writes it, any thread reads it.
+  struct SharedRun : std::atomic<std::uint64_t> {
+    using std::atomic<std::uint64_t>::atomic;
+    SharedRun(const SharedRun& other) noexcept : std::atomic<std::uint64_t>(other.load()) {}
+  };
+
+  MonitorCycle(const MonitorCycle& other) = default;
   void inherit(InheritedLatch latch) noexcept;
   void receive_messages() noexcept;
   void advance_script() noexcept;
@@ -80,14 +90,14 @@ class MonitorCycle {
   void step_law(std::int64_t woke_ns) noexcept;
   void publish(std::uint64_t run) noexcept;
 
-  std::unique_ptr<MonitorLaw> monitor_;
+  OwnedLaw<MonitorLaw> monitor_;
   CycleClock clock_;
   Channels channels_;
   CommandScript script_;
   std::uint64_t robot_hash_;
   std::int64_t loss_ns_;         ///< loss_cycles periods
   std::int64_t current_ns_ = 0;  ///< wall clock of the last wake-up that found a current frame
-  std::atomic<std::uint64_t> published_run_{0};
+  SharedRun published_run_{0};
   LatestValue<OperatorInput> inbox_;
   OperatorInput received_;             ///< content of the inbox when it was last read
   OperatorInput operator_input_;       ///< sum of inbox and script
