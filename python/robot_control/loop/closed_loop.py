@@ -90,7 +90,7 @@ class ClosedLoop:
 
     def __init__(
         self,
-        params: Params = None,
+        params: File | Mapping[str, Any] | None = None,
         seed: int = 0,
         urdf: File | None = None,
         scene: File | None = None,
