@@ -84,7 +84,8 @@ ClosedLoop::ClosedLoop(const ClosedLoop& other)
       mode_(other.mode_),
       operator_input_(other.operator_input_),
       faults_(other.faults_),
-      fresh_(other.fresh_) {}
+      fresh_(other.fresh_),
+      handed_over_(other.handed_over_) {}
 
 void ClosedLoop::clearance(double metres) noexcept {
   ++operated().clearances;
@@ -92,8 +93,10 @@ void ClosedLoop::clearance(double metres) noexcept {
 }
 
 void ClosedLoop::hand_over() noexcept {
+  if (handed_over_) return;
   controller_.inbox().store(request_);
   monitor_.inbox().store(operator_input_);
+  handed_over_ = true;
 }
 
 void ClosedLoop::step() noexcept {
@@ -127,8 +130,16 @@ void ClosedLoop::write_down() noexcept {
   }
 }
 
+void ClosedLoop::record() noexcept {
+  sensors_.frames->seal_all();
+  state_.frames->seal_all();
+  command_.frames->seal_all();
+  permit_.frames->seal_all();
+}
+
 std::unique_ptr<RowLog> ClosedLoop::set_log(std::unique_ptr<RowLog> log) {
   fresh_ = false;
+  if (log != nullptr) record();
   log_problem_.clear();
   return std::exchange(log_, std::move(log));
 }

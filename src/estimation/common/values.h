@@ -31,11 +31,21 @@ struct Planar {
   double norm() const noexcept { return std::hypot(x, y); }
 };
 
-/// Returns `v` turned by `angle` rad. If `angle` is the yaw, this changes base axes to odom axes.
+/// A turn by an angle, for several vectors.
+struct Turn {
+  explicit Turn(double angle) noexcept : cos(std::cos(angle)), sin(std::sin(angle)) {}
+
+  double cos, sin;
+};
+
+/// Returns `v` turned. If the turn is that by the yaw, this changes base axes to odom axes.
+inline Planar rotated(const Planar& v, const Turn& turn) noexcept {
+  return {turn.cos * v.x - turn.sin * v.y, turn.sin * v.x + turn.cos * v.y};
+}
+
+/// Returns `v` turned by `angle` rad.
 inline Planar rotated(const Planar& v, double angle) noexcept {
-  const double c = std::cos(angle);
-  const double s = std::sin(angle);
-  return {c * v.x - s * v.y, s * v.x + c * v.y};
+  return rotated(v, Turn(angle));
 }
 
 }  // namespace robot_control

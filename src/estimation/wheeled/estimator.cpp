@@ -39,7 +39,7 @@ Estimator::Estimator(const EstimatorParameters& parameters, const DriveTrain& ro
 }
 
 void Estimator::place(const Vector3& pose) noexcept {
-  const Planar lever = axle(pose[2]);
+  const Planar lever = axle(Turn(pose[2]));
   const Prediction ahead = prediction();
   state_.core.place({pose[0] + lever.x - ahead.distance * std::cos(pose[2]),
                      pose[1] + lever.y - ahead.distance * std::sin(pose[2]), pose[2] - ahead.turn});
@@ -246,7 +246,7 @@ Eigen::Vector3d Estimator::gyro_bias_variance() const noexcept {
 }
 
 /// Returns the vector from base_link to the middle of the wheels, in m, odom axes.
-Planar Estimator::axle(double yaw) const noexcept {
+Planar Estimator::axle(const Turn& yaw) const noexcept {
   return rotated({geometry_.axle[0], geometry_.axle[1]}, yaw);
 }
 

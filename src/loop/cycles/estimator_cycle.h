@@ -8,6 +8,7 @@
 #include "bus/latest_value.h"
 #include "loop/cycles/close_row.h"
 #include "loop/cycles/cycle_clock.h"
+#include "loop/cycles/rows.h"
 #include "loop/cycles/snapshots.h"
 #include "robots/laws.h"
 #include "signals/trace.h"
@@ -43,7 +44,7 @@ class EstimatorCycle {
   void set_process(std::uint64_t process) noexcept { calls_.law.process = process; }
 
   /// The row of the last step that returned true.
-  const EstimatorTrace& trace() const noexcept { return trace_; }
+  const EstimatorTrace& trace() const noexcept { return rows_.last(); }
 
   /// The law's state before the step of the last row, where it was copied; else null.
   const LawSnapshot* snapshot() const noexcept { return snapshots_.taken(); }
@@ -64,7 +65,7 @@ class EstimatorCycle {
   SensorFrame buffer_;
   EstimatorCalls calls_ = first_row<EstimatorCalls>();  ///< since the last row
   Snapshots snapshots_;
-  EstimatorTrace trace_;
+  Rows<EstimatorTrace> rows_;
 };
 
 }  // namespace robot_control

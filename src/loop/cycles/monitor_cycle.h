@@ -16,6 +16,7 @@
 #include "loop/command_script.h"
 #include "loop/cycles/close_row.h"
 #include "loop/cycles/cycle_clock.h"
+#include "loop/cycles/rows.h"
 #include "loop/cycles/snapshots.h"
 #include "robots/laws.h"
 #include "signals/trace.h"
@@ -57,7 +58,7 @@ class MonitorCycle {
   bool idle() noexcept { return step_without_frame(false); }
 
   /// The permit of the last step; before `step` and `idle`, that of the start, with the inherited latch.
-  const Permit& permit() const noexcept { return trace_.permit; }
+  const Permit& permit() const noexcept { return rows_.last().permit; }
 
   /// Any thread: run of the permits that this process publishes; 0: none yet.
   std::uint64_t published_run() const noexcept { return published_run_.load(std::memory_order_acquire); }
@@ -66,7 +67,7 @@ class MonitorCycle {
   static constexpr std::uint64_t kRunBeforeDriver = 1;
 
   /// The row of the last step that returned true.
-  const MonitorTrace& trace() const noexcept { return trace_; }
+  const MonitorTrace& trace() const noexcept { return rows_.last(); }
 
   /// The law's state before the step of the last row, where it was copied; else null.
   const LawSnapshot* snapshot() const noexcept { return snapshots_.taken(); }
@@ -88,7 +89,7 @@ class MonitorCycle {
   SensorSilence silence(bool timed_out) const noexcept;
   bool happened(const MonitorInput& input) const noexcept;
   void step_law(std::int64_t woke_ns) noexcept;
-  void publish(std::uint64_t run) noexcept;
+  void publish(std::uint64_t run, Permit& permit) noexcept;
 
   OwnedLaw<MonitorLaw> monitor_;
   CycleClock clock_;
@@ -99,6 +100,7 @@ class MonitorCycle {
   std::int64_t current_ns_ = 0;  ///< wall clock of the last wake-up that found a current frame
   SharedRun published_run_{0};
   LatestValue<OperatorInput> inbox_;
+  std::uint64_t inbox_seen_ = 0;       ///< version of the input that was read last
   OperatorInput received_;             ///< content of the inbox when it was last read
   OperatorInput operator_input_;       ///< sum of inbox and script
   std::uint64_t corrupt_sensors_ = 0;  ///< attempts in a row that read a corrupt frame
@@ -111,7 +113,7 @@ class MonitorCycle {
   MonitorInput input_;                              ///< of the last step
   MonitorCalls calls_ = first_row<MonitorCalls>();  ///< of the next row
   Snapshots snapshots_;
-  MonitorTrace trace_;
+  Rows<MonitorTrace> rows_;
 };
 
 }  // namespace robot_control
