@@ -121,9 +121,10 @@ bool ControllerCycle::step() noexcept {
   row.command.head = {.run = run, .cycle = cycle, .stamp_ns = state.head.stamp_ns};
   channels_.command.publish_in_place(row.command);
   row.timing = clock_.timing(woke_ns, sensors);
-  calls_.request = request_;
+  const bool seals = channels_.command.seals();
+  if (seals) calls_.request = request_;
   calls_.state = state.head.checksum;
-  close_row(calls_, sensors.head.checksum, row.command.head.checksum, row.calls);
+  close_row(seals, calls_, sensors.head.checksum, row.command.head.checksum, row.calls);
   return true;
 }
 

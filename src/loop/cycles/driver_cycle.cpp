@@ -114,7 +114,7 @@ void DriverCycle::step() noexcept {
   row.gate = gate_.report();
   calls_.command = used(input.command_found, *input.command);
   calls_.permit = used(input.permit_found, *input.permit);
-  close_row(calls_, sensors.head.checksum, seals ? digest_of(commands, row.gate) : 0, row.calls);
+  close_row(seals, calls_, sensors.head.checksum, seals ? digest_of(commands, row.gate) : 0, row.calls);
   ++cycle_;
 }
 

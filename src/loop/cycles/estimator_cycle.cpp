@@ -55,7 +55,7 @@ bool EstimatorCycle::step() noexcept {
   state_channel_.publish_in_place(row.state);
   row.timing = clock_.timing(woke_ns, sensors);
   calls_.first_cycle = first_cycle_;
-  close_row(calls_, sensors.head.checksum, row.state.head.checksum, row.calls);
+  close_row(state_channel_.seals(), calls_, sensors.head.checksum, row.state.head.checksum, row.calls);
   return true;
 }
 

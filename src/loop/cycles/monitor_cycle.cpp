@@ -157,7 +157,7 @@ void MonitorCycle::step_law(std::int64_t woke_ns) noexcept {
   calls_.corrupt = input_.corrupt;
   calls_.operator_input = input_.operator_input;
   const std::uint64_t sensors = input_.sensors != nullptr ? head_.checksum : 0;
-  close_row(calls_, sensors, row.permit.head.checksum, row.calls);
+  close_row(channels_.permit.seals(), calls_, sensors, row.permit.head.checksum, row.calls);
 }
 
 void MonitorCycle::publish(std::uint64_t run, Permit& permit) noexcept {
