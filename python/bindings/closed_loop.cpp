@@ -1,4 +1,4 @@
-#include "bindings/closed_loop.h"
+#include "simulation/closed_loop.h"
 
 #include <pybind11/numpy.h>
 #include <pybind11/stl.h>
@@ -16,6 +16,7 @@
 #include "bindings/columns.h"
 #include "bindings/describe.h"
 #include "bindings/layers.h"
+#include "bindings/loop_bindings.h"
 #include "bindings/loop_replay.h"
 #include "bindings/numpy_version.h"
 #include "bindings/recorder.h"
@@ -29,7 +30,6 @@
 #include "machine/wheeled/drive_train.h"
 #include "robots/wheeled/start_check.h"
 #include "signals/robot_kinds.h"
-#include "simulation/closed_loop.h"
 
 namespace py = pybind11;
 

@@ -9,9 +9,9 @@
 #include <string>
 #include <vector>
 
-#include "bindings/closed_loop.h"
 #include "bindings/columns.h"
 #include "bindings/layers.h"
+#include "bindings/loop_bindings.h"
 #include "bindings/numpy_version.h"
 
 namespace py = pybind11;

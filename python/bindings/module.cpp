@@ -12,12 +12,12 @@
 #include <utility>
 #include <vector>
 
-#include "bindings/closed_loop.h"
 #include "bindings/columns.h"
 #include "bindings/describe.h"
 #include "bindings/layers.h"
 #include "bindings/legs.h"
 #include "bindings/log_replay.h"
+#include "bindings/loop_bindings.h"
 #include "bindings/loop_replay.h"
 #include "bindings/run_bag.h"
 #include "bindings/signal_names.h"

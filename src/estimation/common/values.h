@@ -6,6 +6,7 @@
 
 #include "machine/stored.h"
 #include "signals/geometry.h"
+#include "signals/rotation.h"
 
 namespace robot_control {
 
@@ -31,21 +32,9 @@ struct Planar {
   double norm() const noexcept { return std::hypot(x, y); }
 };
 
-/// A turn by an angle, for several vectors.
-struct Turn {
-  explicit Turn(double angle) noexcept : cos(std::cos(angle)), sin(std::sin(angle)) {}
-
-  double cos, sin;
-};
-
 /// Returns `v` turned. If the turn is that by the yaw, this changes base axes to odom axes.
 inline Planar rotated(const Planar& v, const Turn& turn) noexcept {
   return {turn.cos * v.x - turn.sin * v.y, turn.sin * v.x + turn.cos * v.y};
-}
-
-/// Returns `v` turned by `angle` rad.
-inline Planar rotated(const Planar& v, double angle) noexcept {
-  return rotated(v, Turn(angle));
 }
 
 }  // namespace robot_control

@@ -39,7 +39,7 @@ Estimator::Estimator(const EstimatorParameters& parameters, const DriveTrain& ro
 }
 
 void Estimator::place(const Vector3& pose) noexcept {
-  const Planar lever = axle(Turn(pose[2]));
+  const Planar lever = axle(pose[2]);
   const Prediction ahead = prediction();
   state_.core.place({pose[0] + lever.x - ahead.distance * std::cos(pose[2]),
                      pose[1] + lever.y - ahead.distance * std::sin(pose[2]), pose[2] - ahead.turn});

@@ -82,8 +82,7 @@ void Estimator::fill_attitude_covariance(const Turn& yaw, double yaw_variance, B
   Eigen::Matrix2d tilt;
   tilt << state_.tilt.covariance(1, 1), -state_.tilt.covariance(1, 0), -state_.tilt.covariance(0, 1),
       state_.tilt.covariance(0, 0);
-  Eigen::Matrix2d turned;
-  turned << yaw.cos, -yaw.sin, yaw.sin, yaw.cos;
+  const Eigen::Matrix2d turned{{yaw.cos, -yaw.sin}, {yaw.sin, yaw.cos}};
   tilt = (turned * tilt * turned.transpose()).eval();
   base.attitude_covariance = {tilt(0, 0), tilt(0, 1), 0, tilt(1, 0), tilt(1, 1), 0, 0, 0, yaw_variance};
   if (parameters_.planar) return;

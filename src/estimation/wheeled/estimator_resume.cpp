@@ -48,7 +48,7 @@ void Estimator::resume(const StateFrame& last) noexcept {
   s.tilt.set(array(rotation_of(last.base.attitude).row(2)), {force.x(), force.y()});
   s.height = last.base.pose_odom.position[2];
   place({last.base.pose_odom.position[0], last.base.pose_odom.position[1], yaw_of(last.base.pose_odom.orientation)});
-  s.core.set_pose_covariance(covariance_of_middle(last, axle(Turn(yaw_of(last.base.pose_odom.orientation)))));
+  s.core.set_pose_covariance(covariance_of_middle(last, axle(yaw_of(last.base.pose_odom.orientation))));
   s.yaw_rate = last.base.twist_base.angular[2];
   const double speed = last.base.twist_base.linear[0] - s.yaw_rate * geometry_.axle[1];
   const double faster = s.yaw_rate * geometry_.wheel_base / 2;
