@@ -58,6 +58,7 @@ JUDGED = (
     "data_return",
     "realtime",
     "navigation",
+    "loops",
 )
 REALTIME_PARTS = ("jitter", "chain", "cost", "scale")
 PARTS = {
@@ -67,6 +68,7 @@ PARTS = {
     "fleet": ("sequences", "orders", "losses", "cost"),
     "navigation": navigation.PARTS,
     "data_return": ("upload", "changes", "cost"),
+    "loops": ("speed", "python", "instructions"),
 }
 NAMES = MEASURED + JUDGED
 SEED_PROGRAMS = {"limiter": 1_000_000, "release": 10_000, "bags": 10_000}  # seeds; a minute at most on two cores
@@ -171,6 +173,7 @@ TRIALS: dict[str, tuple[str, Callable[[Any, argparse.Namespace, Runner], Result]
         "navigation.bench",
         lambda m, g, _: m.bench(_parts_of("navigation", g), g.first, g.runs, g.programs, say),
     ),
+    "loops": ("loops", lambda m, g, _: m.bench(_parts_of("loops", g), g.programs, g.params, say)),
     "data_return": (
         "data_return.bench",
         lambda m, g, _: m.bench(_parts_of("data_return", g), g.first, g.share, g.programs, say),

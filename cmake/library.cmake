@@ -6,6 +6,9 @@ add_library(robot_control_options INTERFACE)
 target_include_directories(robot_control_options INTERFACE ${PROJECT_SOURCE_DIR}/src)
 target_compile_options(robot_control_options INTERFACE
   -Wall -Wextra -Wconversion -Wshadow -Werror -ffp-contract=off
+  # In each cycle: no symbol is replaced by that of another library, nothing reads errno after a function of libm, and no
+  # floating-point exception is trapped. So functions are inlined, and results keep their bits.
+  "$<$<BOOL:$<TARGET_PROPERTY:EVERY_CYCLE>>:-fno-semantic-interposition;-fno-math-errno;-fno-trapping-math>"
   $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>)  # GCC 12 sees overlapping copies in "literal" + string (its bug 105329)
 target_link_libraries(robot_control_options INTERFACE Threads::Threads)
 
@@ -33,6 +36,10 @@ set(plain_under_thread ${plain_under_address} legged_control files bag descripti
 set(ROBOT_CONTROL_PLAIN_LIBRARIES "" CACHE PATH "under a sanitizer: folder of libraries built without one, or empty")
 add_custom_target(plain_libraries)
 
+# Libraries that run in each cycle.
+set(every_cycle rt bus machine wheeled legs estimation legged_estimation control legged_control safety legged_safety
+  gate wheel_stop faults drivers mujoco loop simulation)
+
 function(robot_control_library name)
   cmake_parse_arguments(ARG "" "" "SOURCES;LINK" ${ARGN})
   if(ROBOT_CONTROL_PLAIN_LIBRARIES AND name IN_LIST plain_under_${ROBOT_CONTROL_SANITIZER})
@@ -44,6 +51,9 @@ function(robot_control_library name)
   if(ARG_SOURCES)
     add_library(rc_${name} STATIC ${ARG_SOURCES})
     target_link_libraries(rc_${name} PUBLIC robot_control_options ${ARG_LINK})
+    if(name IN_LIST every_cycle)
+      set_target_properties(rc_${name} PROPERTIES EVERY_CYCLE ON)
+    endif()
     if(name IN_LIST plain_under_thread)
       add_dependencies(plain_libraries rc_${name})
     endif()

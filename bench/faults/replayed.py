@@ -31,9 +31,9 @@ class ReplayedLoop(ClosedLoop):
         self._replay = LoopReplay(self._loop)
         self.seconds = 0.0  # s of processor time, of the replay alone
 
-    def step(self, cycles: int = 1) -> Log:
+    def step(self, cycles: int = 1, columns: Sequence[str] | None = None) -> Log:
         """Steps as the loop does, then replays the cycles."""
-        log: Log = self._loop.run(cycles, None, self._replay)
+        log: Log = self._loop.run(cycles, None, self._chosen(columns), self._replay)
         began = time.process_time()
         self._replay.check()
         self.seconds += time.process_time() - began

@@ -33,4 +33,13 @@ inline Parameters read_layers(const std::string& path, const LayerValues& values
   return read_layers(path, values, origin, path.empty() ? "" : installed_parameters());
 }
 
+/// Reads the parameters of a ClosedLoop and passes their warnings on to Python.
+inline Parameters parameters_from(const std::string& path, const LayerValues& values) {
+  Parameters parameters = read_layers(path, values, "ClosedLoop");
+  for (const std::string& text : parameters.warnings) {
+    if (PyErr_WarnEx(PyExc_UserWarning, text.c_str(), 1) != 0) throw pybind11::error_already_set();
+  }
+  return parameters;
+}
+
 }  // namespace robot_control

@@ -52,7 +52,7 @@ py::dict described(const ReplayReport& report) {
 
 void bind_loop_replay(py::module_& module) {
   py::class_<LoopReplay>(module, "LoopReplay")
-      .def(py::init<const ClosedLoop&>(), "loop"_a)
+      .def(py::init<ClosedLoop&>(), "loop"_a)
       .def("check", &LoopReplay::check, py::call_guard<py::gil_scoped_release>())
       .def("report", &LoopReplay::report);
 }

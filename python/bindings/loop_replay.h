@@ -15,8 +15,10 @@ namespace robot_control {
 class LoopReplay {
  public:
   /// Is constructed before the first step of `loop`.
-  explicit LoopReplay(const ClosedLoop& loop)
-      : replay_(loop.robot(), loop.parameters().loop.period()), joints_(loop.robot().machine().joints.size()) {}
+  explicit LoopReplay(ClosedLoop& loop)
+      : replay_(loop.robot(), loop.parameters().loop.period()), joints_(loop.robot().machine().joints.size()) {
+    loop.record();
+  }
 
   /// Stores the rows of the last step; is called after each step.
   void store(const ClosedLoop& loop);

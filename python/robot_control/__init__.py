@@ -9,9 +9,10 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from robot_control._robot_control import DriverError, ParameterError, RobotError
     from robot_control.loop.closed_loop import ClosedLoop
+    from robot_control.loop.closed_loops import ClosedLoops
     from robot_control.loop.estimator import Estimator
 
-__all__ = ["ClosedLoop", "DriverError", "Estimator", "ParameterError", "RobotError"]
+__all__ = ["ClosedLoop", "ClosedLoops", "DriverError", "Estimator", "ParameterError", "RobotError"]
 
 
 def __getattr__(name: str) -> Any:
@@ -41,6 +42,10 @@ def _load(name: str) -> Any:
         from robot_control.loop.closed_loop import ClosedLoop
 
         return ClosedLoop
+    if name == "ClosedLoops":
+        from robot_control.loop.closed_loops import ClosedLoops
+
+        return ClosedLoops
     if name == "Estimator":
         from robot_control.loop.estimator import Estimator
 

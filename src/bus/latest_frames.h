@@ -60,15 +60,30 @@ struct LatestFrames {
 };
 static_assert(std::atomic<std::uint64_t>::is_always_lock_free);
 
-/// The frames of a channel that one thread writes and reads: they are neither copied for a reader nor checked, because
-/// nothing can tear them. A frame that was stored without being sealed is checked.
+/// The frames of a channel that one thread writes and reads: they are neither copied nor checked, because nothing can
+/// tear them. They have checksums only if `sealed`. A frame that was stored by `store` is a copy and checked.
 template <class Frame, std::size_t SlotCount = kFrameSlots>
 struct OwnFrames {
   struct Slot {
-    Frame frame{};
-    bool whole = false;  ///< its writer has sealed it
+    Slot() = default;
+    Slot(const Slot& other) : stored(*other.frame), whole(other.whole) {}
+    Slot& operator=(const Slot&) = delete;
+
+    Frame stored{};
+    Frame* frame = &stored;  ///< where the writer has put it, or `stored`
+    bool whole = false;      ///< its writer has published it by `publish`
   };
+
+  /// From now on frames have checksums, those that are here, too.
+  void seal_all() noexcept {
+    for (Slot& slot : slots) {
+      if (slot.whole && !sealed) seal(*slot.frame);
+    }
+    sealed = true;
+  }
+
   std::array<Slot, SlotCount> slots;
+  bool sealed = false;
 };
 
 /// The result of a lookup without a copy. The frame is in the buffer of the caller, or where its writer has put it;
@@ -98,10 +113,26 @@ class FrameWriter {
 
   /// Seals the frame, stores it and wakes all readers with one futex call.
   void publish(Frame& frame) noexcept {
-    seal(frame);
+    if (seals()) seal(frame);
     publish_sealed(frame);
     if (own_ != nullptr) own_->slots[frame.head.cycle % SlotCount].whole = true;
   }
+
+  /// Publishes a frame that stays where it is until SlotCount cycles later. A reader in the same thread finds it there.
+  void publish_in_place(Frame& frame) noexcept {
+    if (own_ == nullptr) return publish(frame);
+    if (own_->sealed) seal(frame);
+    const std::size_t index = frame.head.cycle % SlotCount;
+    own_->slots[index].frame = &frame;
+    own_->slots[index].whole = true;
+    memory_->newest.store(index + 1, std::memory_order_relaxed);
+  }
+
+  /// Returns whether frames are published with a checksum.
+  bool seals() const noexcept { return own_ == nullptr || own_->sealed; }
+
+  /// Returns how many frames a writer must keep for `publish_in_place`.
+  std::size_t kept() const noexcept { return own_ == nullptr ? 1 : SlotCount; }
 
   /// Publishes a frame that is already sealed.
   void publish_sealed(const Frame& frame) noexcept {
@@ -120,8 +151,10 @@ class FrameWriter {
   void store(const Frame& frame) noexcept {
     const std::size_t index = frame.head.cycle % SlotCount;
     if (own_ != nullptr) {
-      own_->slots[index].frame = frame;
-      own_->slots[index].whole = false;
+      auto& slot = own_->slots[index];
+      slot.stored = frame;
+      slot.frame = &slot.stored;
+      slot.whole = false;
       memory_->newest.store(index + 1, std::memory_order_relaxed);
       return;
     }
@@ -278,7 +311,7 @@ class FrameReader {
 
  private:
   static Found<Frame> found_in(const typename OwnFrames<Frame, SlotCount>::Slot& slot) noexcept {
-    return {slot.whole ? kind_of(slot.frame) : classify(slot.frame), &slot.frame};
+    return {slot.whole ? kind_of(*slot.frame) : classify(*slot.frame), slot.frame};
   }
 
   static Lookup copied(const Found<Frame>& found, Frame& out) noexcept {

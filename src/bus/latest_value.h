@@ -24,6 +24,11 @@ class LatestValue {
  public:
   explicit LatestValue(const Value& initial = Value{}) noexcept { store(initial); }
 
+  /// Nothing may be stored in `other` meanwhile.
+  LatestValue(const LatestValue& other) noexcept : version_(other.version()) {
+    for (std::size_t i = 0; i < kWords; ++i) words_[i].store(other.words_[i].load(std::memory_order_relaxed));
+  }
+
   void store(const Value& value) noexcept {
     const auto words = std::bit_cast<Words>(value);
     const std::uint64_t version = version_.load(std::memory_order_relaxed);

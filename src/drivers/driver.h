@@ -2,6 +2,7 @@
 /// The interface to the machine. A simulator, a CAN bus and an EtherCAT master stand behind the same four calls.
 /// tests/drivers/driver_contract.h holds any driver to it.
 
+#include <memory>
 #include <span>
 #include <stdexcept>
 #include <string>
@@ -80,6 +81,9 @@ class Simulator : public Driver {
   /// Returns what the laser measures in this true state; one ordinary thread at a time calls it. The same state gives
   /// the same bits. Without a laser there are no ranges.
   virtual LaserScan scan(const TruthFrame& /*truth*/) { return {}; }
+
+  /// Returns a machine in the same state, which then gives the same bits; null: this machine cannot be copied.
+  virtual std::unique_ptr<Simulator> clone() const { return nullptr; }
 
   /// From now on a device of the machine has a fault. Returns the problem with the list of words; "" if there is none.
   virtual std::string inject_device(std::string_view /*component*/, std::string_view /*kind*/) {

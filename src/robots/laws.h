@@ -3,8 +3,9 @@
 /// log know no others. `step` is called once per cycle. No function allocates, locks or throws.
 ///
 /// `save` and `restore` copy the complete state of a law (signals/law_snapshot.h). A snapshot restores a law that was
-/// made with the same parameters for the same robot, by the same build.
+/// made with the same parameters for the same robot, by the same build. `clone` copies the law with its parameters.
 
+#include <memory>
 #include <utility>
 
 #include "control/common/control_input.h"
@@ -29,6 +30,7 @@ class Law {
 /// Sensors of a cycle → state of that cycle.
 class EstimatorLaw : public Law {
  public:
+  virtual std::unique_ptr<EstimatorLaw> clone() const = 0;
   /// Begins a new run: the pose is zero.
   virtual void enter_run() noexcept = 0;
   /// Continues from the last published frame after a restart within a run.
@@ -42,6 +44,7 @@ class EstimatorLaw : public Law {
 /// Sensors, state, permit and request of a cycle → joint commands of that cycle.
 class ControllerLaw : public Law {
  public:
+  virtual std::unique_ptr<ControllerLaw> clone() const = 0;
   /// Begins a new run. Requests in the inbox do not count; with `with_zero` the run begins with a zero request.
   virtual void enter_run(const VelocityCommand& inbox, bool with_zero) noexcept = 0;
   /// Sets limits and gains between two cycles. They stay after `enter_run`.
@@ -54,8 +57,24 @@ class ControllerLaw : public Law {
 /// Sensors of a cycle, and command and state of the cycle before → permit of that cycle.
 class MonitorLaw : public Law {
  public:
+  virtual std::unique_ptr<MonitorLaw> clone() const = 0;
   /// Fills everything but `out.head`.
   virtual void step(const MonitorInput& input, Permit& out) noexcept = 0;
+};
+
+/// A law that is copied with its owner.
+template <class Role>
+class OwnedLaw {
+ public:
+  explicit OwnedLaw(std::unique_ptr<Role> law) noexcept : law_(std::move(law)) {}
+  OwnedLaw(const OwnedLaw& other) : law_(other.law_->clone()) {}
+  OwnedLaw& operator=(const OwnedLaw&) = delete;
+
+  Role& operator*() noexcept { return *law_; }
+  Role* operator->() noexcept { return law_.get(); }
+
+ private:
+  std::unique_ptr<Role> law_;
 };
 
 /// A law in one of these roles, whose state is saved as law_snapshot.h says.
@@ -76,6 +95,7 @@ template <class Implementation>
 class EstimatorOf final : public SavedLaw<EstimatorLaw, Implementation> {
  public:
   using SavedLaw<EstimatorLaw, Implementation>::SavedLaw;
+  std::unique_ptr<EstimatorLaw> clone() const override { return std::make_unique<EstimatorOf>(*this); }
   void enter_run() noexcept override { this->law_.enter_run(); }
   void resume(const StateFrame& last) noexcept override { this->law_.resume(last); }
   void set_pose(const Vector3& pose) noexcept override { this->law_.set_pose(pose); }
@@ -87,6 +107,7 @@ template <class Implementation>
 class ControllerOf final : public SavedLaw<ControllerLaw, Implementation> {
  public:
   using SavedLaw<ControllerLaw, Implementation>::SavedLaw;
+  std::unique_ptr<ControllerLaw> clone() const override { return std::make_unique<ControllerOf>(*this); }
   void enter_run(const VelocityCommand& inbox, bool with_zero) noexcept override {
     this->law_.enter_run(inbox, with_zero);
   }
@@ -108,6 +129,7 @@ template <class Implementation>
 class MonitorOf final : public SavedLaw<MonitorLaw, Implementation> {
  public:
   using SavedLaw<MonitorLaw, Implementation>::SavedLaw;
+  std::unique_ptr<MonitorLaw> clone() const override { return std::make_unique<MonitorOf>(*this); }
   void step(const MonitorInput& input, Permit& out) noexcept override { this->law_.step(input, out); }
 };
 

@@ -36,6 +36,9 @@ class Retuner {
  public:
   virtual ~Retuner() = default;
 
+  /// Returns a copy for the controller behind this inbox.
+  virtual std::unique_ptr<Retuner> clone(LatestValue<LiveTuning>& inbox) const = 0;
+
   /// Names the parameters with which the monitor runs where it read others (an override of its own).
   virtual void expect_monitor(const Parameters& monitor) = 0;
 

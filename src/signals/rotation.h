@@ -9,6 +9,13 @@
 
 namespace robot_control {
 
+/// Cosine and sine of an angle in rad, with which several vectors are turned.
+struct Turn {
+  Turn(double angle) noexcept : cos(std::cos(angle)), sin(std::sin(angle)) {}
+
+  double cos, sin;
+};
+
 /// Returns the matrix that converts vectors from the rotated axes to the axes to which `q` refers. `q` is x y z w with
 /// any length except 0.
 inline Eigen::Matrix3d rotation_of(const Quaternion& q) noexcept {

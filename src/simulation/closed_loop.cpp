@@ -30,6 +30,15 @@ std::shared_ptr<const Robot> drivable(std::shared_ptr<const Robot> robot, const 
   return robot;
 }
 
+std::unique_ptr<Driver> copy_of(Driver& machine) {
+  Simulator* const simulator = simulator_of(machine);
+  std::unique_ptr<Driver> copy = simulator == nullptr ? nullptr : simulator->clone();
+  if (copy != nullptr) return copy;
+  throw DriverError(
+      "a loop whose motors stand behind simulated drives (robot.drives) cannot be cloned; make another one with the "
+      "same arguments and give it the same calls");
+}
+
 }  // namespace
 
 ClosedLoop::ClosedLoop(const Parameters& given, std::shared_ptr<const Robot> robot)
@@ -54,17 +63,44 @@ ClosedLoop::ClosedLoop(const Parameters& given, std::shared_ptr<const Robot> rob
   driver_.begin_run(1);
 }
 
+ClosedLoop::ClosedLoop(const ClosedLoop& other)
+    : parameters_(other.parameters_),
+      robot_(other.robot_),
+      machine_(copy_of(*other.machine_)),
+      sensors_(other.sensors_),
+      state_(other.state_),
+      command_(other.command_),
+      permit_(other.permit_),
+      driver_(other.driver_, *machine_,
+              {sensors_.writer, FrameWriter<TruthFrame>(), &command_.reader, &permit_.reader}),
+      estimator_(other.estimator_, sensors_.reader, state_.writer),
+      controller_(other.controller_, {&sensors_.reader, &state_.reader, &permit_.reader, command_.writer}),
+      monitor_(other.monitor_, {&sensors_.reader, &state_.reader, &command_.reader, permit_.writer}),
+      estimator_faults_(other.estimator_faults_, state_.writer),
+      controller_faults_(other.controller_faults_, command_.writer),
+      monitor_faults_(other.monitor_faults_, permit_.writer),
+      retuner_(other.retuner_ == nullptr ? nullptr : other.retuner_->clone(controller_.tunings())),
+      request_(other.request_),
+      mode_(other.mode_),
+      operator_input_(other.operator_input_),
+      faults_(other.faults_),
+      fresh_(other.fresh_),
+      handed_over_(other.handed_over_) {}
+
 void ClosedLoop::clearance(double metres) noexcept {
-  ++operator_input_.clearances;
+  ++operated().clearances;
   operator_input_.clearance = metres;
 }
 
 void ClosedLoop::hand_over() noexcept {
+  if (handed_over_) return;
   controller_.inbox().store(request_);
   monitor_.inbox().store(operator_input_);
+  handed_over_ = true;
 }
 
 void ClosedLoop::step() noexcept {
+  fresh_ = false;
   if (cycle() > 0) hand_over();  // every node drops inputs that arrive before a run begins
   driver_.step();
   const SensorFrame& sensors = driver_.trace().sensors;
@@ -94,12 +130,22 @@ void ClosedLoop::write_down() noexcept {
   }
 }
 
+void ClosedLoop::record() noexcept {
+  sensors_.frames->seal_all();
+  state_.frames->seal_all();
+  command_.frames->seal_all();
+  permit_.frames->seal_all();
+}
+
 std::unique_ptr<RowLog> ClosedLoop::set_log(std::unique_ptr<RowLog> log) {
+  fresh_ = false;
+  if (log != nullptr) record();
   log_problem_.clear();
   return std::exchange(log_, std::move(log));
 }
 
 void ClosedLoop::reset() {
+  fresh_ = false;
   hand_over();
   faults_ = {};
   driver_.inject(faults_);
@@ -110,11 +156,13 @@ void ClosedLoop::reset() {
 
 void ClosedLoop::set_parameters(const std::string& request) {
   if (retuner_ == nullptr) throw ParameterError("this robot has no parameters that change while it runs");
+  fresh_ = false;
   retuner_->set(request);
   parameters_ = retuner_->in_force();
 }
 
 void ClosedLoop::inject_fault(const std::string& component, const std::string& kind) {
+  fresh_ = false;
   const std::string problem = set_fault(faults_, robot_->machine(), component, kind);
   if (problem.empty()) return driver_.inject(faults_);
   Simulator* const simulator = simulator_of(*machine_);

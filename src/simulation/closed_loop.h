@@ -7,6 +7,7 @@
 
 #include <array>
 #include <cstdint>
+#include <cstring>
 #include <memory>
 #include <string>
 
@@ -34,20 +35,30 @@ class ClosedLoop {
   /// Does the same with a robot of any kind, which was composed with these parameters.
   ClosedLoop(const Parameters& parameters, std::shared_ptr<const Robot> robot);
 
+  /// A copy continues bit for bit as the original, but writes no log and has no row before its first step. Throws
+  /// DriverError for a machine behind simulated drives.
+  ClosedLoop(const ClosedLoop& other);
+
   /// Acts like a message received now on cmd_vel: it takes effect in the next step and times out like cmd_vel. The
   /// earliest cycle is 1, because the nodes enter the run in cycle 0.
   void command(const Twist& twist) noexcept { request({.twist = twist, .mode = zero(twist) ? Mode{} : mode_}); }
   /// The same with every part of a request.
-  void request(const Request& content) noexcept { request_ = {.content = content, .count = request_.count + 1}; }
+  void request(const Request& content) noexcept {
+    fresh_ = handed_over_ = false;
+    request_ = {.content = content, .count = request_.count + 1};
+  }
 
   /// Sets Request::mode of later commands other than zero, as set_gait of a robot on legs does. It ends with the
   /// permission to move.
-  void choose_mode(const Mode& mode) noexcept { mode_ = mode; }
+  void choose_mode(const Mode& mode) noexcept {
+    fresh_ = false;
+    mode_ = mode;
+  }
 
   /// These act like calls of e_stop_trigger and e_stop_reset, and like a message on heartbeat.
-  void e_stop() noexcept { ++operator_input_.e_stop_services; }
-  void e_stop_reset() noexcept { ++operator_input_.resets; }
-  void heartbeat() noexcept { ++operator_input_.heartbeats; }
+  void e_stop() noexcept { ++operated().e_stop_services; }
+  void e_stop_reset() noexcept { ++operated().resets; }
+  void heartbeat() noexcept { ++operated().heartbeats; }
 
   /// Acts like a message on clearance, m.
   void clearance(double metres) noexcept;
@@ -69,6 +80,9 @@ class ClosedLoop {
   /// Throws std::invalid_argument with the list of words if one is unknown.
   void inject_fault(const std::string& component, const std::string& kind);
 
+  /// Returns true until the first call of a function that changes anything.
+  bool fresh() const noexcept { return fresh_; }
+
   /// Return cycle and time [s] of the sample in the next step.
   std::uint64_t cycle() const noexcept { return driver_.next_cycle(); }
   double time() const noexcept { return row_time(cycle(), parameters_.loop.period()); }
@@ -80,11 +94,15 @@ class ClosedLoop {
   /// Without a laser there are no ranges.
   LaserScan scan() const;
 
+  /// From the next step on frames have checksums, and the states of the laws are copied. A log and a replay need both,
+  /// which cost a tenth of a cycle.
+  void record() noexcept;
+
   /// Returns the states of the laws before the last step in the order of LawName; null for those that were not copied.
   std::array<const LawSnapshot*, kLaws> snapshots() const noexcept;
 
-  /// Writes every row and snapshot to `log` from the next step on; to no log if it is null. Returns the previous log,
-  /// which is not closed.
+  /// Records, and writes every row and snapshot to `log` from the next step on; to no log if it is null. Returns the
+  /// previous log, which is not closed.
   std::unique_ptr<RowLog> set_log(std::unique_ptr<RowLog> log);
 
   /// Returns the reason why the log has ended; "" if it has not.
@@ -94,18 +112,29 @@ class ClosedLoop {
   std::string warning() const { return machine_->warning(); }
 
   const Robot& robot() const noexcept { return *robot_; }
+  const std::shared_ptr<const Robot>& shared_robot() const noexcept { return robot_; }
   const Parameters& parameters() const noexcept { return parameters_; }
 
  private:
   /// A channel of this thread with its writer and its reader.
   template <class Frame>
   struct Channel {
+    Channel() = default;
+    Channel(const Channel& other) : frames(std::make_unique<OwnFrames<Frame>>(*other.frames)) {
+      // One thread uses these atomics, and a channel has the same bytes in every process.
+      std::memcpy(static_cast<void*>(memory.get()), other.memory.get(), sizeof *memory);
+    }
+
     std::unique_ptr<LatestFrames<Frame>> memory = std::make_unique<LatestFrames<Frame>>();
     std::unique_ptr<OwnFrames<Frame>> frames = std::make_unique<OwnFrames<Frame>>();
     FrameWriter<Frame> writer{memory.get(), frames.get()};
     FrameReader<Frame> reader{memory.get(), frames.get()};
   };
 
+  OperatorInput& operated() noexcept {
+    fresh_ = handed_over_ = false;
+    return operator_input_;
+  }
   void hand_over() noexcept;
   void write_down() noexcept;
 
@@ -128,6 +157,8 @@ class ClosedLoop {
   Mode mode_;  ///< of later commands
   OperatorInput operator_input_;
   InjectedFaults faults_{};
+  bool fresh_ = true;
+  bool handed_over_ = false;  ///< the nodes have the newest request and operator's input
   JoinedRow row_;
   std::unique_ptr<RowLog> log_;
   std::string log_problem_;

@@ -71,11 +71,31 @@ TEST_F(OwnFramesTest, RandomPublicationsAreFoundAsInSharedMemory) {
 
 TEST_F(OwnFramesTest, AFoundFrameIsWhereItsWriterHasPutIt) {
   SmallFrame frame{.head = {.run = 1, .cycle = 3}, .content = 7};
-  own_writer_.publish(frame);
+  own_writer_.publish_in_place(frame);
   SmallFrame buffer;
   const Found<SmallFrame> found = own_reader_.find_newest(buffer);
   EXPECT_EQ(found.lookup, Lookup::kFrame);
-  EXPECT_EQ(found.frame, &own_->slots[3].frame);
+  EXPECT_EQ(found.frame, &frame);
+}
+
+TEST_F(OwnFramesTest, ACopyHoldsTheFramesItself) {
+  SmallFrame frame{.head = {.run = 1, .cycle = 3}, .content = 7};
+  own_writer_.publish_in_place(frame);
+  const OwnFrames<SmallFrame> copy(*own_);
+  frame.content = 8;
+  EXPECT_EQ(copy.slots[3].frame->content, 7u);
+  EXPECT_EQ(copy.slots[3].frame, &copy.slots[3].stored);
+}
+
+TEST_F(OwnFramesTest, FramesHaveChecksumsFromTheMomentOnInWhichTheyAreNeeded) {
+  SmallFrame frame{.head = {.run = 1, .cycle = 3}, .content = 7};
+  own_writer_.publish_in_place(frame);
+  EXPECT_EQ(frame.head.checksum, 0u);
+  own_->seal_all();
+  EXPECT_TRUE(intact(frame));
+  SmallFrame next{.head = {.run = 1, .cycle = 4}, .content = 9};
+  own_writer_.publish(next);
+  EXPECT_TRUE(intact(next));
 }
 
 TEST_F(OwnFramesTest, FindsNothingBeforeTheFirstPublication) {

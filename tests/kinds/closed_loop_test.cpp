@@ -9,6 +9,7 @@
 #include "signals/checksum.h"
 #include "signals/names.h"
 #include "signals/wheeled/drive_tuning.h"
+#include "support/recorded_loop.h"
 
 namespace robot_control::tests {
 
@@ -38,7 +39,7 @@ struct SecondKind : testing::Test {
   const GateReport& gate() const { return loop.row().driver->gate; }
   std::string causes() const { return names_of(kStopCauseNames, loop.row().monitor->permit.causes); }
 
-  ClosedLoop loop{parameters(), std::make_shared<Pendulum>(parameters())};
+  RecordedLoop loop{parameters(), std::make_shared<Pendulum>(parameters())};
   Recording recording;
   double fastest = 0;  // rad/s
 };

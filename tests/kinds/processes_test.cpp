@@ -13,6 +13,7 @@
 #include "support/log_table.h"
 #include "support/processes/four_nodes.h"
 #include "support/processes/node_processes.h"
+#include "support/recorded_loop.h"
 #include "support/temporary_folder.h"
 
 namespace robot_control::tests {
@@ -37,7 +38,7 @@ TEST(SecondKindProcesses, LockstepGivesTheNumbersOfTheClosedLoopAndALogThatIsRep
   FourNodes(parameters, robot, true).run(kPatience);
 
   const std::string bag = folder.path() / "log" / "run.bag";
-  ClosedLoop loop(parameters, robot);
+  RecordedLoop loop(parameters, robot);
   LogTable one(robot->machine(), parameters.loop.period());
   for (int k = 0; k < 1500; ++k) {
     loop.step();

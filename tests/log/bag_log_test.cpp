@@ -7,6 +7,7 @@
 #include "loop/log_header.h"
 #include "recorded_drive.h"
 #include "support/matchers.h"
+#include "support/recorded_loop.h"
 #include "support/temporary_folder.h"
 
 namespace robot_control::tests {
@@ -79,7 +80,7 @@ struct ABagLog : testing::Test {
   }
 
   Parameters parameters = drive_parameters();
-  ClosedLoop loop{parameters};
+  RecordedLoop loop{parameters};
   TemporaryFolder folder;
   std::unique_ptr<LogFolder> logs;
   std::unique_ptr<BagLog> log;

@@ -9,6 +9,7 @@
 #include "log/trace_reader.h"
 #include "loop/log_header.h"
 #include "recorded_drive.h"
+#include "support/recorded_loop.h"
 #include "support/temporary_folder.h"
 
 namespace robot_control {
@@ -46,7 +47,7 @@ struct ABlackBox : testing::Test {
   SavedBlackBox save() const { return save_black_box(path("ring"), path("saved/run.bag")); }
 
   TemporaryFolder folder;
-  ClosedLoop loop{drive_parameters()};
+  RecordedLoop loop{drive_parameters()};
   LogFolder logs{folder.path() / "log", 0};
   std::unique_ptr<BagLog> log;
 };

@@ -13,6 +13,7 @@
 #include "loop/log_header.h"
 #include "recorded_drive.h"
 #include "support/matchers.h"
+#include "support/recorded_loop.h"
 #include "support/temporary_folder.h"
 
 namespace robot_control::tests {
@@ -86,7 +87,7 @@ struct ABlackBoxKeeper : testing::Test {
   }
 
   TemporaryFolder folder;
-  ClosedLoop loop{drive_parameters()};
+  RecordedLoop loop{drive_parameters()};
   std::int64_t now_ns = kSecond;
 };
 

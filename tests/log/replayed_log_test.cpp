@@ -7,6 +7,7 @@
 #include "log/trace_reader.h"
 #include "loop/log_header.h"
 #include "recorded_drive.h"
+#include "support/recorded_loop.h"
 #include "support/temporary_folder.h"
 
 namespace robot_control::tests {
@@ -48,7 +49,7 @@ struct AReplayedLog : testing::Test {
   }
 
   Parameters parameters = drive_parameters();
-  ClosedLoop loop{parameters};
+  RecordedLoop loop{parameters};
   TemporaryFolder folder;
   LogFolder logs{folder.path(), 0};
   std::unique_ptr<BagLog> log;

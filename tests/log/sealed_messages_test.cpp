@@ -7,6 +7,7 @@
 #include "log/messages/trace_message.h"
 #include "loop/log_header.h"
 #include "recorded_drive.h"
+#include "support/recorded_loop.h"
 
 namespace robot_control::tests {
 
@@ -37,7 +38,7 @@ TEST(SealedMessages, ShowEveryChangeOfAHeader) {
 }
 
 TEST(SealedMessages, ShowEveryChangeOfASnapshot) {
-  ClosedLoop loop(drive_parameters());
+  RecordedLoop loop(drive_parameters());
   loop.step();
   for (const LawSnapshot* snapshot : loop.snapshots()) {
     ASSERT_NE(snapshot, nullptr);

@@ -9,6 +9,7 @@
 #include "signals/names.h"
 #include "support/log_table.h"
 #include "support/matchers.h"
+#include "support/recorded_loop.h"
 
 namespace robot_control::tests {
 
@@ -26,7 +27,7 @@ struct TraceMessages : testing::Test {
     });
   }
 
-  ClosedLoop loop;
+  RecordedLoop loop;
   TraceDecoder decoder{trace_definition()};
   std::string message;
   TraceRow read;

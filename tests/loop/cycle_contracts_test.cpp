@@ -22,6 +22,7 @@ struct Saved : Role {
 };
 
 struct NotedEstimator final : Saved<EstimatorLaw> {
+  std::unique_ptr<EstimatorLaw> clone() const override { return std::make_unique<NotedEstimator>(*this); }
   void enter_run() noexcept override { ++runs; }
   void resume(const StateFrame& last) noexcept override { resumed = last.head.cycle; }
   void set_pose(const Vector3& wanted) noexcept override {
@@ -35,6 +36,7 @@ struct NotedEstimator final : Saved<EstimatorLaw> {
 };
 
 struct NotedController final : Saved<ControllerLaw> {
+  std::unique_ptr<ControllerLaw> clone() const override { return std::make_unique<NotedController>(*this); }
   void enter_run(const VelocityCommand& inbox, bool zero) noexcept override {
     entered = inbox;
     with_zero = zero;
@@ -64,6 +66,7 @@ struct NotedController final : Saved<ControllerLaw> {
 };
 
 struct NotedMonitor final : Saved<MonitorLaw> {
+  std::unique_ptr<MonitorLaw> clone() const override { return std::make_unique<NotedMonitor>(*this); }
   void step(const MonitorInput& wanted, Permit& out) noexcept override {
     input = wanted;
     if (wanted.inherited != nullptr) inherited = *wanted.inherited;
@@ -165,7 +168,7 @@ TEST(Rows, AreNumberedAndBeginEmpty) {
   EXPECT_EQ(noted.law.number, 0u);
   noted.law.process = 12;
   noted.corrupt = 3;
-  close_row(noted, 100, 200, row);
+  close_row(true, noted, 100, 200, row);
   EXPECT_EQ(row.law.process, 12u);
   EXPECT_EQ(row.law.number, 0u);
   EXPECT_EQ(row.law.sensors, 100u);
@@ -177,13 +180,24 @@ TEST(Rows, AreNumberedAndBeginEmpty) {
   EXPECT_EQ(noted.corrupt, 0u);
 }
 
+TEST(Rows, AreNumberedButNotFilledWithoutChecksums) {
+  MonitorCalls noted = first_row<MonitorCalls>(), row;
+  noted.corrupt = 3;
+  close_row(false, noted, 100, 200, row);
+  EXPECT_EQ(row.law.sensors, 0u);
+  EXPECT_EQ(row.corrupt, 0u);
+  EXPECT_EQ(noted.law.number, 1u);
+  EXPECT_EQ(noted.corrupt, 0u);
+}
+
 TEST(LawSnapshots, AreTakenInTheFirstTwoRowsInANewRunAndEveryKSnapshotCycles) {
   Snapshots snapshots(LawName::kMonitor);
   const NotedMonitor law;
   EXPECT_EQ(snapshots.taken(), nullptr);
+  bool seals = true;
   const auto taken = [&](std::uint64_t number, std::uint64_t cycle, std::uint64_t new_run = 0) {
     snapshots.copy_if_due(law, {.process = 3, .number = number, .new_run = new_run},
-                          {.checksum = 1, .run = kRun, .cycle = cycle, .stamp_ns = 77});
+                          {.checksum = 1, .run = kRun, .cycle = cycle, .stamp_ns = 77}, seals);
     return snapshots.taken() != nullptr;
   };
   EXPECT_TRUE(taken(0, 100));
@@ -204,6 +218,8 @@ TEST(LawSnapshots, AreTakenInTheFirstTwoRowsInANewRunAndEveryKSnapshotCycles) {
   EXPECT_EQ(copy.process, 3u);
   EXPECT_EQ(copy.number, 7u);
   EXPECT_EQ(copy.bytes, 1u);
+  seals = false;
+  EXPECT_FALSE(taken(8, 3 * kSnapshotCycles)) << "a replay could not use it";
 }
 
 struct EstimatorCycleTest : Bench {

@@ -27,6 +27,8 @@ TEST(DriverCycleInOneThread, UsesThePermitAndTheCommandOfItsWriters) {
   const auto own_permit = std::make_unique<OwnFrames<Permit>>();
   FrameWriter<CommandFrame> commands(channels.command.memory.get(), own_command.get());
   FrameWriter<Permit> permits(channels.permit.memory.get(), own_permit.get());
+  own_command->seal_all();
+  own_permit->seal_all();
   const auto commands_read = commands.reader();
   const auto permits_read = permits.reader();
   DriverCycle driver{machine,

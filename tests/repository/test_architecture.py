@@ -217,7 +217,7 @@ def test_what_is_configured_sees_only_the_declaration_of_a_block():
 COMPOSED = re.compile(
     r"src/robots/(differential_drive\.|robot_kind\.cpp)"  # the kind itself, and the choice of a kind
     r"|src/configuration/parameters\.h"  # blocks of all kinds, in one file of the user
-    r"|python/bindings/(module|describe)\.cpp"  # bindings of all kinds, in one module
+    r"|python/bindings/(module|closed_loop|describe)\.cpp"  # bindings of all kinds, in one module
 )
 """The files that compose. The interfaces beside them see no kind."""
 

@@ -16,12 +16,13 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from robot_control._robot_control import ClosedLoop as _ClosedLoop
-from robot_control._robot_control import end_log, log_into
+from robot_control._robot_control import Columns, end_log, log_into
 from robot_control.files.files import utf8
 from robot_control.loop.roles import DRIVER
 from robot_control.settings.parameter_layers import flow_text, layered
 
 File = str | PathLike[str]
+Params = File | Mapping[str, Any] | None
 Log = dict[str, NDArray[np.float64]]
 Twist = tuple[float, float] | tuple[float, float, float]
 """(linear, angular) or (linear, lateral, angular): m/s to the front, m/s to the left, rad/s"""
@@ -32,6 +33,18 @@ _STAY, _LIE, _STAND, _LIFT, _MOVE_JOINTS, _GAIT = range(6)
 """ModeKind of src/signals/velocity_command.h"""
 _POSE = (0.0,) * 6
 _JOINTS = (0.0,) * 12
+_KEPT = ("_path", "_values", "_seed", "_paused", "_running")
+"""Attributes that a copy shares and a pickle holds."""
+
+
+def given_layers(params: Params, urdf: File | None, scene: File | None, drives: File | None) -> tuple[str, list[Any]]:
+    """The parameter file and the values laid over it."""
+    path, values = layered(params, urdf)
+    if scene is not None:
+        values.append((f"{DRIVER}.scene", utf8(scene)))
+    if drives is not None:
+        values.append(("robot.drives", utf8(drives)))
+    return path, values
 
 
 def _index(word: str, words: Sequence[str], what: str) -> int:
@@ -53,9 +66,11 @@ class ClosedLoop:
     change it       set_parameters, inject_fault
     move its legs   set_posture, set_gait, body_pose, foot_target, joint_targets
     keep a log      log_into, end_log
+    copy it         clone, copy.copy, pickle
     read it         scan, robot, units, time, cycle, period, paused, stop_distance, smooth_speed
 
-    The same arguments and calls give the same bits, and the four nodes in lockstep give them, too.
+    The same arguments and calls give the same bits, and the four nodes in lockstep give them, too. A pickle holds the
+    arguments and the seed: it makes the same loop anew, in any process. `ClosedLoops` runs many at once.
 
     Args:
         params: path of a YAML file, or a nested dict laid over the installed `config/robot_params.yaml`,
@@ -83,13 +98,46 @@ class ClosedLoop:
     ) -> None:
         """Takes the arguments above."""
         self._running = False
-        self._path, self._values = layered(params, urdf)
-        if scene is not None:
-            self._values.append((f"{DRIVER}.scene", utf8(scene)))
-        if drives is not None:
-            self._values.append(("robot.drives", utf8(drives)))
+        self._path, self._values = given_layers(params, urdf, scene, drives)
         self._paused = False
+        self._seed = seed
+        self._columns: dict[tuple[str, ...] | None, Columns] = {}
         self._loop = self._new_loop(seed)
+
+    def clone(self) -> ClosedLoop:
+        """Another loop in the same state, which from now on gives the same bits. It writes no log.
+
+        Raises:
+            DriverError: simulated drives (`drives`) cannot be copied.
+        """
+        self._refuse_inside_a_run("clone")
+        copy = ClosedLoop.__new__(ClosedLoop)
+        copy.__dict__.update({name: self.__dict__[name] for name in (*_KEPT, "_columns")}, _loop=self._loop.clone())
+        return copy
+
+    def __copy__(self) -> ClosedLoop:
+        return self.clone()
+
+    def __deepcopy__(self, _memo: dict[int, Any]) -> ClosedLoop:
+        return self.clone()
+
+    def __getstate__(self) -> dict[str, Any]:
+        """The arguments and the seed.
+
+        Raises:
+            TypeError: the loop was used since its start.
+        """
+        if not self._loop.fresh:
+            raise TypeError(
+                "a ClosedLoop that has run cannot be pickled: a pickle holds its arguments and its seed alone. Pickle "
+                "it before its first call or after reset(seed); within this process copy it by clone()"
+            )
+        return {name: self.__dict__[name] for name in _KEPT}
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        self.__dict__.update(state)
+        self._columns = {}
+        self._loop = self._new_loop(self._seed)
 
     def reset(self, seed: int | None = None) -> None:
         """Puts the robot back to its start, without injected faults; the next cycle is 0.
@@ -104,6 +152,7 @@ class ClosedLoop:
             self._loop.reset()
             return
         self._paused = False
+        self._seed = seed
         self._loop = self._new_loop(seed)
 
     def _new_loop(self, seed: int) -> _ClosedLoop:
@@ -232,37 +281,45 @@ class ClosedLoop:
         """Acts as a message on `clearance`: the free distance ahead, m."""
         self._loop.clearance(metres)
 
-    def step(self, cycles: int = 1) -> Log:
-        """Runs `cycles` cycles; returns their log, arrays of shape (cycles,)."""
-        return self._run(cycles, None)
+    def step(self, cycles: int = 1, columns: Sequence[str] | None = None) -> Log:
+        """Runs `cycles` cycles; returns their log, arrays of shape (cycles,), or these columns of it."""
+        return self._run(cycles, None, columns)
 
-    def run(self, seconds: float, command: Command = None) -> Log:
-        """Runs for `seconds` of simulated time.
+    def run(self, seconds: float, command: Command = None, columns: Sequence[str] | None = None) -> Log:
+        """Runs for `seconds` of simulated time. Other Python threads run meanwhile unless `command` is a function.
 
         Args:
             seconds: s, rounded to whole cycles.
             command: called with the time [s] of each cycle, gives (linear [m/s], angular [rad/s]), each as
                 if just received; of a robot on legs also (linear, lateral [m/s], angular); or one such tuple for
                 every cycle; or None: the last `command`, which times out like cmd_vel.
+            columns: names of the columns that are returned; None: all. A few are much faster than all in runs of a
+                few cycles.
 
         Returns:
             Column name → float array of shape (cycles,); NaN where a node published nothing. Units: `units`.
 
         Raises:
             RuntimeError: the loop is paused.
+            ValueError: an unknown column.
         """
         if self._paused:
             raise RuntimeError("paused: call set_pause(False), or step(cycles)")
-        cycles = round(seconds / self.period)
-        return self._run(cycles, command if command is None or callable(command) else lambda _time: command)
+        return self._run(round(seconds / self.period), command, columns)
 
-    def _run(self, cycles: int, command: Callable[[float], Twist] | None) -> Log:
+    def _run(self, cycles: int, command: Command, columns: Sequence[str] | None) -> Log:
         self._refuse_inside_a_run("step and run")
         self._running = True
         try:
-            return self._loop.run(cycles, command)
+            return self._loop.run(cycles, command, self._chosen(columns))
         finally:
             self._running = False
+
+    def _chosen(self, names: Sequence[str] | None) -> Columns:
+        key = None if names is None else tuple(names)
+        if key not in self._columns:
+            self._columns[key] = self._loop.choose(key)
+        return self._columns[key]
 
     def record(self, commands: NDArray[np.float64]) -> Log:
         """Drives one cycle per row of `commands`, shape (cycles, 2): linear m/s, angular rad/s, as if received in it;

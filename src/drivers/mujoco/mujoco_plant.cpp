@@ -3,8 +3,8 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <limits>
+#include <string_view>
 
 #include "drivers/mujoco/contact/rest.h"
 #include "drivers/mujoco/motors/brake_limits.h"
@@ -65,6 +65,13 @@ MujocoPlant::MujocoPlant(const MachineModel& robot, const MujocoPlantParameters&
   check_battery(parameters.battery_voltage, parameters.battery_resistance);
 }
 
+std::unique_ptr<Simulator> MujocoPlant::clone() const {
+  std::unique_ptr<MujocoPlant> copy(new MujocoPlant(*this));
+  if (data_) copy->data_ = MujocoData(mj_copyData(nullptr, model_.model.get(), data_.get()));
+  if (laser_) copy->laser_ = std::make_shared<Laser>(copy->model_, parameters_, origin_, period_);
+  return copy;
+}
+
 void MujocoPlant::start() {
   if (faults_ & kFaultSimulationError) {
     throw DriverError("mujoco_plant: MuJoCo raised an error (" + std::string(fault_message()) +
@@ -90,7 +97,7 @@ void MujocoPlant::start() {
   settled_ = false;
   settle();
   // The origin is the same after every start. The laser is made once, because another thread uses it.
-  if (parameters_.laser.rate > 0 && !laser_) laser_ = std::make_unique<Laser>(model_, parameters_, origin_, period_);
+  if (parameters_.laser.rate > 0 && !laser_) laser_ = std::make_shared<Laser>(model_, parameters_, origin_, period_);
   state_ = DriverState::kRunning;
   cycle_ = 0;
   measure();
@@ -176,16 +183,16 @@ void MujocoPlant::read(SensorFrame& sensors) noexcept {
   sensors.driver_state = state_;
   sensors.faults = faults_;
   if (!read_) {
-    handed_out_ = measured_;
+    copy_readings(brakes_.size(), contacts(), measured_, handed_out_);
     lost_ = sensor_faults_.step(injected_, cycle_, handed_out_);
     read_ = true;
   }
   sensors.valid = good ? equipped() & ~lost_ : 0;
   sensors.joint_count = brakes_.size();
-  sensors.joints = handed_out_.joints;
+  copy_first(brakes_.size(), handed_out_.joints, sensors.joints);
   sensors.imu = handed_out_.imu;
   sensors.contact_count = parameters_.contact_sensors ? contacts() : 0;
-  sensors.contacts = handed_out_.contacts;
+  copy_first(contacts(), handed_out_.contacts, sensors.contacts);
   if (!good) {
     set_joints_valid(sensors, 0);
     for (ContactSample& contact : sensors.contacts) contact.valid = 0;
@@ -241,9 +248,12 @@ void MujocoPlant::simulate(std::span<const JointCommand> commands) noexcept {
 }
 
 void MujocoPlant::truth(TruthFrame& truth) noexcept {
-  const FrameHead head = truth.head;
-  truth = truth_;
-  truth.head = head;
+  truth.pose_world = truth_.pose_world;
+  truth.twist_base = truth_.twist_base;
+  copy_first(brakes_.size(), truth_.joints, truth.joints);
+  truth.contact_count = truth_.contact_count;
+  copy_first(contacts(), truth_.normal_force, truth.normal_force);
+  copy_first(contacts(), truth_.slip, truth.slip);
 }
 
 std::uint64_t MujocoPlant::scan_cycles() const noexcept {
@@ -332,7 +342,7 @@ void MujocoPlant::collect() noexcept {
 }
 
 void MujocoPlant::measure() noexcept {
-  measured_ = exact_;
+  copy_readings(brakes_.size(), contacts(), exact_, measured_);
   sensor_errors_.step(measured_);
   for (std::size_t i = 0; i < drives_.size(); ++i) {
     measured_.joints[i].effort = std::numeric_limits<double>::quiet_NaN();
@@ -359,7 +369,7 @@ void MujocoPlant::collect_truth() noexcept {
   mju_rotVecQuat(truth_.twist_base.linear.data(), velocity, to_base);
   std::copy_n(velocity + 3, 3, truth_.twist_base.angular.begin());
 
-  truth_.joints = exact_.joints;
+  copy_first(brakes_.size(), exact_.joints, truth_.joints);
   truth_.contact_count = contacts();
   for (std::size_t i = 0; i < contacts(); ++i) {
     truth_.normal_force[i] = normal_force_sum_[i] / model_.substeps;
@@ -368,17 +378,23 @@ void MujocoPlant::collect_truth() noexcept {
 }
 
 bool MujocoPlant::finite() const noexcept {
-  const auto is_finite = [](double value) { return std::isfinite(value); };
-  return std::all_of(data_->qpos, data_->qpos + model_.model->nq, is_finite) &&
-         std::all_of(data_->qvel, data_->qvel + model_.model->nv, is_finite) &&
-         std::all_of(data_->sensordata, data_->sensordata + model_.model->nsensordata, is_finite) &&
-         specific_force_sum_.allFinite() && std::all_of(normal_force_sum_.begin(), normal_force_sum_.end(), is_finite);
+  double zero = 0;  // NaN as soon as one number is NaN or infinite
+  const auto add = [&zero](const double* values, std::size_t count) {
+    for (std::size_t i = 0; i < count; ++i) zero += 0 * values[i];
+  };
+  add(data_->qpos, static_cast<std::size_t>(model_.model->nq));
+  add(data_->qvel, static_cast<std::size_t>(model_.model->nv));
+  add(data_->sensordata, static_cast<std::size_t>(model_.model->nsensordata));
+  add(specific_force_sum_.data(), 3);
+  add(normal_force_sum_.data(), contacts());
+  return zero == 0;
 }
 
 void MujocoPlant::fail(std::uint64_t fault, const char* message) noexcept {
   state_ = DriverState::kFault;
   faults_ |= fault;
-  std::strncpy(fault_message_.data(), message, fault_message_.size() - 1);
+  fault_message_ = {};
+  std::string_view(message).copy(fault_message_.data(), fault_message_.size() - 1);
 }
 
 }  // namespace robot_control

@@ -80,6 +80,7 @@ class MujocoPlant final : public Simulator {
   void truth(TruthFrame& truth) noexcept override;
   void inject(const InjectedFaults& faults) noexcept override { injected_ = faults; }
   std::uint64_t scan_cycles() const noexcept override;
+  std::unique_ptr<Simulator> clone() const override;
   LaserScan scan(const TruthFrame& truth) override { return laser_ ? laser_->scan(truth) : LaserScan{}; }
 
   /// Returns MuJoCo's message about the fault.
@@ -93,6 +94,7 @@ class MujocoPlant final : public Simulator {
   const mjData* data() const noexcept { return data_.get(); }
 
  private:
+  MujocoPlant(const MujocoPlant& other) = default;  ///< without data and laser of its own
   static void substep(void* plant);
   std::span<const JointCommand> received(std::span<const JointCommand> commands) noexcept;
   void simulate(std::span<const JointCommand> commands) noexcept;
@@ -109,7 +111,7 @@ class MujocoPlant final : public Simulator {
   void fail(std::uint64_t fault, const char* message) noexcept;
 
   MujocoModel model_;
-  MujocoData data_;
+  std::shared_ptr<mjData> data_;
   MocapPaths paths_;
   WheelContacts wheels_;
   BodyContacts bodies_;  ///< of a machine without wheels
@@ -124,7 +126,7 @@ class MujocoPlant final : public Simulator {
   std::vector<JointCommand> brakes_;
   std::array<double, 7> origin_{};  ///< origin of truth: position, quaternion w x y z
   std::array<double, 3> push_{};    ///< N, world axes
-  std::unique_ptr<Laser> laser_;    ///< null: there is none, or not yet started
+  std::shared_ptr<Laser> laser_;    ///< null: there is none, or not yet started
   double period_;                   ///< s
   bool settled_ = false;
   bool has_rested_ = false;

@@ -6,6 +6,7 @@
 
 #include "machine/stored.h"
 #include "signals/geometry.h"
+#include "signals/rotation.h"
 
 namespace robot_control {
 
@@ -31,11 +32,9 @@ struct Planar {
   double norm() const noexcept { return std::hypot(x, y); }
 };
 
-/// Returns `v` turned by `angle` rad. If `angle` is the yaw, this changes base axes to odom axes.
-inline Planar rotated(const Planar& v, double angle) noexcept {
-  const double c = std::cos(angle);
-  const double s = std::sin(angle);
-  return {c * v.x - s * v.y, s * v.x + c * v.y};
+/// Returns `v` turned. If the turn is that by the yaw, this changes base axes to odom axes.
+inline Planar rotated(const Planar& v, const Turn& turn) noexcept {
+  return {turn.cos * v.x - turn.sin * v.y, turn.sin * v.x + turn.cos * v.y};
 }
 
 }  // namespace robot_control

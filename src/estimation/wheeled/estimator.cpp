@@ -246,7 +246,7 @@ Eigen::Vector3d Estimator::gyro_bias_variance() const noexcept {
 }
 
 /// Returns the vector from base_link to the middle of the wheels, in m, odom axes.
-Planar Estimator::axle(double yaw) const noexcept {
+Planar Estimator::axle(const Turn& yaw) const noexcept {
   return rotated({geometry_.axle[0], geometry_.axle[1]}, yaw);
 }
 

@@ -162,13 +162,13 @@ class Estimator {
   void fill(const SensorFrame& sensors, StateFrame& out) const noexcept;
   void fill_pose(BaseState& base) const noexcept;
   double late_wheels() const noexcept;
-  void fill_pose_covariance(double yaw, const Planar& lever, BaseState& base) const noexcept;
-  void fill_attitude_covariance(double yaw, double yaw_variance, BaseState& base) const noexcept;
+  void fill_pose_covariance(const Turn& yaw, const Planar& lever, BaseState& base) const noexcept;
+  void fill_attitude_covariance(const Turn& yaw, double yaw_variance, BaseState& base) const noexcept;
   void fill_twist(BaseState& base) const noexcept;
   void fill_twist_covariance(double yaw_rate, BaseState& base) const noexcept;
   void fill_learned(StateFrame& out) const noexcept;
   void fill_health(StateFrame& out) const noexcept;
-  Planar axle(double yaw) const noexcept;
+  Planar axle(const Turn& yaw) const noexcept;
 
   EstimatorParameters parameters_;
   double period_;

@@ -32,26 +32,27 @@ void Estimator::fill_pose(BaseState& base) const noexcept {
   const Prediction ahead = prediction();
   PlanarPose middle = state_.core.pose();
   middle.yaw += ahead.turn;
-  middle.x += std::cos(middle.yaw) * ahead.distance;
-  middle.y += std::sin(middle.yaw) * ahead.distance;
-  const Planar lever = axle(middle.yaw);
+  const Turn yaw(middle.yaw);
+  middle.x += yaw.cos * ahead.distance;
+  middle.y += yaw.sin * ahead.distance;
+  const Planar lever = axle(yaw);
   const Eigen::Quaterniond turn(std::cos(middle.yaw / 2), 0, 0, std::sin(middle.yaw / 2));
   const Eigen::Quaterniond attitude = turn * state_.tilt.attitude();
   base.attitude = {attitude.x(), attitude.y(), attitude.z(), attitude.w()};
   base.pose_odom.position = {middle.x - lever.x, middle.y - lever.y, parameters_.planar ? 0 : state_.height};
   if (state_.pose_set) std::copy_n(state_.pose_set->begin(), 2, base.pose_odom.position.begin());
   base.pose_odom.orientation = parameters_.planar ? Quaternion{0, 0, turn.z(), turn.w()} : base.attitude;
-  fill_pose_covariance(middle.yaw, lever, base);
+  fill_pose_covariance(yaw, lever, base);
 }
 
 ///   P = J P_core Jᵀ + m mᵀ p (1 − p) σ_τ² + a aᵀ σ_encoder²
 /// J is the Jacobian by clock offset τ, x, y and yaw. The direction of travel is a, the velocity of base_link is m. The
 /// wheels are late with the probability p, which leaves the position behind. Otherwise the gyro is, which leaves the
 /// yaw behind.
-void Estimator::fill_pose_covariance(double yaw, const Planar& lever, BaseState& base) const noexcept {
+void Estimator::fill_pose_covariance(const Turn& yaw, const Planar& lever, BaseState& base) const noexcept {
   const double late = late_wheels();
   const double yaw_rate = state_.rest.resting() ? 0 : state_.yaw_rate;
-  const Eigen::Vector3d along(std::cos(yaw), std::sin(yaw), 0);
+  const Eigen::Vector3d along(yaw.cos, yaw.sin, 0);
   const Eigen::Vector3d turning(lever.y, -lever.x, 1);
   Eigen::Matrix<double, 3, 4> jacobian;
   jacobian << late * forward_speed() * along + (late - 1) * yaw_rate * turning, Eigen::Vector3d::UnitX(),
@@ -77,11 +78,11 @@ double Estimator::late_wheels() const noexcept {
 }
 
 /// An error of u across is an error of roll, and an error of u along is one of −pitch. Both are turned to odom axes.
-void Estimator::fill_attitude_covariance(double yaw, double yaw_variance, BaseState& base) const noexcept {
+void Estimator::fill_attitude_covariance(const Turn& yaw, double yaw_variance, BaseState& base) const noexcept {
   Eigen::Matrix2d tilt;
   tilt << state_.tilt.covariance(1, 1), -state_.tilt.covariance(1, 0), -state_.tilt.covariance(0, 1),
       state_.tilt.covariance(0, 0);
-  const Eigen::Matrix2d turned = Eigen::Rotation2Dd(yaw).toRotationMatrix();
+  const Eigen::Matrix2d turned{{yaw.cos, -yaw.sin}, {yaw.sin, yaw.cos}};
   tilt = (turned * tilt * turned.transpose()).eval();
   base.attitude_covariance = {tilt(0, 0), tilt(0, 1), 0, tilt(1, 0), tilt(1, 1), 0, 0, 0, yaw_variance};
   if (parameters_.planar) return;

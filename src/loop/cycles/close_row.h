@@ -18,15 +18,18 @@ Calls first_row() noexcept {
   return calls;
 }
 
-/// `noted` goes into `row`; then it is empty, for the next row.
+/// `noted` goes into `row`, unless no frame has a checksum (FrameWriter::seals); then it is empty, for the next row.
 template <class Calls>
-void close_row(Calls& noted, std::uint64_t sensors, std::uint64_t output, Calls& row) noexcept {
-  row = noted;
-  row.law.sensors = sensors;
-  row.law.output = output;
+void close_row(bool seals, Calls& noted, std::uint64_t sensors, std::uint64_t output, Calls& row) noexcept {
+  const LawRow closed = noted.law;
+  if (seals) {
+    row = noted;
+    row.law.sensors = sensors;
+    row.law.output = output;
+  }
   noted = {};
-  noted.law.process = row.law.process;
-  noted.law.number = row.law.number + 1;
+  noted.law.process = closed.process;
+  noted.law.number = closed.number + 1;
 }
 
 }  // namespace robot_control

@@ -13,8 +13,18 @@ ControllerCycle::ControllerCycle(std::unique_ptr<ControllerLaw> controller, std:
       script_(std::move(script)),
       robot_hash_(robot_hash),
       tunings_(controller_->tuning()),
-      snapshots_(LawName::kController) {
-  trace_.tuning = controller_->tuning();
+      snapshots_(LawName::kController),
+      rows_(channels.command.kept()) {
+  use(controller_->tuning());
+}
+
+ControllerCycle::ControllerCycle(const ControllerCycle& other, const Channels& channels) : ControllerCycle(other) {
+  channels_ = channels;
+}
+
+/// Every row names the tuning in force.
+void ControllerCycle::use(const LiveTuning& tuning) noexcept {
+  rows_.for_each([&](ControllerTrace& row) { row.tuning = tuning; });
 }
 
 /// Takes over every member but the command itself, which script and inbox share.
@@ -39,14 +49,18 @@ void ControllerCycle::enter_run(std::uint64_t run) noexcept {
 }
 
 void ControllerCycle::receive(std::uint64_t cycle) noexcept {
-  VelocityCommand arrived = received_;
-  inbox_.load(arrived);
-  if (arrived.count != received_.count) {
-    request_.content = arrived.content;
-    request_.age_ns = arrived.age_ns;
-    request_.count += arrived.count - received_.count;
+  const std::uint64_t version = inbox_.version();
+  VelocityCommand arrived;
+  if (version != inbox_seen_ && inbox_.load(arrived)) {
+    inbox_seen_ = version;
+    if (arrived.count != received_.count) {
+      request_.content = arrived.content;
+      request_.age_ns = arrived.age_ns;
+      request_.count += arrived.count - received_.count;
+    }
+    take_over(arrived);
   }
-  take_over(arrived);
+  request_.contested = received_.contested;  // the script may have changed it
   const ScriptEvents events = script_.advance(cycle);
   if (events.has_twist) {
     request_.content = {.twist = events.twist};
@@ -62,9 +76,9 @@ void ControllerCycle::tune() noexcept {
   LiveTuning tuning;
   if (!tunings_.load(tuning)) return;
   tunings_seen_ = version;
-  if (tuning == trace_.tuning) return;
+  if (tuning == rows_.last().tuning) return;
   controller_->tune(tuning);
-  trace_.tuning = tuning;
+  use(tuning);
   calls_.tuned = 1;
 }
 
@@ -90,7 +104,7 @@ bool ControllerCycle::step() noexcept {
   }
   if (sensors_found != Lookup::kFrame) return false;
 
-  snapshots_.copy_if_due(*controller_, calls_.law, state.head);
+  snapshots_.copy_if_due(*controller_, calls_.law, state.head, channels_.command.seals());
   receive(cycle);
   tune();
   ControlInput input{.sensors = &sensors, .state = &state, .request = request_};
@@ -102,13 +116,15 @@ bool ControllerCycle::step() noexcept {
       calls_.permit = used(Lookup::kFrame, *permit);
     }
   }
-  controller_->step(input, trace_.command);
-  trace_.command.head = {.run = run, .cycle = cycle, .stamp_ns = state.head.stamp_ns};
-  channels_.command.publish(trace_.command);
-  trace_.timing = clock_.timing(woke_ns, sensors);
-  calls_.request = request_;
+  ControllerTrace& row = rows_.begin(cycle);
+  controller_->step(input, row.command);
+  row.command.head = {.run = run, .cycle = cycle, .stamp_ns = state.head.stamp_ns};
+  channels_.command.publish_in_place(row.command);
+  row.timing = clock_.timing(woke_ns, sensors);
+  const bool seals = channels_.command.seals();
+  if (seals) calls_.request = request_;
   calls_.state = state.head.checksum;
-  close_row(calls_, sensors.head.checksum, trace_.command.head.checksum, trace_.calls);
+  close_row(seals, calls_, sensors.head.checksum, row.command.head.checksum, row.calls);
   return true;
 }
 

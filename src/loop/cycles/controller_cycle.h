@@ -10,6 +10,7 @@
 #include "loop/command_script.h"
 #include "loop/cycles/close_row.h"
 #include "loop/cycles/cycle_clock.h"
+#include "loop/cycles/rows.h"
 #include "loop/cycles/snapshots.h"
 #include "robots/laws.h"
 #include "signals/trace.h"
@@ -29,6 +30,9 @@ class ControllerCycle {
   ControllerCycle(std::unique_ptr<ControllerLaw> controller, std::uint64_t robot_hash, const Channels& channels,
                   CommandScript script, Now now);
 
+  /// Continues as `other` would, on channels with the same frames.
+  ControllerCycle(const ControllerCycle& other, const Channels& channels);
+
   /// In from the outside: one ordinary thread stores, this cycle loads.
   LatestValue<VelocityCommand>& inbox() noexcept { return inbox_; }
 
@@ -43,18 +47,20 @@ class ControllerCycle {
   bool step() noexcept;
 
   /// The row of the last step that returned true.
-  const ControllerTrace& trace() const noexcept { return trace_; }
+  const ControllerTrace& trace() const noexcept { return rows_.last(); }
 
   /// The law's state before the step of the last row, where it was copied; else null.
   const LawSnapshot* snapshot() const noexcept { return snapshots_.taken(); }
 
  private:
+  ControllerCycle(const ControllerCycle& other) = default;
+  void use(const LiveTuning& tuning) noexcept;
   void take_over(const VelocityCommand& arrived) noexcept;
   void enter_run(std::uint64_t run) noexcept;
   void receive(std::uint64_t cycle) noexcept;
   void tune() noexcept;
 
-  std::unique_ptr<ControllerLaw> controller_;
+  OwnedLaw<ControllerLaw> controller_;
   CycleClock clock_;
   Channels channels_;
   CommandScript script_;
@@ -62,6 +68,7 @@ class ControllerCycle {
   LatestValue<VelocityCommand> inbox_;
   LatestValue<LiveTuning> tunings_;
   std::uint64_t tunings_seen_ = 0;  ///< version of the one that was looked at
+  std::uint64_t inbox_seen_ = 0;    ///< version of the command that was read last
   VelocityCommand received_;        ///< what the inbox held when last looked at
   VelocityCommand request_;         ///< inbox and script merged in the order of arrival
   SensorFrame sensors_;             ///< buffers of the inputs from other threads
@@ -69,7 +76,7 @@ class ControllerCycle {
   Permit permit_;
   ControllerCalls calls_ = first_row<ControllerCalls>();  ///< since the last row
   Snapshots snapshots_;
-  ControllerTrace trace_;
+  Rows<ControllerTrace> rows_;
 };
 
 }  // namespace robot_control

@@ -15,6 +15,7 @@
 #include "gate/gate.h"
 #include "loop/cycles/close_row.h"
 #include "loop/cycles/cycle_clock.h"
+#include "loop/cycles/rows.h"
 #include "loop/cycles/snapshots.h"
 #include "machine/machine_model.h"
 #include "signals/trace.h"
@@ -33,6 +34,9 @@ class DriverCycle {
   /// Throws DriverError as require_stop_actions does.
   DriverCycle(Driver& driver, const MachineModel& robot, const Channels& channels, std::int64_t period_ns, Now now,
               const GateParameters& gate = {});
+
+  /// Continues as `other` would, with a machine in the same state, on channels with the same frames.
+  DriverCycle(const DriverCycle& other, Driver& driver, const Channels& channels);
 
   /// The number of this process; see SensorFrame::driver_instance.
   void set_driver_instance(std::uint64_t driver_instance) noexcept {
@@ -78,17 +82,18 @@ class DriverCycle {
   void count_overrun() noexcept { ++overruns_; }
   void count_slip(std::int64_t slipped_ns) noexcept { slipped_ns_ += static_cast<std::uint64_t>(slipped_ns); }
 
-  const DriverTrace& trace() const noexcept { return trace_; }
+  const DriverTrace& trace() const noexcept { return rows_.last(); }
 
   /// The law's state before the step of the last row, where it was copied; else null.
   const LawSnapshot* snapshot() const noexcept { return snapshots_.taken(); }
 
  private:
-  GateInput latch() noexcept;
+  DriverCycle(const DriverCycle& other) = default;
+  GateInput latch(const SensorFrame& sensors) noexcept;
   void follow_resets(const GateInput& input) noexcept;
   void publish_last_as(DriverState state) noexcept;
 
-  Driver& driver_;
+  Driver* driver_;
   Simulator* simulator_;  ///< null before hardware
   Channels channels_;
   Gate gate_;
@@ -109,7 +114,7 @@ class DriverCycle {
   Permit permit_;
   GateCalls calls_ = first_row<GateCalls>();  ///< since the last row
   Snapshots snapshots_;
-  DriverTrace trace_;
+  Rows<DriverTrace> rows_;
 };
 
 }  // namespace robot_control

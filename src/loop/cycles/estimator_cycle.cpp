@@ -8,10 +8,18 @@ EstimatorCycle::EstimatorCycle(std::unique_ptr<EstimatorLaw> estimator, std::uin
                                const FrameReader<SensorFrame>& sensors, FrameWriter<StateFrame> state, Now now)
     : estimator_(std::move(estimator)),
       clock_(now),
-      sensors_channel_(sensors),
+      sensors_channel_(&sensors),
       state_channel_(state),
       robot_hash_(robot_hash),
-      snapshots_(LawName::kEstimator) {}
+      snapshots_(LawName::kEstimator),
+      rows_(state.kept()) {}
+
+EstimatorCycle::EstimatorCycle(const EstimatorCycle& other, const FrameReader<SensorFrame>& sensors,
+                               FrameWriter<StateFrame> state)
+    : EstimatorCycle(other) {
+  sensors_channel_ = &sensors;
+  state_channel_ = state;
+}
 
 void EstimatorCycle::enter_run(const FrameHead& head) noexcept {
   StateFrame last;
@@ -23,16 +31,16 @@ void EstimatorCycle::enter_run(const FrameHead& head) noexcept {
 
 bool EstimatorCycle::step() noexcept {
   const std::int64_t woke_ns = clock_.now();
-  const Found<SensorFrame> found = sensors_channel_.find_newest(buffer_);
+  const Found<SensorFrame> found = sensors_channel_->find_newest(buffer_);
   const SensorFrame& sensors = *found.frame;
   if (found.lookup != Lookup::kFrame) return false;
-  if (!current(sensors_channel_, sensors.head, robot_hash_)) return false;
+  if (!current(*sensors_channel_, sensors.head, robot_hash_)) return false;
   const Arrival arrival = clock_.compare(sensors.head);
   if (arrival == Arrival::kOld) return false;
   if (arrival == Arrival::kNewRun) enter_run(sensors.head);
   clock_.accept(sensors.head);
 
-  snapshots_.copy_if_due(*estimator_, calls_.law, sensors.head);
+  snapshots_.copy_if_due(*estimator_, calls_.law, sensors.head, state_channel_.seals());
   PoseRequest request;
   if (inbox_.load(request) && request.count != received_) {
     received_ = request.count;
@@ -40,13 +48,14 @@ bool EstimatorCycle::step() noexcept {
     calls_.pose = request.pose;
     estimator_->set_pose(request.pose);
   }
-  estimator_->step(sensors, trace_.state);
-  trace_.state.first_cycle = first_cycle_;
-  trace_.state.head = {.run = sensors.head.run, .cycle = sensors.head.cycle, .stamp_ns = sensors.head.stamp_ns};
-  state_channel_.publish(trace_.state);
-  trace_.timing = clock_.timing(woke_ns, sensors);
+  EstimatorTrace& row = rows_.begin(sensors.head.cycle);
+  estimator_->step(sensors, row.state);
+  row.state.first_cycle = first_cycle_;
+  row.state.head = {.run = sensors.head.run, .cycle = sensors.head.cycle, .stamp_ns = sensors.head.stamp_ns};
+  state_channel_.publish_in_place(row.state);
+  row.timing = clock_.timing(woke_ns, sensors);
   calls_.first_cycle = first_cycle_;
-  close_row(calls_, sensors.head.checksum, trace_.state.head.checksum, trace_.calls);
+  close_row(state_channel_.seals(), calls_, sensors.head.checksum, row.state.head.checksum, row.calls);
   return true;
 }
 

@@ -8,6 +8,7 @@
 #include "bus/latest_value.h"
 #include "loop/cycles/close_row.h"
 #include "loop/cycles/cycle_clock.h"
+#include "loop/cycles/rows.h"
 #include "loop/cycles/snapshots.h"
 #include "robots/laws.h"
 #include "signals/trace.h"
@@ -25,6 +26,9 @@ class EstimatorCycle {
   EstimatorCycle(std::unique_ptr<EstimatorLaw> estimator, std::uint64_t robot_hash,
                  const FrameReader<SensorFrame>& sensors, FrameWriter<StateFrame> state, Now now);
 
+  /// Continues as `other` would, on channels with the same frames.
+  EstimatorCycle(const EstimatorCycle& other, const FrameReader<SensorFrame>& sensors, FrameWriter<StateFrame> state);
+
   /// True when there was a new sensor frame of the driver's current run, and a state was computed from it and
   /// published.
   bool step() noexcept;
@@ -40,17 +44,18 @@ class EstimatorCycle {
   void set_process(std::uint64_t process) noexcept { calls_.law.process = process; }
 
   /// The row of the last step that returned true.
-  const EstimatorTrace& trace() const noexcept { return trace_; }
+  const EstimatorTrace& trace() const noexcept { return rows_.last(); }
 
   /// The law's state before the step of the last row, where it was copied; else null.
   const LawSnapshot* snapshot() const noexcept { return snapshots_.taken(); }
 
  private:
+  EstimatorCycle(const EstimatorCycle& other) = default;
   void enter_run(const FrameHead& head) noexcept;
 
-  std::unique_ptr<EstimatorLaw> estimator_;
+  OwnedLaw<EstimatorLaw> estimator_;
   CycleClock clock_;
-  const FrameReader<SensorFrame>& sensors_channel_;
+  const FrameReader<SensorFrame>* sensors_channel_;
   FrameWriter<StateFrame> state_channel_;
   std::uint64_t robot_hash_;
   PoseRequest requested_;  ///< the requesting thread's
@@ -60,7 +65,7 @@ class EstimatorCycle {
   SensorFrame buffer_;
   EstimatorCalls calls_ = first_row<EstimatorCalls>();  ///< since the last row
   Snapshots snapshots_;
-  EstimatorTrace trace_;
+  Rows<EstimatorTrace> rows_;
 };
 
 }  // namespace robot_control

@@ -15,8 +15,13 @@ MonitorCycle::MonitorCycle(std::unique_ptr<MonitorLaw> monitor, std::uint64_t ro
       script_(std::move(script)),
       robot_hash_(robot_hash),
       loss_ns_(loss_ns),
-      snapshots_(LawName::kMonitor) {
+      snapshots_(LawName::kMonitor),
+      rows_(channels.permit.kept()) {
   inherit(latch);
+}
+
+MonitorCycle::MonitorCycle(const MonitorCycle& other, const Channels& channels) : MonitorCycle(other) {
+  channels_ = channels;
 }
 
 void MonitorCycle::inherit(InheritedLatch latch) noexcept {
@@ -27,12 +32,14 @@ void MonitorCycle::inherit(InheritedLatch latch) noexcept {
     latch.causes |= kCauseLatchUnreadable;
     latch.first_cause = kCauseLatchUnreadable;
   }
-  monitor_->step({.inherited = &latch}, trace_.permit);
+  monitor_->step({.inherited = &latch}, rows_.last().permit);
 }
 
 void MonitorCycle::receive_messages() noexcept {
-  OperatorInput arrived = received_;
-  inbox_.load(arrived);
+  const std::uint64_t version = inbox_.version();
+  OperatorInput arrived;
+  if (version == inbox_seen_ || !inbox_.load(arrived)) return;
+  inbox_seen_ = version;
   operator_input_.e_stop_level = arrived.e_stop_level;
   operator_input_.e_stop_messages += arrived.e_stop_messages - received_.e_stop_messages;
   operator_input_.e_stop_triggers += arrived.e_stop_triggers - received_.e_stop_triggers;
@@ -135,27 +142,28 @@ bool MonitorCycle::step_without_frame(bool timed_out) noexcept {
     step_law(clock_.now());
     return true;
   }
-  monitor_->step(input_, trace_.permit);
-  publish(kRunBeforeDriver);
+  monitor_->step(input_, rows_.last().permit);
+  publish(kRunBeforeDriver, rows_.last().permit);
   return false;
 }
 
 void MonitorCycle::step_law(std::int64_t woke_ns) noexcept {
-  snapshots_.copy_if_due(*monitor_, calls_.law, head_);
-  monitor_->step(input_, trace_.permit);
-  publish(clock_.run());
-  trace_.timing = clock_.timing(woke_ns, due_ns_);
+  snapshots_.copy_if_due(*monitor_, calls_.law, head_, channels_.permit.seals());
+  MonitorTrace& row = rows_.begin(clock_.cycle());
+  monitor_->step(input_, row.permit);
+  publish(clock_.run(), row.permit);
+  row.timing = clock_.timing(woke_ns, due_ns_);
   calls_.silence = input_.silence;
   calls_.corrupt = input_.corrupt;
   calls_.operator_input = input_.operator_input;
   const std::uint64_t sensors = input_.sensors != nullptr ? head_.checksum : 0;
-  close_row(calls_, sensors, trace_.permit.head.checksum, trace_.calls);
+  close_row(channels_.permit.seals(), calls_, sensors, row.permit.head.checksum, row.calls);
 }
 
-void MonitorCycle::publish(std::uint64_t run) noexcept {
-  trace_.permit.head = {.run = run, .cycle = clock_.cycle(), .stamp_ns = head_.stamp_ns};
+void MonitorCycle::publish(std::uint64_t run, Permit& permit) noexcept {
+  permit.head = {.run = run, .cycle = clock_.cycle(), .stamp_ns = head_.stamp_ns};
   published_run_.store(run, std::memory_order_release);
-  channels_.permit.publish(trace_.permit);
+  channels_.permit.publish_in_place(permit);
 }
 
 }  // namespace robot_control

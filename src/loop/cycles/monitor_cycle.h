@@ -16,6 +16,7 @@
 #include "loop/command_script.h"
 #include "loop/cycles/close_row.h"
 #include "loop/cycles/cycle_clock.h"
+#include "loop/cycles/rows.h"
 #include "loop/cycles/snapshots.h"
 #include "robots/laws.h"
 #include "signals/trace.h"
@@ -36,6 +37,9 @@ class MonitorCycle {
   MonitorCycle(std::unique_ptr<MonitorLaw> monitor, std::uint64_t robot_hash, std::int64_t loss_ns,
                const Channels& channels, CommandScript script, Now now, InheritedLatch latch = {});
 
+  /// Continues as `other` would, on channels with the same frames.
+  MonitorCycle(const MonitorCycle& other, const Channels& channels);
+
   /// In from the outside: one ordinary thread stores, this cycle loads.
   LatestValue<OperatorInput>& inbox() noexcept { return inbox_; }
 
@@ -54,7 +58,7 @@ class MonitorCycle {
   bool idle() noexcept { return step_without_frame(false); }
 
   /// The permit of the last step; before `step` and `idle`, that of the start, with the inherited latch.
-  const Permit& permit() const noexcept { return trace_.permit; }
+  const Permit& permit() const noexcept { return rows_.last().permit; }
 
   /// Any thread: run of the permits that this process publishes; 0: none yet.
   std::uint64_t published_run() const noexcept { return published_run_.load(std::memory_order_acquire); }
@@ -63,12 +67,19 @@ class MonitorCycle {
   static constexpr std::uint64_t kRunBeforeDriver = 1;
 
   /// The row of the last step that returned true.
-  const MonitorTrace& trace() const noexcept { return trace_; }
+  const MonitorTrace& trace() const noexcept { return rows_.last(); }
 
   /// The law's state before the step of the last row, where it was copied; else null.
   const LawSnapshot* snapshot() const noexcept { return snapshots_.taken(); }
 
  private:
+  /// This cycle writes it, any thread reads it.
+  struct SharedRun : std::atomic<std::uint64_t> {
+    using std::atomic<std::uint64_t>::atomic;
+    SharedRun(const SharedRun& other) noexcept : std::atomic<std::uint64_t>(other.load()) {}
+  };
+
+  MonitorCycle(const MonitorCycle& other) = default;
   void inherit(InheritedLatch latch) noexcept;
   void receive_messages() noexcept;
   void advance_script() noexcept;
@@ -78,17 +89,18 @@ class MonitorCycle {
   SensorSilence silence(bool timed_out) const noexcept;
   bool happened(const MonitorInput& input) const noexcept;
   void step_law(std::int64_t woke_ns) noexcept;
-  void publish(std::uint64_t run) noexcept;
+  void publish(std::uint64_t run, Permit& permit) noexcept;
 
-  std::unique_ptr<MonitorLaw> monitor_;
+  OwnedLaw<MonitorLaw> monitor_;
   CycleClock clock_;
   Channels channels_;
   CommandScript script_;
   std::uint64_t robot_hash_;
   std::int64_t loss_ns_;         ///< loss_cycles periods
   std::int64_t current_ns_ = 0;  ///< wall clock of the last wake-up that found a current frame
-  std::atomic<std::uint64_t> published_run_{0};
+  SharedRun published_run_{0};
   LatestValue<OperatorInput> inbox_;
+  std::uint64_t inbox_seen_ = 0;       ///< version of the input that was read last
   OperatorInput received_;             ///< content of the inbox when it was last read
   OperatorInput operator_input_;       ///< sum of inbox and script
   std::uint64_t corrupt_sensors_ = 0;  ///< attempts in a row that read a corrupt frame
@@ -101,7 +113,7 @@ class MonitorCycle {
   MonitorInput input_;                              ///< of the last step
   MonitorCalls calls_ = first_row<MonitorCalls>();  ///< of the next row
   Snapshots snapshots_;
-  MonitorTrace trace_;
+  Rows<MonitorTrace> rows_;
 };
 
 }  // namespace robot_control

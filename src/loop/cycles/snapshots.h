@@ -16,13 +16,15 @@ class Snapshots {
     snapshot_.build = build_id();
   }
 
-  /// Called before the law's step of the cycle in `head`; `noted` is the row of that step.
+  /// Called before the law's step of the cycle in `head`; `noted` is the row of that step. Without checksums of frames
+  /// (FrameWriter::seals) there is no replay, and nothing is copied.
   template <class Law>
-  void copy_if_due(const Law& law, const LawRow& noted, const FrameHead& head) noexcept {
+  void copy_if_due(const Law& law, const LawRow& noted, const FrameHead& head, bool seals) noexcept {
     constexpr std::uint64_t kFirstRows = 2;  // the first one repeats a cycle of an earlier process, perhaps
     const std::uint64_t part = head.cycle / kSnapshotCycles;
     taken_ = noted.number < kFirstRows || noted.new_run != 0 || part != part_;
     part_ = part;
+    taken_ = taken_ && seals;
     if (!taken_) return;
     snapshot_.head = {.run = head.run, .cycle = head.cycle, .stamp_ns = head.stamp_ns};
     snapshot_.process = noted.process;

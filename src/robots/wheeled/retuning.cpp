@@ -52,6 +52,18 @@ Retuning::Retuning(const Parameters& parameters, const DriveTrain& robot, Latest
       wheel_speed_(safety_limits(parameters, robot).wheel_speed),
       inbox_(inbox) {}
 
+Retuning::Retuning(const Retuning& other, LatestValue<LiveTuning>& inbox)
+    : parameters_(other.in_force()),
+      robot_(other.robot_),
+      commanded_at_start_(other.commanded_at_start_),
+      wheel_speed_(other.wheel_speed_),
+      inbox_(inbox),
+      count_(other.count_) {}
+
+std::unique_ptr<Retuner> Retuning::clone(LatestValue<LiveTuning>& inbox) const {
+  return std::unique_ptr<Retuner>(new Retuning(*this, inbox));
+}
+
 void Retuning::expect_monitor(const Parameters& monitor) {
   const std::lock_guard lock(mutex_);
   wheel_speed_ = safety_limits(monitor, robot_).wheel_speed;

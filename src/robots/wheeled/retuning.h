@@ -30,6 +30,8 @@ class Retuning final : public Retuner {
   /// the same parameters.
   Retuning(const Parameters& parameters, const DriveTrain& robot, LatestValue<LiveTuning>& inbox);
 
+  std::unique_ptr<Retuner> clone(LatestValue<LiveTuning>& inbox) const override;
+
   /// The monitor's limits are derived from these parameters.
   void expect_monitor(const Parameters& monitor) override;
   Retuned set(const std::string& request) override;
@@ -38,6 +40,7 @@ class Retuning final : public Retuner {
   std::vector<LiveParameter> live() const override;
 
  private:
+  Retuning(const Retuning& other, LatestValue<LiveTuning>& inbox);
   std::string monitor_problem(const DriveControllerParameters& wanted) const;
 
   mutable std::mutex mutex_;

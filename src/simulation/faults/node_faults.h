@@ -46,6 +46,9 @@ class NodeFaults {
   NodeFaults(FaultComponent component, FrameWriter<Frame> channel) noexcept
       : component_(component), channel_(channel), output_(fault_seed(0, component)) {}
 
+  /// Continues as `other` would, on a channel with the same frames.
+  NodeFaults(const NodeFaults& other, FrameWriter<Frame> channel) noexcept : NodeFaults(other) { channel_ = channel; }
+
   /// Is called after the node has published the frame in `row`, computed from `sensors`, and before another node reads
   /// it. If there is a fault, it replaces the frame in the channel. It returns the row with the frame that the channel
   /// now holds.
@@ -77,6 +80,7 @@ class NodeFaults {
   }
 
  private:
+  NodeFaults(const NodeFaults& other) = default;
   static constexpr double kBrokenShare = 0.25;
 
   FaultComponent component_;

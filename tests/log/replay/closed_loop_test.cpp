@@ -7,6 +7,7 @@
 
 #include "log/replay/continuity.h"
 #include "log/replay/recorded.h"
+#include "support/recorded_loop.h"
 
 namespace robot_control::tests {
 
@@ -46,7 +47,7 @@ struct ReplayedDrive : testing::Test {
   }
 
   Parameters parameters = default_parameters();
-  std::optional<ClosedLoop> made{std::in_place, parameters};
+  std::optional<RecordedLoop> made{std::in_place, parameters};
   ClosedLoop& loop = *made;
   Recording recording;
 };

@@ -10,6 +10,7 @@
 #include "log/messages/message_checksum.h"
 #include "log/replay/recorded.h"
 #include "support/matchers.h"
+#include "support/recorded_loop.h"
 
 namespace robot_control::tests {
 
@@ -52,7 +53,7 @@ struct LoggedDrive {
   }
 
   Parameters parameters = default_parameters();
-  ClosedLoop loop{parameters};
+  RecordedLoop loop{parameters};
   std::vector<LawSnapshot> snapshots;
   std::vector<LoggedMessage> messages;
 };

@@ -4,6 +4,7 @@
 
 #include "log/replay/recorded.h"
 #include "robots/differential_drive.h"
+#include "support/recorded_loop.h"
 
 namespace robot_control::tests {
 
@@ -26,7 +27,7 @@ struct VariedDrive : testing::Test {
   }
 
   Parameters parameters = default_parameters();
-  ClosedLoop loop{parameters};
+  RecordedLoop loop{parameters};
   Recording recording;
 };
 

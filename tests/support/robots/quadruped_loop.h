@@ -23,7 +23,9 @@ struct QuadrupedLoop {
   QuadrupedLoop(const LegModel& robot, const Parameters& parameters)
       : QuadrupedLoop(std::make_shared<Quadruped>(parameters, robot), parameters) {}
   QuadrupedLoop(std::shared_ptr<const Robot> robot, const Parameters& parameters)
-      : parameters_(parameters), loop_(std::make_unique<ClosedLoop>(parameters_, std::move(robot))) {}
+      : parameters_(parameters), loop_(std::make_unique<ClosedLoop>(parameters_, std::move(robot))) {
+    loop_->record();
+  }
 
   static Parameters parameters(std::uint64_t seed, ErrorLevel errors) {
     Parameters result = default_parameters();

@@ -138,7 +138,7 @@ void WheelContacts::observe(const mjData& data) noexcept {
   }
   for (Wheel& wheel : wheels_) {
     for (Contact& contact : wheel.contacts) {
-      if (!contact.touches) contact = {};
+      if (!contact.touches && contact.other >= 0) contact = {};
     }
   }
 }

@@ -38,7 +38,7 @@ struct DeleteMujoco {
 using MujocoData = std::unique_ptr<mjData, DeleteMujoco>;
 
 struct MujocoModel {
-  std::unique_ptr<mjModel, DeleteMujoco> model;
+  std::shared_ptr<mjModel> model;  ///< not changed after compile_model, so that copies share it
   TrueRobot robot;
   int substeps = 1;  ///< steps per period: ⌈period / 1 ms⌉
   int base_body = 0;

@@ -105,6 +105,7 @@ void SensorErrors::encode(Measurement& measurement) noexcept {
 /// Delays the samples. Efforts are those of this cycle, because the encoder does not sample them.
 void SensorErrors::make_late(Measurement& measurement) noexcept {
   late_imu_.step(measurement.imu);
+  if (late_encoders_.on_time()) return;
   Encoders samples{};
   for (std::size_t i = 0; i < encoders_.size(); ++i) samples[i] = measurement.joints[encoders_[i].joint];
   late_encoders_.step(samples);

@@ -117,21 +117,27 @@ class LateSamples {
     last_arrival_ = 0;
   }
 
+  /// Returns true if no sample is late.
+  bool on_time() const noexcept { return delay_ == 0 && jitter_ == 0; }
+
   /// Returns after how many cycles every sample has arrived; 0 if all are on time.
   std::size_t longest() const noexcept {
-    return delay_ == 0 && jitter_ == 0 ? 0 : static_cast<std::size_t>(std::ceil(delay_ + kMaxDeviations * jitter_));
+    return on_time() ? 0 : static_cast<std::size_t>(std::ceil(delay_ + kMaxDeviations * jitter_));
   }
 
   /// Replaces the sample of this cycle by the one that the driver reports.
   void step(Value& value) noexcept {
-    if (delay_ == 0 && jitter_ == 0) return;
+    if (on_time()) return;
     if (cycle_ == 0) reported_ = value;
     const auto now = static_cast<double>(cycle_++);
     const double late = jitter_ > 0 ? jitter_ * std::min(kMaxDeviations, std::abs(random_.next())) : 0;
     last_arrival_ = std::max(last_arrival_, now + delay_ + late);
     on_the_way_[sent_++ % on_the_way_.size()] = {value, last_arrival_};
-    while (arrived_ < sent_ && on_the_way_[arrived_ % on_the_way_.size()].arrival <= now + kSameTime) {
-      reported_ = on_the_way_[arrived_++ % on_the_way_.size()].value;
+    while (arrived_ < sent_) {
+      const Sample& next = on_the_way_[arrived_ % on_the_way_.size()];
+      if (next.arrival > now + kSameTime) break;
+      reported_ = next.value;
+      ++arrived_;
     }
     value = reported_;
   }
