@@ -174,14 +174,17 @@ std::string latch_path(const std::string& setting, const std::string& host, cons
   std::string name = "latch." + host;
   for (const char c : name_space) name += c == '/' ? '.' : c;
   while (name.ends_with('.')) name.pop_back();
+  const std::filesystem::path folder = setting, older = folder / name;
   constexpr std::size_t kMaxName = 64;  // of 255 bytes that a file name may have
   name += '.';
   for (const char c : robot.name.substr(0, kMaxName))
     name += std::isalnum(static_cast<unsigned char>(c)) != 0 ? c : '_';
   std::array<char, 10> identity{};
   std::snprintf(identity.data(), identity.size(), ".%08x", static_cast<unsigned>(stop_owner(robot) & 0xffffffffU));
-  name += identity.data();
-  return setting + (setting.ends_with('/') ? "" : "/") + name;
+  const std::filesystem::path own = folder / (name + identity.data());
+  if (std::filesystem::exists(older, ignored) && !std::filesystem::exists(own, ignored))
+    std::filesystem::rename(older, own, ignored);
+  return own.string();
 }
 
 }  // namespace robot_control

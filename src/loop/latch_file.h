@@ -78,6 +78,7 @@ std::uint64_t stop_owner(const MachineModel& machine);
 
 /// The path of the record: `setting` itself, unless it is a folder (it ends with '/', or exists as one). In a folder
 /// each robot has a file of its own (stop_owner): latch.<host>.<name space, '/' as '.'>.<name of the robot>.<identity>.
+/// A file of an older version, without name and identity, becomes that of the first robot that starts.
 std::string latch_path(const std::string& setting, const std::string& host, const std::string& name_space,
                        const MachineModel& robot);
 

@@ -131,4 +131,19 @@ TEST(LatchPath, IsAFileNamedAfterHostNamespaceAndRobotInAFolder) {
   EXPECT_NE(latch_path("/var/stops/", "arm", "/fleet/robot2", robot), path) << "another robot of that name";
 }
 
+TEST_F(LatchFileTest, OfAnOlderVersionBecomesThatOfTheFirstRobot) {
+  path = folder.path() / "latch.arm.robot2";
+  keep(kStops);
+  MachineModel robot;
+  robot.name = "dog";
+  path = latch_path(folder.path(), "arm", "/robot2", robot);
+  EXPECT_EQ(found().causes, kStops);
+  keep(0);
+  EXPECT_EQ(latch_path(folder.path(), "arm", "/robot2", robot), path);
+  EXPECT_EQ(found().causes, 0u);
+  robot.name = "cat";
+  path = latch_path(folder.path(), "arm", "/robot2", robot);
+  EXPECT_EQ(found().causes, 0u);
+}
+
 }  // namespace robot_control::tests
