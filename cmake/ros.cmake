@@ -1,4 +1,4 @@
-# The repository as one catkin package: messages, the Python package, launch files and where things are installed.
+# The repository as one catkin package: messages, the Python package, programs and where things are installed.
 #
 # Debian's ROS belongs to Debian's Python; the python3 on PATH may be another one.
 set(PYTHON_EXECUTABLE /usr/bin/python3 CACHE FILEPATH "the Python that ROS was built for")
@@ -51,7 +51,6 @@ function(robot_control_node name)
   install(TARGETS ${name} RUNTIME DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION})
 endfunction()
 
-install(DIRECTORY config urdf launch DESTINATION ${CATKIN_PACKAGE_SHARE_DESTINATION})
-install(FILES src/drivers/drive_table.def DESTINATION ${CATKIN_PACKAGE_SHARE_DESTINATION}/src/drivers)
+set(ROBOT_CONTROL_SHARE ${CATKIN_PACKAGE_SHARE_DESTINATION})
 file(GLOB tools RELATIVE ${CMAKE_CURRENT_SOURCE_DIR} CONFIGURE_DEPENDS scripts/*.py scripts/*/*.py)
 catkin_install_python(PROGRAMS ${tools} DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION})

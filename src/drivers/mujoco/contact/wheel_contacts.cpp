@@ -17,7 +17,7 @@ const char* const kRegion = "friction/";
 bool inside(const mjModel& model, const mjData& data, int region, const mjtNum* point) {
   mjtNum offset[3], local[3];
   mju_sub3(offset, point, data.geom_xpos + 3 * region);
-  mju_rotVecMatT(local, offset, data.geom_xmat + 9 * region);
+  mju_mulMatTVec(local, data.geom_xmat + 9 * region, offset, 3, 3);
   const mjtNum* size = model.geom_size + 3 * region;
   if (model.geom_type[region] == mjGEOM_BOX) {
     return std::abs(local[0]) <= size[0] && std::abs(local[1]) <= size[1] && std::abs(local[2]) <= size[2];

@@ -89,6 +89,17 @@ void check_scene_files(const std::string& scene) {
 
 using ModelPointer = std::unique_ptr<mjModel, DeleteMujoco>;
 
+bool add_file(mjVFS& files, const std::string& name, const std::string& text) {
+  const int size = static_cast<int>(text.size());
+#if mjVERSION_HEADER >= 316
+  return mj_addBufferVFS(&files, name.c_str(), text.data(), size) == 0;
+#else
+  if (mj_makeEmptyFileVFS(&files, name.c_str(), size) != 0) return false;
+  std::memcpy(files.filedata[mj_findFileVFS(&files, name.c_str())], text.data(), text.size());
+  return true;
+#endif
+}
+
 class VirtualFiles {
  public:
   VirtualFiles() : files_(std::make_unique<mjVFS>()) { mj_defaultVFS(files_.get()); }
@@ -97,10 +108,7 @@ class VirtualFiles {
   VirtualFiles& operator=(const VirtualFiles&) = delete;
 
   void add(const std::string& name, const std::string& text) {
-    if (mj_makeEmptyFileVFS(files_.get(), name.c_str(), static_cast<int>(text.size())) != 0) {
-      throw DriverError(name + ": MuJoCo takes no such file name.");
-    }
-    std::memcpy(files_->filedata[mj_findFileVFS(files_.get(), name.c_str())], text.data(), text.size());
+    if (!add_file(*files_, name, text)) throw DriverError(name + ": MuJoCo takes no such file name.");
   }
   const mjVFS* get() const { return files_.get(); }
 
