@@ -1,8 +1,12 @@
 """The address on which the console listens, and the origins from which it takes requests. Pure."""
 
 import ipaddress
+from collections.abc import Mapping
 from dataclasses import dataclass
 from urllib.parse import urlsplit
+
+PUBLISHED = "ROBOT_CONTROL_PUBLISHED_ON_LOOPBACK"
+"""Set to 1 by the Dockerfile alone: only the loopback of the host reaches the container's ports"""
 
 
 class AddressError(ValueError):
@@ -35,6 +39,14 @@ def is_loopback(address: str) -> bool:
 def bracketed(address: str) -> str:
     """The address as a URL holds it."""
     return f"[{address}]" if ":" in address else address
+
+
+def interface_of(address: str, environment: Mapping[str, str]) -> str:
+    """The address to bind for the console's `address`: that one, or in the image all of the container for a loopback.
+
+    A published port arrives at an interface of the container that is not its loopback. Origins stay those of `address`.
+    """
+    return "0.0.0.0" if environment.get(PUBLISHED) == "1" and is_loopback(address) else address  # noqa: S104
 
 
 def require_protection(address: str, *, users: bool, tls: bool) -> None:

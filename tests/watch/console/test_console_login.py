@@ -7,7 +7,7 @@ import stat
 from dataclasses import dataclass
 
 import pytest
-from robot_control.settings.addresses import AddressError, origins_of, require_protection
+from robot_control.settings.addresses import PUBLISHED, AddressError, interface_of, origins_of, require_protection
 from robot_control.watch.console.authority import Role
 from robot_control.watch.console.calls import check_call
 from robot_control.watch.console.messages import BURST, MAX_SIZE, RATE, MessageError, Rate, parse
@@ -246,3 +246,10 @@ def test_an_address_that_others_reach_needs_users_and_tls(address):
         require_protection(address, users=True, tls=False)
     require_protection(address, users=True, tls=True)
     require_protection("127.0.0.5", users=False, tls=False)
+
+
+def test_only_the_image_listens_beyond_the_loopback_and_to_no_further_name():
+    for environment in ({}, {PUBLISHED: ""}, {PUBLISHED: "0"}, {PUBLISHED: "true"}):
+        assert interface_of("127.0.0.1", environment) == "127.0.0.1"
+    assert interface_of("127.0.0.1", {PUBLISHED: "1"}) == "0.0.0.0"
+    assert interface_of("192.0.2.1", {PUBLISHED: "1"}) == "192.0.2.1"

@@ -5,6 +5,7 @@ import asyncio
 import contextlib
 import logging
 import logging.handlers
+import os
 import resource
 import socket
 import ssl
@@ -21,7 +22,14 @@ from robot_control.installed_files import share_file
 from robot_control.robot.boundary import boundary
 from robot_control.robot.ros_node import running_node
 from robot_control.robot.topic_sender import Signals
-from robot_control.settings.addresses import AddressError, Origins, bracketed, origins_of, require_protection
+from robot_control.settings.addresses import (
+    AddressError,
+    Origins,
+    bracketed,
+    interface_of,
+    origins_of,
+    require_protection,
+)
 from robot_control.settings.files import SettingsError
 from robot_control.watch.console.backend import Backend
 from robot_control.watch.console.client import FRAME
@@ -111,7 +119,7 @@ async def serve(given: argparse.Namespace, setup: Setup, signals: Signals) -> No
     assert handler is not None  # noqa: S101 (after setup)
     listening = await asyncio.get_running_loop().create_server(
         handler,
-        given.address,
+        interface_of(given.address, os.environ),
         given.port,
         ssl=setup.context,
         ssl_handshake_timeout=HANDSHAKE if setup.context else None,
