@@ -72,8 +72,8 @@ class LatchFile {
   std::future<std::string> writing_;
 };
 
-/// Returns what tells one robot from another as the owner of a latched stop: its name and those of the joints that it
-/// drives. A change of its sizes, masses or parameters does not change it.
+/// Returns what distinguishes one robot from another as the owner of a latched stop: its name and those of the joints
+/// that it drives. A change of its sizes, masses or parameters does not change it.
 std::uint64_t stop_owner(const MachineModel& machine);
 
 /// The path of the record: `setting` itself, unless it is a folder (it ends with '/', or exists as one). In a folder

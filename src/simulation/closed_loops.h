@@ -26,7 +26,7 @@ class ClosedLoops {
   /// Copies the loops `which` of `other`. A loop may be named more than once. Throws as the copy of a ClosedLoop.
   ClosedLoops(const ClosedLoops& other, std::span<const std::size_t> which, std::size_t threads);
 
-  /// Makes loop `which[i]` anew with the seed `seeds[i]`.
+  /// Makes loop `which[i]` again with the seed `seeds[i]`.
   void reset(std::span<const std::size_t> which, std::span<const std::uint64_t> seeds);
 
   /// Runs `cycles` cycles of each loop. Loop i first receives `commands[i]` as a message on cmd_vel; a value that is

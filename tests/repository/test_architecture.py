@@ -130,6 +130,7 @@ MAY_INCLUDE = {
     "navigation/mrpt": {"navigation"},
     "ros/navigation": {"signals", "navigation", "navigation/mrpt", "ros", "configuration", "files"},
     "main": {
+        "signals",
         "ros",
         "ros/navigation",
         "configuration",

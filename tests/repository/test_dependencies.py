@@ -12,7 +12,7 @@ import roslib.packages
 
 ROOT = Path(__file__).parents[2]
 ONLY_LISTED = ROOT / ".ci/only_listed.py"
-OPTIONAL = {"aiohttp", "evdev", "jsonschema", "mcap", "bokeh", "paho", "xacro"}
+OPTIONAL = {"aiohttp", "evdev", "gymnasium", "jsonschema", "mcap", "bokeh", "paho", "xacro"}
 """modules of a section of the list, or of PyPI, without which the programs offer less"""
 OF_NAVIGATION = {"slam", "localization"}
 """programs that load libraries of the section navigation, without which they are not built"""

@@ -19,4 +19,4 @@ def imported(module: str, section: str, package: str = "") -> ModuleType:
     except ImportError:
         if os.environ.get("CI") and os.environ.get("ROBOT_CONTROL_NIGHTLY"):
             raise
-        pytest.skip(f"{package or module} of PyPI is not installed: scripts/setup --{section}")
+        pytest.skip(f"{package or module} of PyPI is not installed: scripts/setup --{section}", allow_module_level=True)

@@ -66,11 +66,11 @@ class ClosedLoop:
     change it       set_parameters, inject_fault
     move its legs   set_posture, set_gait, body_pose, foot_target, joint_targets
     keep a log      log_into, end_log
-    copy it         clone, copy.copy, pickle
+    copy it         clone
     read it         scan, robot, units, time, cycle, period, paused, stop_distance, smooth_speed
 
     The same arguments and calls give the same bits, and the four nodes in lockstep give them, too. A pickle holds the
-    arguments and the seed: it makes the same loop anew, in any process. `ClosedLoops` runs many at once.
+    arguments and the seed: it makes the same loop again, in any process. `ClosedLoops` runs many at once.
 
     Args:
         params: path of a YAML file, or a nested dict laid over the installed `config/robot_params.yaml`,

@@ -31,7 +31,7 @@ class ClosedLoops:
         loops[3].inject_fault("left_encoder", "stuck")                  # one loop, as a ClosedLoop
 
     Loop i gives the bits of `ClosedLoop(seed=seed + i)` with the same calls, whatever the number of threads. A pickle
-    holds the arguments and the seeds: it makes the same loops anew, in any process.
+    holds the arguments and the seeds: it makes the same loops again, in any process.
 
     Args:
         n: number of loops.
@@ -90,7 +90,7 @@ class ClosedLoops:
         return self._columns[key]
 
     def reset(self, seeds: Sequence[int], which: Sequence[int] | None = None) -> None:
-        """Makes loops anew, each as `ClosedLoop(seed=...)`; `which` are their numbers, None: all."""
+        """Makes loops again, each as `ClosedLoop(seed=...)`; `which` are their numbers, None: all."""
         chosen = range(len(self)) if which is None else [self._checked(i) for i in which]
         for i, seed in zip(chosen, seeds, strict=True):
             self._seeds[i] = index(seed)
@@ -177,7 +177,7 @@ class ClosedLoops:
 
 
 class _LoopOfMany(ClosedLoop):
-    """One of many loops, which `reset(seed)` makes anew in its place."""
+    """One of many loops, which `reset(seed)` makes again in its place."""
 
     def __init__(self, loops: ClosedLoops, i: int, layers: tuple[str, list[Any]], loop: _ClosedLoop) -> None:
         self._many, self._i = loops, i

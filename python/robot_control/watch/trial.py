@@ -25,6 +25,8 @@ MASTER_PORT, CONSOLE_PORT, PORTS = 11311, 8080, 100
 """the usual ports of a ROS master and of the console, and how many are tried from there on"""
 LASER_RATE, LASER_LINK = 10, "laser_link"
 """Hz, of a robot that has this link"""
+READY = "ready: "
+"""what a robot prints when it may be commanded"""
 POLL = 0.1
 """s"""
 LAST = 10.0
@@ -69,8 +71,7 @@ def try_out(robot: str, scene: str, port: int, out: Path, *, browser: bool) -> i
         children.append(console)
         address = ""
         while robot_part.running and console.running:
-            if not address and (found := re.search(r"^open (\S+)$", console.output.read_text(), re.MULTILINE)):
-                address = found[1]
+            if not address and (address := _address(robot_part, console)):
                 _say(address, robot, out)
                 if browser and (os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY")):
                     webbrowser.open(address)
@@ -79,6 +80,12 @@ def try_out(robot: str, scene: str, port: int, out: Path, *, browser: bool) -> i
         ended = robot_part if robot_part.wait(LAST) else console
     print(f"scripts/try: it has ended:\n{_last_words(ended.output)}", file=sys.stderr)
     return 1
+
+
+def _address(robot_part: Child, console: Child) -> str:
+    """That of the page, once the robot may be commanded; empty before."""
+    found = re.search(r"^open (\S+)$", console.output.read_text(), re.MULTILINE)
+    return found[1] if found and READY in robot_part.output.read_text(errors="replace") else ""
 
 
 def _say(address: str, robot: str, out: Path) -> None:

@@ -226,6 +226,15 @@ void require_limits(const RigidBodies& robot, const BodyJoint& joint) {
          "Give <limit effort=\"…\" velocity=\"…\"/> in N·m and rad/s, as the drive's data sheet states them");
 }
 
+void refuse_massless_limbs(const RobotDescription& description, const RigidBodies& bodies,
+                           const std::vector<BodyChain>& chains) {
+  if (chains.size() == kLegs || bodies.massless.empty()) return;
+  if (joints_on_limbs(read_moving_bodies(description)) <= joints_on_limbs(bodies)) return;
+  refuse(bodies.source, "<robot>",
+         "almost a quadruped: these links have no <inertial>, and count as fixed: " + list(bodies.massless),
+         "Give each link of a leg its <inertial> with <mass> and <inertia>");
+}
+
 }  // namespace
 
 const char* name_of(LegPlace place) noexcept {
@@ -258,12 +267,7 @@ LegModel read_legs(const RobotDescription& description, const MachineParameters&
   const auto bodies = std::make_shared<const RigidBodies>(read_rigid_bodies(description));
   refuse_too_many_joints(*bodies);
   const std::vector<BodyChain> chains = leg_chains(*bodies);
-  if (chains.size() != kLegs && !bodies->massless.empty() &&
-      joints_on_limbs(read_moving_bodies(description)) > joints_on_limbs(*bodies)) {
-    refuse(bodies->source, "<robot>",
-           "almost a quadruped: these links have no <inertial>, and count as fixed: " + list(bodies->massless),
-           "Give each link of a leg its <inertial> with <mass> and <inertia>");
-  }
+  refuse_massless_limbs(description, *bodies, chains);
   refuse_other_chains(*bodies, chains);
   std::vector<Foot> feet;
   for (const BodyChain& chain : chains) feet.push_back(foot_of(*bodies, bodies->bodies[chain.bodies.back()]));

@@ -29,15 +29,15 @@ TEST(LaunchEnd, LeavesALaunchAloneThatDoesNotAskForIt) {
 }
 
 TEST(LaunchEnd, KnowsTheFirstOfSeveralProcessesThatRefuse) {
-  std::array<int, 2> told{};
-  ASSERT_EQ(pipe(told.data()), 0);
+  std::array<int, 2> answered{};
+  ASSERT_EQ(pipe(answered.data()), 0);
   const ChildProcess first([&] {
     const char answer = first_to_refuse() ? 'y' : 'n';
-    if (::write(told[1], &answer, 1) == 1) pause();
+    if (::write(answered[1], &answer, 1) == 1) pause();
     return 0;
   });
   char answer = 0;
-  ASSERT_EQ(::read(told[0], &answer, 1), 1);
+  ASSERT_EQ(::read(answered[0], &answer, 1), 1);
   EXPECT_EQ(answer, 'y');
   EXPECT_EQ(ChildProcess([] { return first_to_refuse() ? 1 : 0; }).wait(), 0) << "the first one lives";
 }
