@@ -20,7 +20,10 @@ from geometry_msgs.msg import PoseStamped, Quaternion
 from nav_msgs.msg import OccupancyGrid, Odometry
 from robot_control.data.demo.launched import ended_at_the_end
 from robot_control.data.demo.main import run_demo
-from robot_control.data.render import main as render
+from robot_control.data.render.main import Film, arguments, model_of
+from robot_control.data.render.mujoco import make_current
+from robot_control.data.render.run import read_moments
+from robot_control.data.render.scene import Scene
 from robot_control.robot.pose import Pose, pose_of, turned
 from robot_control.ui.child import Child
 from robot_control.ui.program import run
@@ -31,8 +34,8 @@ from bench.console.process import Console, wait_for
 DOCS = Path(__file__).resolve().parents[1] / "docs"
 SIZE = (720, 406)
 """px of the film"""
-RATE = 10
-"""pictures per second of the film"""
+RATE, PAGE_RATE = 10, 5
+"""pictures per second of the film, and of the page in it"""
 WALK = slice(2.5, 9.5)
 """s of the walk that are shown, standing up included"""
 PLACES = (Pose(2.0, 0.0, 0.0), Pose(1.0, 2.0, math.pi / 2), Pose(2.2, 3.5, 0.0))
@@ -47,10 +50,10 @@ def walk(folder: Path) -> Iterator[Path]:
     """Pictures of quadbot that stands up and walks, in the demo's run."""
     run_demo(6.0, folder / "demo", "quadbot")
     given = [str(folder / "demo" / "run.bag"), "--urdf", "urdf/quadbot.urdf", "--size", f"{SIZE[0]}x{SIZE[1]}"]
-    options = render.arguments([*given, "--distance", "1.6"])
-    moments = [each for each in render.read_moments(options.run, 1 / RATE) if WALK.start <= each.time <= WALK.stop]
-    render.make_current()
-    film = render.Film(render.Scene(render.model_of(options)), moments, options)
+    options = arguments([*given, "--distance", "1.6"])
+    moments = [each for each in read_moments(options.run, 1 / RATE) if WALK.start <= each.time <= WALK.stop]
+    make_current()
+    film = Film(Scene(model_of(options)), moments, options)
     for number, picture in enumerate(film.pictures()):
         path = folder / f"walk_{number:03}.png"
         matplotlib.image.imsave(path, picture)
@@ -103,11 +106,11 @@ def goal(place: Pose) -> PoseStamped:
 def write_film(folder: Path, path: Path) -> None:
     """Writes a GIF of the pictures of both parts, one after the other."""
     inputs = []
-    for part in ("walk", "page"):
-        inputs += ["-framerate", str(RATE), "-i", str(folder / f"{part}_%03d.png")]
-    size = f"scale={SIZE[0]}:{SIZE[1]}:flags=lanczos,setsar=1"
+    for part, rate in (("walk", RATE), ("page", PAGE_RATE)):
+        inputs += ["-framerate", str(rate), "-i", str(folder / f"{part}_%03d.png")]
+    size = f"fps={RATE},scale={SIZE[0]}:{SIZE[1]}:flags=lanczos,setsar=1"
     joined = f"[0]{size}[a];[1]{size}[b];[a][b]concat=n=2,split[c][d]"
-    colours = "[c]palettegen=max_colors=128[p];[d][p]paletteuse=dither=none:diff_mode=rectangle"
+    colours = "[c]palettegen=max_colors=64[p];[d][p]paletteuse=dither=none:diff_mode=rectangle"
     command = ["ffmpeg", "-y", "-loglevel", "error", *inputs, "-filter_complex", f"{joined};{colours}", str(path)]
     subprocess.run(command, check=True)
 

@@ -113,13 +113,13 @@ def _stopped(facts: Facts) -> Answer | None:
     causes = sorted(safety.causes, key=lambda cause: not cause.first)
     doing = "Stopping" if safety.state == "STOPPING" else "Stopped"
     measured = f" ({causes[0].detail})" if causes[0].detail else ""
-    headline, actions = f"{doing}: {causes[0].sentence}{measured}.", list(_actions(facts, causes, absent))
+    headline, to_do = f"{doing}: {causes[0].sentence}{measured}.", list(_actions(facts, causes, absent))
     slipped = facts.value(facts.driver, "slipped_s").strip("0.")
     if late(causes[0].name, absent, delayed=facts.busy or bool(slipped)):
         seen = ", ".join(part for part in (f"{causes[0].name}{measured}", facts.load) if part)
         headline = f"{doing}: {SENTENCE}: {seen}."
-        actions.insert(0, (ACTOR, REMEDY))
-    return Answer(Verdict.STOPPED, headline, tuple(actions), tuple(_commands(facts, causes, absent)))
+        to_do.insert(0, (ACTOR, REMEDY))
+    return Answer(Verdict.STOPPED, headline, tuple(to_do), tuple(_commands(facts, causes, absent)))
 
 
 def _actions(facts: Facts, causes: list[Cause], absent: tuple[str, ...]) -> Iterator[tuple[str, str]]:
