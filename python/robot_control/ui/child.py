@@ -1,9 +1,10 @@
 """A program that another one starts and ends."""
 
+import contextlib
 import os
 import signal
 import subprocess
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import IO, Any
 
@@ -47,3 +48,14 @@ class Child:
         except subprocess.TimeoutExpired:
             return False
         return True
+
+
+@contextlib.contextmanager
+def children() -> Iterator[list[Child]]:
+    """A list of programs that are ended at the end of the block, the last one first, whatever happens in it."""
+    started: list[Child] = []
+    try:
+        yield started
+    finally:
+        for child in reversed(started):
+            child.end()

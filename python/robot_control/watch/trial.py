@@ -11,13 +11,13 @@ import sys
 import tempfile
 import time
 import webbrowser
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 from types import FrameType
 
 import rosgraph
 
-from robot_control.ui.child import Child
+from robot_control.ui.child import Child, children
 from robot_control.ui.program import run
 
 ROBOTS = ("diffbot", "quadbot")
@@ -62,13 +62,13 @@ def try_out(robot: str, scene: str, port: int, out: Path, *, browser: bool) -> i
     which = f"robot:={robot}" if robot in ROBOTS else f"urdf:={robot}"
     laser = LASER_RATE if robot in ROBOTS or LASER_LINK in Path(robot).read_text(errors="replace") else 0
     launch = ["roslaunch", "-p", str(master), "robot_control", "sim.launch", which, f"scene:={scene}"]
-    with _ended_at_the_end() as children:
+    with children() as started:
         robot_part = Child([*launch, f"laser_rate:={laser}"], out / "robot.log")
-        children.append(robot_part)
+        started.append(robot_part)
         while robot_part.running and not rosgraph.is_master_online():
             time.sleep(POLL)
         console = Child(["rosrun", "robot_control", "console.py", "--port", str(port)], out / "console.log")
-        children.append(console)
+        started.append(console)
         address = ""
         while robot_part.running and console.running:
             if not address and (address := _address(robot_part, console)):
@@ -93,16 +93,6 @@ def _say(address: str, robot: str, out: Path) -> None:
     if (master := os.environ["ROS_MASTER_URI"]) != f"http://127.0.0.1:{MASTER_PORT}":
         lines.append(f"programs beside it: export ROS_MASTER_URI={master}")
     print("\n".join([*lines, "Ctrl-C ends all"]))
-
-
-@contextlib.contextmanager
-def _ended_at_the_end() -> Iterator[list[Child]]:
-    children: list[Child] = []
-    try:
-        yield children
-    finally:
-        for child in reversed(children):
-            child.end()
 
 
 def _last_words(log: Path) -> str:

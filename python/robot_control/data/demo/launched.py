@@ -9,7 +9,7 @@ from pathlib import Path
 from robot_control.data.run_log import LogError, read_log
 from robot_control.loop.drives import DRIVES
 from robot_control.loop.signal_names import number_of
-from robot_control.ui.child import Child
+from robot_control.ui.child import Child, children
 
 LINEAR, ANGULAR = 0.5, 0.2
 """m/s, rad/s: what send_cmd.py sends by default; the source article's command."""
@@ -49,29 +49,27 @@ def launch(out: Path, robot: str, drives: Path | None, parameters: Path, argumen
 @contextlib.contextmanager
 def ended_at_the_end() -> Iterator[list[Child]]:
     """Whatever happens, what was started is ended, the last one first, and its shared memory removed."""
-    children: list[Child] = []
     try:
-        yield children
+        with children() as started:
+            yield started
     finally:
-        for child in reversed(children):
-            child.end()
         for left in Path("/dev/shm").glob(f"robot_control.{os.geteuid()}.{BUS}.*"):
             left.unlink(missing_ok=True)
 
 
-def wait_until(log: Path, condition: Callable[[Row], bool], what: str, limit: float, *children: Child) -> None:
-    """Polls the last row; raises when one of the children dies or `limit` seconds have passed without a `what`."""
+def wait_until(log: Path, condition: Callable[[Row], bool], what: str, limit: float, *parts: Child) -> None:
+    """Polls the last row; raises when one of the parts dies or `limit` seconds have passed without a `what`."""
     deadline = time.monotonic() + limit
     while (row := last_row(log)) is None or not condition(row):
-        see_alive(*children)
+        see_alive(*parts)
         if time.monotonic() > deadline:
-            raise DemoError(f"no {what} within {limit:g} s:\n{tail(children[0].output)}")
+            raise DemoError(f"no {what} within {limit:g} s:\n{tail(parts[0].output)}")
         time.sleep(0.1)
 
 
-def see_alive(*children: Child) -> None:
+def see_alive(*parts: Child) -> None:
     """Raises when one of them has ended."""
-    for child in children:
+    for child in parts:
         if not child.running:
             raise DemoError(f"a part of the loop has died:\n{tail(child.output)}")
 
