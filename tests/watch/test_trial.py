@@ -55,6 +55,19 @@ def test_it_prints_one_address_that_answers_and_ctrl_c_ends_all(robot, tmp_path)
         rest = process.stdout.read()
         assert process.wait(60) == 0, rest
         assert "Ctrl-C ends all" in rest
+    assert_nothing_left(tmp_path)
+
+
+@pytest.mark.parametrize("delay", [0.8, 1.6, 2.4])
+def test_ctrl_c_during_the_start_leaves_nothing(delay, tmp_path):
+    with start(tmp_path) as process:
+        time.sleep(delay)
+        process.send_signal(signal.SIGINT)
+        process.communicate(timeout=LIMIT)
+    assert_nothing_left(tmp_path)
+
+
+def assert_nothing_left(tmp_path):
     groups = Path("/proc").glob("[0-9]*/environ")
     assert not any(str(tmp_path).encode() in content(each) for each in groups), "a process has outlived it"
 

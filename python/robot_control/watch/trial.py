@@ -11,6 +11,7 @@ import sys
 import tempfile
 import time
 import webbrowser
+import xmlrpc.client
 from collections.abc import Sequence
 from pathlib import Path
 from types import FrameType
@@ -62,7 +63,7 @@ def try_out(robot: str, scene: str, port: int, out: Path, *, browser: bool) -> i
     which = f"robot:={robot}" if robot in ROBOTS else f"urdf:={robot}"
     laser = LASER_RATE if robot in ROBOTS or LASER_LINK in Path(robot).read_text(errors="replace") else 0
     launch = ["roslaunch", "-p", str(master), "robot_control", "sim.launch", which, f"scene:={scene}"]
-    with children() as started:
+    with contextlib.closing(_Master()), children() as started:
         robot_part = Child([*launch, f"laser_rate:={laser}"], out / "robot.log")
         started.append(robot_part)
         while robot_part.running and not rosgraph.is_master_online():
@@ -80,6 +81,15 @@ def try_out(robot: str, scene: str, port: int, out: Path, *, browser: bool) -> i
         ended = robot_part if robot_part.wait(LAST) else console
     print(f"scripts/try: it has ended:\n{_last_words(ended.output)}", file=sys.stderr)
     return 1
+
+
+class _Master:
+    """The ROS master that roslaunch starts, and leaves where it is interrupted before it runs."""
+
+    def close(self) -> None:
+        """Ends the master, if it still answers."""
+        with contextlib.suppress(OSError, xmlrpc.client.Error):
+            xmlrpc.client.ServerProxy(os.environ["ROS_MASTER_URI"]).shutdown("/try", "the end of scripts/try")
 
 
 def _address(robot_part: Child, console: Child) -> str:
