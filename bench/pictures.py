@@ -18,14 +18,13 @@ import rosgraph
 import rospy
 from geometry_msgs.msg import PoseStamped, Quaternion
 from nav_msgs.msg import OccupancyGrid, Odometry
-from robot_control.data.demo.launched import ended_at_the_end
 from robot_control.data.demo.main import run_demo
 from robot_control.data.render.main import Film, arguments, model_of
 from robot_control.data.render.mujoco import make_current
 from robot_control.data.render.run import read_moments
 from robot_control.data.render.scene import Scene
 from robot_control.robot.pose import Pose, pose_of, turned
-from robot_control.ui.child import Child
+from robot_control.ui.child import Child, children
 from robot_control.ui.program import run
 
 from bench.console.browser import Browser, missing
@@ -62,9 +61,9 @@ def walk(folder: Path) -> Iterator[Path]:
 
 def mapping(folder: Path) -> Iterator[Path]:
     """Pictures of the console while a room is mapped and driven: one after each STEP of the robot."""
-    with ended_at_the_end() as children:
+    with children() as started:
         command = ["roslaunch", "robot_control", "navigation.launch", "scene:=room", "unknown_is_free:=true"]
-        children.append(Child(command, folder / "launch.log"))
+        started.append(Child(command, folder / "launch.log"))
         wait_for("a master", rosgraph.is_master_online)
         rospy.init_node("pictures", disable_signals=True)
         goals = rospy.Publisher("move_base_simple/goal", PoseStamped, queue_size=1)

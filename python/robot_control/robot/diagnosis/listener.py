@@ -50,7 +50,8 @@ class Listener:
             return
         self._queried_at = now
         self._state = self.master.state()
-        self._refused = self.master.text(rospy.resolve_name("start_refused")) if self._state is not None else ""
+        silent = self._state is not None and self._safety.fresh(now, SILENCE) is None
+        self._refused = self.master.text(rospy.resolve_name("start_refused")) if silent else ""
         if self._state is not None and not (self._registered and rospy.get_name() in nodes_of(self._state)):
             self._registered = self.master.register_again()
 

@@ -71,15 +71,15 @@ def _mode(status: RobotStatus) -> str:
 
 def _health(reports: Reports) -> tuple[int, list[str]]:
     levels, problems = [RobotStatus.OK], []
-    for node in reports.kind.loop[1:]:  # a driver of another name takes its place
-        if node not in reports.diagnostics:
-            levels.append(RobotStatus.ERROR)
-            problems.append(f"{node} is silent")
+    silent = [
+        node for node in reports.kind.loop[1:] if node not in reports.diagnostics
+    ]  # the driver has other names, too
+    levels += [RobotStatus.ERROR] * len(silent)
+    problems += [f"{node} is silent" for node in silent]
     for node, report in sorted(reports.diagnostics.items()):
         if report.level != DiagnosticStatus.OK:
             levels.append(RobotStatus.WARN if report.level == DiagnosticStatus.WARN else RobotStatus.ERROR)
             problems.append(f"{node}: {report.message}")
-    silent = [node for node in reports.kind.loop[1:] if node not in reports.diagnostics]
     if reports.safety is not None and late(reports.safety.first_cause, silent, delayed=reports.busy):
         problems.insert(0, f"{SENTENCE}: {load_in_words()}; {REMEDY}")
     return max(levels), problems
