@@ -1,4 +1,4 @@
-"""The pictures and the film of README and docs, made of the programs as they are: scripts/pictures."""
+"""The film and the plot of README, made of the programs as they are: scripts/pictures."""
 
 from __future__ import annotations
 
