@@ -3,7 +3,9 @@
 import atexit
 import contextlib
 import ctypes
+import errno
 import os
+import shutil
 import socket
 import struct
 import subprocess
@@ -60,7 +62,13 @@ def run(*words: str) -> None:
 
 
 def enter_network_of_own() -> None:
-    """Gives this process and its children a network of their own. Call it before any thread; OSError: not granted."""
+    """Gives this process and its children a network of their own. Call it before any thread.
+
+    Raises:
+        OSError: not granted, or the program ip is missing; the network is the one before.
+    """
+    if shutil.which("ip") is None:
+        raise FileNotFoundError(errno.ENOENT, "the program ip is missing: apt install iproute2")
     libc = ctypes.CDLL(None, use_errno=True)
     if libc.unshare(CLONE_NEWNET) != 0:
         number = ctypes.get_errno()
