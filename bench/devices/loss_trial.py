@@ -11,7 +11,8 @@ follows.
              unless towards it; the truth stays within `DEVIATIONS` of it
     torque   from `STEADY_TIME` after the brake on, the robot does not become faster. A RoboClaw without supply brakes
              when it is switched on again
-    release  it stands between the reset and the new request
+    release  it stands between the reset and the new request: each side, over `JUMP_TIME`. A brake answers one count of
+             an encoder with a jerk of milliseconds
     drives   after the new request it reaches its speed
 """
 
@@ -118,6 +119,13 @@ def speed_of(log: Log, wheel_base: float) -> Array:
     return speed
 
 
+def mean_speed(log: Log, wheel_base: float, cycles: int, period: float) -> float:
+    """m/s, of the faster side in its fastest span of so many cycles; `wheel_base` is in m, `period` in s."""
+    yaw = np.unwrap(log["truth_yaw"])
+    turned = np.abs(yaw[cycles:] - yaw[:-cycles]) * wheel_base / 2
+    return float(np.max(moved([log], "truth", cycles) + turned)) / (cycles * period)
+
+
 def moved(logs: list[Log], source: str, cycles: int) -> Array:
     """m, in each span of so many cycles; `source` is estimate or truth."""
     x, y = (np.concatenate([log[f"{source}_{axis}"] for log in logs]) for axis in "xy")
@@ -174,6 +182,7 @@ def run_trial(trial: LossTrial) -> Outcome:
 def broken_rules(trial: LossTrial, loop: ClosedLoop, log: Log, request: tuple[float, float]) -> Iterator[str]:
     """Yields the rules that the loss and the way back break."""
     period, base = loop.period, loop.robot["wheel_base"]
+    span = round(JUMP_TIME / period)
     seen = first(seen_in(log))
     brake = first(log["gate_verdict"] == BRAKE)
     if seen * period > latest(trial):
@@ -194,12 +203,11 @@ def broken_rules(trial: LossTrial, loop: ClosedLoop, log: Log, request: tuple[fl
         if back[-1]["supervisor_state"][-1] not in STOPPED_STATES:
             break
         loop.e_stop_reset()
-    span = round(JUMP_TIME / period)
     beyond = np.minimum(moved(back, "estimate", span) - moved(back, "truth", span), error_growth(back, span))
     jump = MAX_JUMP[trial.kind == CABLE or trial.dialect in SERIAL]
     if beyond.max() > jump or error(back[-1]) > DEVIATIONS * deviation(back[-1]):
         yield "pose"
-    if speed_of(loop.run(1.0), base).max() > STANDING:
+    if mean_speed(loop.run(1.0), base, span, period) > STANDING:
         yield "release"
     if abs(loop.run(3.0, request)["truth_linear"][-1]) < 0.98 * SPEED:
         yield "drives"
