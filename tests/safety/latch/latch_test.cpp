@@ -171,6 +171,13 @@ TEST(SupervisorOf, AnEarlierMonitorTakesOverEachCauseThatThereIs) {
   }
 }
 
+TEST(SupervisorOf, TheFirstCauseOfAnEarlierMonitorStaysTheFirst) {
+  Supervisor supervisor(300);
+  supervisor.restore(bit_of(3) | bit_of(5), bit_of(5));
+  supervisor.restore(bit_of(1), bit_of(1));
+  EXPECT_EQ(supervisor.first_cause(), std::uint64_t{bit_of(5)});
+}
+
 TEST(SupervisorOf, AStopIsResetOnRequestAlone) {
   Supervisor supervisor(300);
   supervisor.step({.cycle = 1, .brake = bit_of(3)});
