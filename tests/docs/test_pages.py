@@ -90,10 +90,24 @@ def test_every_entry_script_of_a_table_exists_with_its_selection(page, tree):
                 assert name in tests or name.removeprefix("test_") in tests, code
 
 
-def test_the_readme_is_an_entrance():
-    text = README.read_text()
-    assert len(text.splitlines()) <= 120
-    assert len(text.split()) <= 900
+LENGTHS = {
+    "README.md": (120, 900),
+    "docs/console.md": (158, 1831),
+    "docs/driving.md": (246, 2563),
+    "docs/legs.md": (350, 4785),
+    "docs/navigation.md": (114, 1425),
+    "docs/robots.md": (251, 2894),
+    "docs/safety.md": (282, 3625),
+}
+"""The most lines and words of the entrance and of the pages for users."""
+
+
+@pytest.mark.parametrize("page", LENGTHS)
+def test_a_page_for_users_is_short(page):
+    text = (ROOT / page).read_text()
+    lines, words = LENGTHS[page]
+    assert len(text.splitlines()) <= lines
+    assert len(text.split()) <= words
 
 
 def test_the_film_of_the_readme_is_one_that_a_code_host_plays():
