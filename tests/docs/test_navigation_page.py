@@ -1,8 +1,10 @@
 """The commands of docs/navigation.md are followed, from an empty house to a goal; a program drives as a hand would."""
 
 import importlib.util
+import re
 
 import pytest
+from language import cpp_texts
 from pages import ROOT, blocks
 from terminal import Terminal, until
 
@@ -44,6 +46,16 @@ at = rospy.wait_for_message("odom", Odometry, 5).pose.pose.position
 print(end.status.text, at)
 assert end.status.text == "reached" and math.hypot(at.x - 6.8, at.y - 2.0) < 0.2
 """
+
+
+def test_each_message_of_the_page_is_one_of_the_program():
+    page = (ROOT / "docs" / "navigation.md").read_text()
+    rows = page.split("| message begins with |")[1].split("\n\n")[0].splitlines()[2:]
+    messages = [code for row in rows for code in re.findall(r"`([^`]+)`", row.split("|")[1])]
+    sources = [path for folder in ("navigation", "ros/navigation") for path in (ROOT / "src" / folder).rglob("*.cpp")]
+    texts = [text for path in sources for _, text in cpp_texts(path.read_text())]
+    assert len(messages) >= len(rows)
+    assert [message for message in messages if not any(text.startswith(message) for text in texts)] == []
 
 
 @pytest.mark.nightly

@@ -95,7 +95,7 @@ LENGTHS = {
     "docs/console.md": (158, 1831),
     "docs/driving.md": (246, 2600),
     "docs/legs.md": (150, 1600),
-    "docs/navigation.md": (114, 1425),
+    "docs/navigation.md": (75, 800),
     "docs/robots.md": (251, 2894),
     "docs/safety.md": (282, 3625),
 }
