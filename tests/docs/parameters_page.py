@@ -22,7 +22,7 @@ Every key of [config/robot_params.yaml](../config/robot_params.yaml). Written by
 the schema and from the comments of that file; do not edit it here.
 
 A default in parentheses is derived from the robot, or left out, unless it is set; a number there is that of diffbot.
-*Live* parameters can be changed [while the robot drives](robots.md#tuning-while-it-drives). Precedence of file, your
+*Live* parameters can be changed [while the robot drives](tuning.md#tuning-while-it-drives). Precedence of file, your
 own file and parameter server: [interfaces.md](interfaces.md#parameters).
 """
 

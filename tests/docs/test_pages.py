@@ -94,9 +94,9 @@ LENGTHS = {
     "README.md": (120, 900),
     "docs/console.md": (158, 1831),
     "docs/driving.md": (246, 2600),
-    "docs/legs.md": (150, 1600),
+    "docs/legs.md": (150, 1550),
     "docs/navigation.md": (75, 800),
-    "docs/robots.md": (251, 2894),
+    "docs/robots.md": (95, 800),
     "docs/safety.md": (282, 3625),
 }
 """The most lines and words of the entrance and of the pages for users."""
