@@ -22,7 +22,7 @@ double commanded_wheel_speed(const DriveControllerParameters& controller, const 
 /// 0.5·w·q, times kp.
 double count_ripple(const DriveTrain& robot, const WheelModel& wheel, double period);
 
-/// encoders_lost has no shorter persistence than the driver tolerates (drivers/table/drive_table.h) (docs/safety.md).
+/// encoders_lost has no shorter persistence than the driver tolerates (drivers/table/drive_table.h) (docs/drivers.md).
 SafetyParameters safety_limits(const Parameters& parameters, const DriveTrain& robot);
 
 }  // namespace robot_control

@@ -132,7 +132,7 @@ std::string unguarded() {
          ": a malformed connection may end this node, and a restarted sender may have to send a zero first; "
          "remedy: build robot_control against the roscpp that is loaded "
          "here (Debian's libroscpp-dev; LD_LIBRARY_PATH and LD_PRELOAD must not name another one), and let no "
-         "stranger's process reach its ports (docs/safety.md)";
+         "stranger's process reach its ports (docs/security.md)";
 }
 
 std::uint32_t max_message() noexcept {

@@ -18,7 +18,7 @@
 ///   XmlRpc::XmlRpcServerConnection::executeMethod   does not catch what a method throws, such as
 ///                                InvalidNameException of `paramUpdate`. Here the caller gets a fault
 ///
-/// docs/safety.md lists what a peer can still do.
+/// docs/security.md lists what a peer can still do.
 
 #include <cstddef>
 #include <cstdint>
