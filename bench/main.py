@@ -234,7 +234,7 @@ def _share(text: str) -> float:
     except ValueError:
         share = 0.0
     if not 0 < share <= 100:
-        raise argparse.ArgumentTypeError(f"{text} is no number above 0, up to 100")
+        raise argparse.ArgumentTypeError(f"{text} is not a number above 0, up to 100")
     return share
 
 
@@ -278,7 +278,7 @@ def parse(arguments: Sequence[str] | None = None) -> argparse.Namespace:
     parser.add_argument("--plots", type=Path, help="odometry: folder for pictures")
     parser.add_argument("--keep", type=Path, help="record: folder for the logs and their reports")
     cluster = parser.add_argument_group("cluster", f"{', '.join(ON_CLUSTERS)} run with the workers of a Dask scheduler")
-    cluster.add_argument("--scheduler", metavar="tls://HOST:8786", help="its address; default: this machine alone")
+    cluster.add_argument("--scheduler", metavar="tls://HOST:8786", help="its address; default: this computer only")
     cluster.add_argument("--tls", type=Path, metavar="FOLDER", help="of ca.pem, cert.pem, key.pem; default: as Dask")
     cluster.add_argument("--insecure", action="store_true", help="allow tcp:// beyond the loopback: plain text")
     parser.add_argument("--json", type=_writable_file, help="file to write all figures to")

@@ -66,9 +66,9 @@ bool same_robot(const ChannelHead& sensors, std::uint64_t hash, const std::strin
   const AnnouncedRobot robot = announced_robot(sensors);
   if (robot.hash == 0) return false;
   if (robot.hash == hash) return true;
-  throw BusError("the driver drives another robot, or at another rate: it has '" + robot.source + "' (" +
+  throw BusError("the driver was started with another robot or rate: it has '" + robot.source + "' (" +
                  hex(robot.hash) + "), this node '" + source + "' (" + hex(hash) +
-                 "); remedy: start all nodes with one robot_description and one robot: block");
+                 "); remedy: restart all nodes with one robot_description and one robot: block");
 }
 
 }  // namespace robot_control

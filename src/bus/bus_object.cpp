@@ -65,7 +65,7 @@ const char* text(Finding finding) {
     case Finding::kTruncated:
       return "is truncated";
     case Finding::kForeign:
-      return "is not of this software";
+      return "was not written by robot_control";
     case Finding::kOtherLayout:
       return "has another layout";
     case Finding::kRetired:
@@ -105,18 +105,18 @@ const char* kind_text(mode_t mode) {
   const std::string listing = "see 'ls -l " + file + "'; ";
   struct stat status {};
   if (lstat(file.c_str(), &status) != 0) {
-    fail(channel, name, "may not be opened or made by " + user_name(geteuid()),
-         "let this user write in /dev/shm (mode 1777), or set another parameter 'bus'");
+    fail(channel, name, "cannot be opened or created by " + user_name(geteuid()),
+         "set the mode of /dev/shm to 1777, or set another parameter 'bus'");
   }
   if (status.st_uid != geteuid()) {
     fail(channel, name, "belongs to " + user_name(status.st_uid) + ", and this node runs as " + user_name(geteuid()),
-         listing + "let its owner or root remove it, start all nodes as one user, or set another parameter 'bus'");
+         listing + "remove it as its owner or root, start all nodes as one user, or set another parameter 'bus'");
   }
   if (!S_ISREG(status.st_mode)) {
-    fail(channel, name, std::string(kind_text(status.st_mode)) + " stands in its place", listing + "remove it");
+    fail(channel, name, std::string(kind_text(status.st_mode)) + " has its name", listing + "remove it");
   }
   fail(channel, name,
-       formatted("its mode is %04o, and must be 0600: others than this user may have it open", status.st_mode & 07777U),
+       formatted("its mode is %04o, and must be 0600: other users may have it open", status.st_mode & 07777U),
        listing + "stop all nodes and remove it; the next start creates it again");
 }
 
@@ -134,14 +134,15 @@ bool is_shortage(const std::system_error& error) {
       fail_not_private(channel, name);
     case ENOSPC:
     case ENOMEM:
-      fail(channel, name, error.what(), "make room in /dev/shm ('df -h /dev/shm'; in a container --shm-size=256m)");
+      fail(channel, name, error.what(), "free memory in /dev/shm ('df -h /dev/shm'; in a container --shm-size=256m)");
     case EMFILE:
     case ENFILE:
-      fail(channel, name, error.what(), "raise the limit of open files (ulimit -n 1024; of the machine: fs.file-max)");
+      fail(channel, name, error.what(),
+           "set a larger limit of open files (ulimit -n 1024; of the computer: fs.file-max)");
     case EFBIG:
-      fail(channel, name, error.what(), "raise the limit on the size of files ('ulimit -f unlimited')");
+      fail(channel, name, error.what(), "set a larger limit of the file size ('ulimit -f unlimited')");
     default:
-      fail(channel, name, error.what(), "see that /dev/shm is a writable tmpfs");
+      fail(channel, name, error.what(), "check that /dev/shm is a writable tmpfs");
   }
 }
 
@@ -227,7 +228,7 @@ OwnedBusObject claim_object(const std::string& channel, const std::string& name,
     if (finding == Finding::kOtherLayout) retire(*object);
     shm_unlink(name.c_str());
   }
-  fail(channel, name, "the object changed at every try to lock it", "see which processes make and remove it");
+  fail(channel, name, "the object changed at each attempt to lock it", "check which processes create and remove it");
 }
 
 }  // namespace
@@ -268,7 +269,7 @@ bool ForeignBusObject::poll() {
     return map_newest();
   } catch (const std::system_error& error) {
     if (!is_shortage(error)) fail_system(channel_, name_, error);
-    obstacle_ = "cannot be looked at: too many open files";
+    obstacle_ = "cannot be opened: too many open files";
     return false;
   }
 }

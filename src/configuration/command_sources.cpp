@@ -86,7 +86,7 @@ void refuse_twice(const std::vector<Entry>& entries, Value CommandLock::*member,
 CommandSourceList read_command_sources(const std::string& path) {
   const std::string subject = std::string(program_of(Role::kController)) + ".command_sources refused (" + path + ")";
   ProblemList problems;
-  const auto text = read_text_file(path, kMaxSourceFile, "name a file that can be read, or \"\" for none", problems);
+  const auto text = read_text_file(path, kMaxSourceFile, "set a file that can be read, or \"\" for none", problems);
   problems.throw_if_any(subject);
   CommandSourceList list;
   try {

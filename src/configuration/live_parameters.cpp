@@ -66,8 +66,8 @@ void refuse_fixed(const Block& block, const ParameterTree& tree, ProblemList& pr
     const std::string path = path_of(block, key);
     if ((key.traits & kLive) != 0 || !given(tree, path)) continue;
     const Entry& entry = tree.entries.at(path);
-    problems.add({path, as_written(entry), "is read at start alone", entry.origin,
-                  "set it in the YAML file or on the parameter server and start the node again"});
+    problems.add({path, as_written(entry), "is read only at start", entry.origin,
+                  "set it in the YAML file or on the parameter server and restart the node"});
   }
 }
 

@@ -28,7 +28,7 @@ std::vector<std::string> rate_notes(Parameters parameters, std::string_view bloc
     const std::uint64_t cycles = parameters.safety.loss_cycles;
     notes.push_back(at + "the brake follows within " + std::to_string(cycles) + " cycles (loss_cycles), which are " +
                     shortest(static_cast<double>(cycles) / loop.rate) +
-                    " s, after a node of the loop has stopped: lower the speed limits, or raise robot.rate");
+                    " s, after a node of the loop has stopped: set lower speed limits or a higher robot.rate");
   }
   return notes;
 }

@@ -35,7 +35,7 @@ std::string ExternalImu::warning() const {
   const std::string machine = machine_->warning();
   ExternalImuSample newest;
   if (!inbox_->load(newest) || newest.time_ns >= 0) return machine;
-  return machine + (machine.empty() ? "" : "; ") + "no usable sample came on imu/input: start the IMU's node";
+  return machine + (machine.empty() ? "" : "; ") + "no valid message on imu/input: start the node of the IMU";
 }
 
 }  // namespace robot_control

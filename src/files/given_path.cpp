@@ -3,7 +3,9 @@
 #include <pwd.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <cstdlib>
+#include <cstring>
 #include <map>
 #include <mutex>
 #include <system_error>
@@ -66,7 +68,13 @@ std::string shown_path(const std::string& path) {
 }
 
 std::string file_error(const std::string& path, const std::string& why) {
-  return shown_path(path) + " " + kUnwritable + ": " + why;
+  const std::string shown = shown_path(path), end = " (" + path + ")";
+  return shown == path ? path + ": " + why : shown.substr(0, shown.size() - end.size()) + ": " + why + end;
+}
+
+std::string failed(const std::string& operation, int error) {
+  if (error == ENOENT) return "file not found";
+  return "cannot be " + operation + ": " + (error == EACCES ? "no permission" : std::strerror(error));
 }
 
 }  // namespace robot_control

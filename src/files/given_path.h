@@ -22,9 +22,10 @@ std::string resolved_path(const std::string& given, const std::filesystem::path&
 /// Returns the path with the text from which it or a folder above it was resolved: "rel/x.urdf (/here/rel/x.urdf)".
 std::string shown_path(const std::string& path);
 
-inline constexpr const char* kUnwritable = "cannot be opened or written";
-
-/// Returns "<shown_path> cannot be opened or written: <why>".
+/// Returns "rel/x.urdf: <why> (/here/rel/x.urdf)".
 std::string file_error(const std::string& path, const std::string& why);
+
+/// Returns the failed operation ("read") and its errno in words: "file not found", "cannot be read: no permission".
+std::string failed(const std::string& operation, int error);
 
 }  // namespace robot_control

@@ -6,9 +6,9 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <cstring>
 
 #include "files/descriptor.h"
+#include "files/given_path.h"
 
 namespace robot_control {
 namespace {
@@ -35,8 +35,8 @@ std::string problem_of(const struct stat& status, std::size_t max_bytes) {
 
 std::string input_file_problem(const std::string& path, std::size_t max_bytes) {
   struct stat status {};
-  if (path.find('\0') != std::string::npos) return "has a NUL character in its name";
-  return stat(path.c_str(), &status) == 0 ? problem_of(status, max_bytes) : std::strerror(errno);
+  if (path.find('\0') != std::string::npos) return "the file name contains a NUL character";
+  return stat(path.c_str(), &status) == 0 ? problem_of(status, max_bytes) : failed("read", errno);
 }
 
 InputFile read_input_file(const std::string& path, std::size_t max_bytes) {
@@ -45,7 +45,7 @@ InputFile read_input_file(const std::string& path, std::size_t max_bytes) {
   if (const std::string problem = input_file_problem(path, max_bytes); !problem.empty()) return refused(problem);
   const Descriptor file(open(path.c_str(), O_RDONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC));
   struct stat status {};
-  if (!file.open() || fstat(file.number(), &status) != 0) return refused(std::strerror(errno));
+  if (!file.open() || fstat(file.number(), &status) != 0) return refused(failed("read", errno));
   if (const std::string problem = problem_of(status, max_bytes); !problem.empty()) return refused(problem);
   constexpr std::size_t kPiece = std::size_t{1} << 16U;
   result.text.reserve(static_cast<std::size_t>(status.st_size));
@@ -56,7 +56,7 @@ InputFile read_input_file(const std::string& path, std::size_t max_bytes) {
     const int error = errno;
     result.text.resize(before + static_cast<std::size_t>(std::max<ssize_t>(count, 0)));
     if (count < 0 && error == EINTR) continue;
-    if (count < 0) return refused(std::strerror(error));
+    if (count < 0) return refused(failed("read", error));
     if (count == 0) return result;
     if (result.text.size() > max_bytes) return refused("has more than " + std::to_string(max_bytes) + " bytes");
   }

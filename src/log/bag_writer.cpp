@@ -4,7 +4,6 @@
 #include <unistd.h>
 
 #include <cerrno>
-#include <cstring>
 #include <filesystem>
 #include <string_view>
 #include <system_error>
@@ -92,22 +91,21 @@ LogFile::LogFile(std::string path, Room room) : path_(std::move(path)), room_(st
   const std::filesystem::path folder = std::filesystem::path(path_).parent_path();
   std::error_code error;
   if (!folder.empty()) std::filesystem::create_directories(folder, error);
-  if (error) fail(kUnwritable, error.value());
+  if (error) fail(failed("written", error.value()), error.value());
   file_ = Descriptor(::open(path_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644));
-  if (!file_.open()) fail(kUnwritable, errno);
+  if (!file_.open()) fail(failed("written", errno), errno);
 }
 
 void LogFile::check_presence() {
-  if (const int absence = file_.absence_from(path_); absence != 0) fail("is not there any more", absence);
+  if (const int absence = file_.absence_from(path_); absence != 0) fail("was removed while it was written", absence);
 }
 
 void LogFile::append(std::string_view part) {
   if (room_ && !room_(bytes_ + static_cast<std::int64_t>(part.size()))) {
     file_.close();
     throw LogError("log " + path_ +
-                   " has ended: telemetry.quota is reached and no older log can be removed; another one is begun in 10 "
-                   "s, then this one may be removed; "
-                   "remedy: raise telemetry.quota or make room");
+                   " has ended: telemetry.quota is reached, and no older log can be removed. The next log starts in 10 s; "
+                   "then this one may be removed. Set a larger telemetry.quota, or remove files");
   }
   const int error = file_.write(part);
   if (error == 0) {
@@ -116,24 +114,24 @@ void LogFile::append(std::string_view part) {
   }
   // A reader would misunderstand an incomplete part. A pipe cannot be cut and need not be.
   [[maybe_unused]] const int cut = ::ftruncate(file_.number(), bytes_);
-  fail(kUnwritable, error);
+  fail(failed("written", error), error);
 }
 
 void LogFile::replace_begin(std::string_view bytes) {
-  if (const int error = file_.write(bytes, 0); error != 0) fail("cannot be completed", error);
+  if (const int error = file_.write(bytes, 0); error != 0) fail(failed("completed", error), error);
 }
 
 void LogFile::close() {
   // Pipes and devices have nothing to synchronise.
-  if (::fsync(file_.number()) != 0 && errno != EINVAL && errno != EROFS) fail("cannot be completed", errno);
-  if (file_.close() != 0) fail("cannot be closed", errno);
+  if (::fsync(file_.number()) != 0 && errno != EINVAL && errno != EROFS) fail(failed("completed", errno), errno);
+  if (file_.close() != 0) fail(failed("closed", errno), errno);
 }
 
-void LogFile::fail(const std::string& what, int error) {
+void LogFile::fail(const std::string& why, int error) {
   file_.close();
   const bool full = error == ENOSPC || error == EDQUOT || error == EFBIG;
-  throw LogError("log " + shown_path(path_) + " " + what + ": " + std::strerror(error) +
-                 (full ? "; make room or name another folder" : "; name a folder that can be written") +
+  throw LogError("log " + file_error(path_, why) +
+                 (full ? "; remove files or set another folder" : "; set a folder that can be written") +
                  " (telemetry.directory)");
 }
 

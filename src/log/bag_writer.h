@@ -47,7 +47,7 @@ class LogFile {
   const std::string& path() const noexcept { return path_; }
 
  private:
-  [[noreturn]] void fail(const std::string& what, int error);
+  [[noreturn]] void fail(const std::string& why, int error);
 
   std::string path_;
   Room room_;

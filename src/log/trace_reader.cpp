@@ -17,7 +17,7 @@ TraceReader::TraceReader(const std::string& path, const Use& use)
           },
           use.damaged) {
   if (!header_) {
-    throw NoTraceError(path + " is no log of robot_control: it does not begin with a TraceHeader" +
+    throw NoTraceError(path + " is not a log of robot_control: it does not begin with a TraceHeader" +
                        (cut().empty() ? "" : "; " + cut()));
   }
 }
@@ -38,7 +38,7 @@ void TraceReader::find_connections(const BagReader& bag, const Use& use) {
     }
     if (!use.snapshot || connection.type != snapshot_type().name || !snapshots_.insert(number).second) continue;
     if (connection.md5sum != snapshot_type().md5) {
-      throw TraceError(path_ + ": its " + connection.type + " has another layout than that of this version (" +
+      throw TraceError(path_ + ": its " + connection.type + " has a different layout than this version (" +
                        package_version() + "): version " + header_->version + ", build " + header_->build +
                        " wrote it; replay with that build");
     }

@@ -140,7 +140,7 @@ CommandScript CommandScript::parse(std::string_view text, const std::string& sou
 
 CommandScript::CommandScript(const std::string& path, std::uint64_t executable) {
   ProblemList problems;
-  const auto text = read_text_file(path, kMaxScript, "name a CSV file or leave robot.command_script empty", problems);
+  const auto text = read_text_file(path, kMaxScript, "set a CSV file, or leave robot.command_script empty", problems);
   problems.throw_if_any("command script refused");
   *this = parse(*text, path, executable);
 }

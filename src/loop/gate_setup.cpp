@@ -39,7 +39,7 @@ void require_stop_action(const Driver& driver, StopKind stop, const JointModel& 
     if (kind == stop) wanted = word.text;
     if (carries_out(driver, kind)) possible.append(possible.empty() ? "" : " or ").append(word.text);
   }
-  throw DriverError("joint " + joint.name + " is to be stopped by the action \"" + wanted +
+  throw DriverError("joint " + joint.name + " must be stopped by the action \"" + wanted +
                     "\", which this driver does not implement. Set robot.fail_action to " + possible + ".");
 }
 
@@ -50,10 +50,10 @@ struct NeedWords {
 
 // In the order of JointMode and of MachineInput.
 constexpr NeedWords kModeWords[] = {
-    {"to brake", "let the driver brake by a law of its own (gate/brake_law.h)"},
+    {"to brake", "add a brake law to the driver (gate/brake_law.h)"},
     {"commands of torques", "use drives that take torques, or set robot.wheel_command to velocity"},
-    {"commands of velocities", "let the driver compute their torques (drivers/joint_law.h)"},
-    {"commands of impedances", "let the driver compute their torques (drivers/joint_law.h)"},
+    {"commands of velocities", "add the computation of torques to the driver (drivers/joint_law.h)"},
+    {"commands of impedances", "add the computation of torques to the driver (drivers/joint_law.h)"},
     {"speeds that the drives control themselves (robot.wheel_command: velocity)",
      "use drives with a velocity mode, or set robot.wheel_command to torque"},
 };
@@ -83,7 +83,8 @@ void require_needs(const Driver& driver, const MachineNeeds& needs) {
   for (const MachineInput input : needs.inputs) {
     if (!driver.measures(input)) add(kInputWords[static_cast<std::size_t>(input)]);
   }
-  if (!lacking.empty()) throw DriverError("this kind of robot needs what its driver lacks: " + lacking);
+  if (!lacking.empty())
+    throw DriverError("this kind of robot needs functions that its driver does not have: " + lacking);
 }
 
 }  // namespace robot_control

@@ -78,7 +78,7 @@ LatchRecord read_latch(const std::string& path) {
 void write_record(const std::string& path, const std::string& text) {
   const std::filesystem::path file(path);
   if (std::filesystem::exists(file) && !std::filesystem::is_regular_file(file)) {
-    throw std::system_error(EINVAL, std::generic_category(), path + " is no regular file");
+    throw std::system_error(EINVAL, std::generic_category(), path + " is not a regular file");
   }
   std::filesystem::create_directories(file.parent_path());
   write_output_file(path, text);

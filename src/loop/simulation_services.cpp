@@ -17,7 +17,7 @@ constexpr std::int64_t kTimeout = 2'000'000'000;     // ns; a loop that has not 
 constexpr std::int64_t kStandstill = 5'000'000'000;  // ns without a cycle; a period is 10 ms at most
 
 ServiceAnswer busy() {
-  return {false, "another step or reset is under way"};
+  return {false, "another step or reset is in progress"};
 }
 
 std::string before(std::uint64_t cycle) {
@@ -68,7 +68,7 @@ ServiceAnswer SimulationServices::step(std::uint64_t cycles) {
   for (;;) {
     {
       const std::lock_guard lock(request_mutex_);
-      if (request_.paused == 0) return {false, "only while paused: call set_pause with true first"};
+      if (request_.paused == 0) return {false, "allowed only while paused: call set_pause with true first"};
       if (hold_.stands(request_.number)) {  // and stands until another thread gets this lock
         const std::uint64_t first = hold_.next_cycle();
         request_.step_until = first + std::min(cycles, std::numeric_limits<std::uint64_t>::max() - first);
@@ -76,7 +76,7 @@ ServiceAnswer SimulationServices::step(std::uint64_t cycles) {
         break;
       }
     }
-    if (monotonic_ns() > end_ns) return {false, "time stands still anyway" + waiting_for()};
+    if (monotonic_ns() > end_ns) return {false, "the simulated time is already stopped" + waiting_for()};
     sleep_ns(LoopHold::kPollPeriod);
   }
   return await_steps(steps);
@@ -93,7 +93,7 @@ ServiceAnswer SimulationServices::await_steps(const Steps& steps) {
       seen_ns = monotonic_ns();
     } else if (monotonic_ns() - seen_ns > kStandstill) {
       request_pause(true);
-      return {false, "time stands still " + before(next) + waiting_for()};
+      return {false, "the simulated time is stopped " + before(next) + waiting_for()};
     }
     const std::lock_guard lock(request_mutex_);
     if (request_.paused == 0) return {false, "resumed meanwhile"};
@@ -118,7 +118,7 @@ ServiceAnswer SimulationServices::reset() {
   }
   ServiceAnswer answer{true, "a new run begins at cycle 0"};
   if (!hold_.await_stand(number, kTimeout)) {
-    answer = hold_.looping() ? ServiceAnswer{false, "the loop does not come to a stop" + waiting_for()} : ended();
+    answer = hold_.looping() ? ServiceAnswer{false, "the loop did not stop" + waiting_for()} : ended();
   } else {
     try {
       cycle_.inject({});
@@ -141,7 +141,7 @@ ServiceAnswer SimulationServices::inject_fault(const std::string& component, con
   const std::vector<InjectedFault> found = components_of(machine_, component);
   if (!found.empty() && is_node(found.front().component)) {
     return {false, component +
-                       ": a node that runs takes no simulated fault; stop or kill its process (kill -STOP, "
+                       ": a running node has no simulated faults; stop or kill its process (kill -STOP, "
                        "kill -KILL), or call inject_fault of ClosedLoop in Python"};
   }
   std::string problem = set_fault(request_.faults, machine_, component, kind);

@@ -101,7 +101,7 @@ std::string set_fault(InjectedFaults& faults, const MachineModel& machine, std::
     fault.kind = static_cast<FaultKind>(*found);
     if (set_fault(changed, fault)) continue;
     return "at most " + std::to_string(kMaxInjectedFaults) +
-           " components fail at one time; now: " + names_of(faults, machine) + ". End one with the kind ok first.";
+           " components fail at one time; now: " + names_of(faults, machine) + ". Set one to the kind ok first.";
   }
   faults = changed;
   return {};

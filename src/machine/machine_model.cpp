@@ -51,7 +51,7 @@ MachineModel read_machine(const RobotDescription& description, const MachinePara
   const auto bodies = std::make_shared<const RigidBodies>(read_rigid_bodies(description));
   if (bodies->moving_joints.empty()) {
     refuse(bodies->source, "<robot>", "no joint moves",
-           "Give it joints of type=\"revolute\", \"continuous\" or \"prismatic\"");
+           "Add joints of type=\"revolute\", \"continuous\" or \"prismatic\"");
   }
   refuse_too_many_joints(*bodies);
   MachineModel machine = named_machine(description, *bodies);

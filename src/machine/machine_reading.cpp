@@ -47,7 +47,7 @@ Eigen::Vector3d finite(const RigidBodies& robot, const std::string& element, con
                        const Vector3& given) {
   Eigen::Vector3d vector(given[0], given[1], given[2]);
   if (!vector.allFinite()) {
-    refuse(robot.source, element, words(vector) + " " + unit, "Give three finite numbers, or none");
+    refuse(robot.source, element, words(vector) + " " + unit, "Set three finite numbers, or none");
   }
   return vector;
 }
@@ -59,11 +59,12 @@ std::string imu_link_of(const RigidBodies& robot, const std::string& requested_l
   const std::string& base = robot.bodies[0].name;
   if (!requested_link.empty()) {
     if (!robot.links.contains(requested_link)) {
-      refuse(robot.source, "robot/imu_link", "there is no link \"" + requested_link + "\"",
-             "Name a link of the URDF, or none: then the IMU is found, or sits in " + base);
+      refuse(robot.source, "robot.imu_link", "there is no link \"" + requested_link + "\"",
+             "Set a link of the URDF, or none: then the IMU is found, or assumed in " + base);
     }
     if (!fixed_to_root(robot, requested_link)) {
-      refuse(robot.source, link_element(requested_link), "it moves against " + base, "Fix the IMU to the chassis");
+      refuse(robot.source, link_element(requested_link), "it moves relative to " + base,
+             "Set a link that is fixed to the chassis");
     }
     return requested_link == base ? "" : requested_link;
   }
@@ -72,14 +73,14 @@ std::string imu_link_of(const RigidBodies& robot, const std::string& requested_l
     const std::string name = lower_case(link);
     if (!begins_word(name, "imu") && !begins_word(name, "gyro")) continue;
     if (!fixed_to_root(robot, link)) {
-      notes.push_back(
-          {RobotNote::Kind::kIgnored, link_element(link), "it moves against " + base + ": no place for the IMU"});
+      notes.push_back({RobotNote::Kind::kIgnored, link_element(link),
+                       "it moves relative to " + base + ": the IMU cannot be there"});
       continue;
     }
-    notes.push_back({RobotNote::Kind::kAssumed, link_element(link), "the IMU sits here"});
+    notes.push_back({RobotNote::Kind::kAssumed, link_element(link), "the IMU is here"});
     return link == base ? "" : link;
   }
-  notes.push_back({RobotNote::Kind::kAssumed, link_element(base), "no link is named after an IMU: it sits here"});
+  notes.push_back({RobotNote::Kind::kAssumed, link_element(base), "no link has the name of an IMU: assumed here"});
   return "";
 }
 
@@ -91,20 +92,20 @@ Pose imu_pose(const RigidBodies& robot, const std::string& link, const MachinePa
   Eigen::Isometry3d place = link.empty() ? Eigen::Isometry3d::Identity() : robot.links.at(link).in_body;
   Eigen::Quaterniond rotation(place.linear());
   if (parameters.imu_position) {
-    const Eigen::Vector3d given = finite(robot, "robot/imu_position", "m", *parameters.imu_position);
+    const Eigen::Vector3d given = finite(robot, "robot.imu_position", "m", *parameters.imu_position);
     if ((given - place.translation()).norm() > kNotedShare * length) {
-      notes.push_back({RobotNote::Kind::kOverridden, "robot/imu_position",
-                       words(given) + " m holds, the URDF says " + words(place.translation()) + " m"});
+      notes.push_back({RobotNote::Kind::kOverridden, "robot.imu_position",
+                       words(given) + " m is used, the URDF has " + words(place.translation()) + " m"});
     }
     place.translation() = given;
   }
   if (parameters.imu_orientation) {
-    const Eigen::Vector3d given = finite(robot, "robot/imu_orientation", "rad", *parameters.imu_orientation);
+    const Eigen::Vector3d given = finite(robot, "robot.imu_orientation", "rad", *parameters.imu_orientation);
     const Eigen::Quaterniond from_urdf = rotation;
     rotation = rotation_of(given);
     if (rotation.angularDistance(from_urdf) > kNotedShare) {
-      notes.push_back({RobotNote::Kind::kOverridden, "robot/imu_orientation",
-                       words(given) + " rad holds, the URDF says " + words(rpy_of(place.linear())) + " rad"});
+      notes.push_back({RobotNote::Kind::kOverridden, "robot.imu_orientation",
+                       words(given) + " rad is used, the URDF has " + words(rpy_of(place.linear())) + " rad"});
     }
   }
   const Eigen::Vector3d& position = place.translation();
@@ -126,10 +127,10 @@ double rest_position(const RigidBodies& bodies, const BodyJoint& joint) {
 Eigen::Vector3d effective_centre(const RigidBodies& bodies, const MachineParameters& parameters, double length,
                                  const Eigen::Vector3d& from_urdf, MachineModel& machine) {
   if (!parameters.centre_of_gravity) return from_urdf;
-  const Eigen::Vector3d centre = finite(bodies, "robot/centre_of_gravity", "m", *parameters.centre_of_gravity);
+  const Eigen::Vector3d centre = finite(bodies, "robot.centre_of_gravity", "m", *parameters.centre_of_gravity);
   if ((centre - from_urdf).norm() > kNotedShare * length) {
-    machine.notes.push_back({RobotNote::Kind::kOverridden, "robot/centre_of_gravity",
-                             words(centre) + " m holds, the URDF says " + words(from_urdf) + " m"});
+    machine.notes.push_back({RobotNote::Kind::kOverridden, "robot.centre_of_gravity",
+                             words(centre) + " m is used, the URDF has " + words(from_urdf) + " m"});
   }
   return centre;
 }
@@ -149,7 +150,7 @@ MachineModel named_machine(const RobotDescription& description, const RigidBodie
 void refuse_too_many_joints(const RigidBodies& bodies) {
   if (bodies.moving_joints.size() <= kMaxJoints) return;
   refuse(bodies.source, "<robot>", std::to_string(bodies.moving_joints.size()) + " moving joints",
-         "At most " + std::to_string(kMaxJoints) + " are supported; make those that never move type=\"fixed\"");
+         "Set type=\"fixed\" on joints that never move; the limit is " + std::to_string(kMaxJoints));
 }
 
 JointRole role_of(const BodyJoint& joint) {

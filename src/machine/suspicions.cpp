@@ -19,8 +19,8 @@ void note_shapes(MachineModel& robot) {
       const double size = box_of(body, shape).sizes().maxCoeff();
       if (size < kMaxPart) continue;
       note(robot, link_element(shape.link),
-           "a shape that measures " + number(size) +
-               " m: are lengths in millimetres? For a mesh in millimetres give "
+           "the size of a shape is " + number(size) +
+               " m: check whether lengths are in millimetres. For a mesh in millimetres, set "
                "scale=\"0.001 0.001 0.001\"");
     }
   }
@@ -35,14 +35,15 @@ void note_masses(MachineModel& robot) {
   }
   if (!box.isEmpty() && mass > kSteelDensity * box.volume()) {
     note(robot, "<robot>",
-         number(mass) + " kg, more than a block of steel of the robot's size (" + number(box.sizes().x()) + " × " +
-             number(box.sizes().y()) + " × " + number(box.sizes().z()) + " m): are masses in grams? A URDF's are kg");
+         number(mass) + " kg, more than a steel block of the size of the robot (" + number(box.sizes().x()) + " × " +
+             number(box.sizes().y()) + " × " + number(box.sizes().z()) +
+             " m): check whether masses are in grams; a URDF has kg");
   }
   const RigidBody& base = robot.bodies->bodies[0];
   if (base.mass < kMinBaseShare * mass) {
     note(robot, link_element(base.name),
-         "it and what is fixed to it weigh only " + number(base.mass) + " of " + number(mass) +
-             " kg: is its <inertial> missing?");
+         "it and the links fixed to it weigh only " + number(base.mass) + " of " + number(mass) +
+             " kg: check whether its <inertial> is missing");
   }
 }
 
@@ -55,8 +56,8 @@ void note_weak_joints(MachineModel& robot) {
     if (load <= joint.effort_limit + joint.friction) continue;
     const char* const unit = joint.prismatic ? " N" : " N·m";
     note(robot, joint_element(joint.name),
-         "its effort limit of " + number(joint.effort_limit) + unit + " does not hold its load of " + number(load) +
-             unit + " at rest: it gives way");
+         "its effort limit of " + number(joint.effort_limit) + unit + " is below its load of " + number(load) + unit +
+             " at rest: it cannot hold its position");
   }
 }
 

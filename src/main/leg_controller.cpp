@@ -5,6 +5,6 @@ int main(int argc, char** argv) {
   using namespace robot_control;
   return run_node(argc, argv,
                   {.name = "leg_controller",
-                   .purpose = "Lets a robot on four legs stand up, moves its body and its feet, and lets it lie down.",
+                   .purpose = "Controls a robot on four legs: standing up, moving body and feet, walking, lying down.",
                    .make = make_leg_controller});
 }

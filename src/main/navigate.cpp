@@ -5,7 +5,7 @@ int main(int argc, char** argv) {
   return run_node(
       argc, argv,
       {.name = "navigate",
-       .purpose = "Plans a way to a goal on the map, sends it to follow_path, and says why a goal is not reached.",
+       .purpose = "Plans a path to a goal on the map, sends it to follow_path, and reports why a goal is not reached.",
        .make = navigation::make_navigate,
        .in_loop = false});
 }

@@ -6,6 +6,6 @@ int main(int argc, char** argv) {
   return run_node(
       argc, argv,
       {.name = "safety_monitor",
-       .purpose = "Permits motion or stops it, beside the chain of the other nodes; holds stops until they are reset.",
+       .purpose = "Permits or stops motion, independently of the other nodes; keeps a stop until it is reset.",
        .make = make_monitor});
 }

@@ -32,7 +32,7 @@ Footprint footprint_of(const std::function<double(Point)>& reach) {
   Footprint result;
   result.inscribed = *std::ranges::min_element(reaches);
   if (!(result.inscribed > 0))
-    throw std::invalid_argument("the outline of the robot's shapes does not hold the origin of its base link");
+    throw std::invalid_argument("the footprint of the robot does not contain the origin of its base link");
   const auto corner = [&](std::size_t i) {  // where this tangent meets the next one
     const std::size_t next = (i + 1) % normals.size();
     const Point a = normals[i], b = normals[next];

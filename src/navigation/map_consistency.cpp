@@ -27,7 +27,7 @@ void MapConsistency::update(const Agreement& seen) {
 std::string MapConsistency::explanation() const {
   if (contradicts_ || agreeing_ >= kMinAgreement) return "";
   return "; the scan contradicts the map in " + std::to_string(std::lround(100 * (1 - agreeing_))) +
-         " % of its rays, which pass its walls or end where it is free";
+         " % of its rays: they pass through walls or end in free space";
 }
 
 }  // namespace robot_control::navigation

@@ -46,7 +46,7 @@ struct Head {
 
 template <class T>
 T value_of(const std::string& path, const YAML::Node& node, const std::string& key, const char* what) {
-  if (!node.IsDefined()) refuse(path, "the key " + key + " is missing; a map of map_server has it");
+  if (!node.IsDefined()) refuse(path, "the key " + key + " is missing; check that the file is a map of map_server");
   try {
     return node.as<T>();
   } catch (const YAML::Exception&) {
@@ -106,7 +106,7 @@ Grid read_picture(const std::string& path, std::string_view text, const Head& he
   if (!text.starts_with("P5")) refuse(path, "is not a binary PGM (P5); convert it: convert map.png map.pgm");
   text.remove_prefix(2);
   const auto columns = next_number(text), rows = next_number(text), white = next_number(text);
-  if (!columns || !rows || !white || text.empty()) refuse(path, "the head of the PGM is incomplete");
+  if (!columns || !rows || !white || text.empty()) refuse(path, "the header of the PGM is incomplete");
   if (*white < 1 || *white > 255) refuse(path, "has " + std::to_string(*white) + " grey values: at most 255 are read");
   const std::string problem = grid_problem(static_cast<double>(*columns), static_cast<double>(*rows), head.resolution,
                                            head.origin_x, head.origin_y, head.yaw);
@@ -140,14 +140,14 @@ std::string grid_problem(double columns, double rows, double resolution, double 
   }
   if (!(columns >= 1 && rows >= 1 && columns * rows <= static_cast<double>(kMaxCells))) {
     return "the map has " + text_of(columns) + " x " + text_of(rows) + " cells: 1 to " + std::to_string(kMaxCells) +
-           " are taken; crop it, or choose a coarser resolution";
+           " are allowed; crop it, or set a coarser resolution";
   }
   if (!(std::abs(origin_x) <= kFarthest && std::abs(origin_y) <= kFarthest)) {
     return "origin is (" + text_of(origin_x) + ", " + text_of(origin_y) + ") m: it must be within 1e+06 m";
   }
   if (!(std::abs(origin_yaw) <= 1e-6)) {
     return "origin is turned by " + text_of(std::round(origin_yaw * 1000) / 1000) +
-           " rad: only 0 is taken; turn the picture instead";
+           " rad: only 0 is allowed; turn the picture instead";
   }
   return "";
 }
@@ -163,7 +163,7 @@ void write_map(const std::string& given, const Grid& grid) {
   std::filesystem::path path = resolved_path(given);
   if (path.extension() == ".yaml") path.replace_extension();
   const std::string stem = path.filename().string();
-  if (stem.empty()) refuse(given, "names no file; give the path of the YAML file");
+  if (stem.empty()) refuse(given, "is not a file; give the path of the YAML file");
   std::string pixels(grid.cells.size(), '\xcd');  // 205, map_server's unknown
   for (int row = 0; row < grid.rows; ++row) {
     for (int column = 0; column < grid.columns; ++column) {

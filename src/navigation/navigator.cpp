@@ -113,7 +113,7 @@ void Navigator::drive(const NavigatorInput& input, Costmap& costmap, NavigatorOu
   note_progress(input);
   const bool blocked = free < kMinFreeDistance;
   if (blocked && input.now - planned_at_ >= kReplanPeriod) plan(input, costmap, out);
-  if (blocked && !out.path && free < kStopDistance) wait(reason_.empty() ? "the way is blocked" : reason_, out);
+  if (blocked && !out.path && free < kStopDistance) wait(reason_.empty() ? "the path is blocked" : reason_, out);
   if (!blocked) reason_ = input.now - progress_at_ > kReplanPeriod ? input.slowed_by : "";
 }
 

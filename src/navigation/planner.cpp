@@ -214,28 +214,27 @@ std::optional<std::pair<Cell, double>> narrowest(const Costmap& costmap, Cell st
 
 std::string no_path_problem(const Costmap& costmap, Cell start, Cell goal) {
   const auto narrow = narrowest(costmap, start, goal);
-  if (!narrow) return "there is no way to the goal: obstacles or unknown space lie all around it or the robot";
+  if (!narrow) return "no path: obstacles or unknown space surround the goal or the robot";
   const double needed = 2 * (costmap.footprint().half_width + kPadding), wide = 2 * narrow->second;
   const Grid& grid = costmap.grid();
-  const std::string where = formatted("the narrowest place of the widest way, at (%.2f, %.2f) m, is %.2f m wide",
-                                      grid.x_of(narrow->first.column), grid.y_of(narrow->first.row), wide);
-  if (wide < needed) return "there is no way for this outline: " + where + formatted(", and it needs %.2f m", needed);
-  return "there is no way for this outline: it cannot turn where it would have to; " + where;
+  const std::string where = formatted("Narrowest passage on the best route: %.2f m wide at (%.2f, %.2f) m", wide,
+                                      grid.x_of(narrow->first.column), grid.y_of(narrow->first.row));
+  if (wide < needed) return "no path: the robot does not fit. " + where + formatted("; needed %.2f m", needed);
+  return "no path: the robot has no room to turn. " + where;
 }
 
 std::string goal_problem(const Costmap& costmap, const PlanarPose& goal) {
   const Grid& grid = costmap.grid();
   if (!std::isfinite(goal.x) || !std::isfinite(goal.y) || !std::isfinite(goal.yaw)) {
-    return "the goal holds a number that is not finite";
+    return "the goal contains NaN or infinity";
   }
   const bool near = std::abs(goal.x) <= kFarthest && std::abs(goal.y) <= kFarthest;
   const Cell cell = near ? grid.cell_at(goal.x, goal.y) : Cell{-1, -1};
   const std::string at = formatted("the goal (%.2f, %.2f) m ", goal.x, goal.y);
-  if (!grid.contains(cell)) return at + "lies outside the map";
-  if (costmap.occupied(cell)) return at + (costmap.unknown(cell) ? "lies in unknown space" : "lies in an obstacle");
+  if (!grid.contains(cell)) return at + "is outside the map";
+  if (costmap.occupied(cell)) return at + (costmap.unknown(cell) ? "is in unknown space" : "is in an obstacle");
   if (costmap.free(goal)) return "";
-  return at + formatted("is too near to an obstacle or to unknown space for the outline: %.2f m from its base",
-                        costmap.distance(cell));
+  return at + formatted("is too near to an obstacle or to unknown space: %.2f m from its base", costmap.distance(cell));
 }
 
 }  // namespace
@@ -247,7 +246,7 @@ Plan plan_path(const Costmap& costmap, const PlanarPose& start, const PlanarPose
   const Grid& grid = costmap.grid();
   const Cell from = grid.cell_at(start.x, start.y);
   if (plan.problem.empty() && !grid.contains(from)) plan.problem = "the robot is outside the map";
-  if (plan.problem.empty() && costmap.occupied(from)) plan.problem = "the robot stands in an obstacle of the map";
+  if (plan.problem.empty() && costmap.occupied(from)) plan.problem = "the robot is in an obstacle of the map";
   if (!plan.problem.empty()) return plan;
   if (std::hypot(goal.x - start.x, goal.y - start.y) <
       kSamePosition) {                        // a path needs two points; the robot turns on the spot

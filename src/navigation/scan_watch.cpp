@@ -9,14 +9,14 @@ namespace robot_control::navigation {
 
 std::string ScanWatch::structure_problem(const Scan& scan) const {
   const std::size_t rays = scan.ranges.size();
-  if (rays < 2 || rays > kMaxRays) return formatted("scan has %zu rays: 2 to %zu are taken", rays, kMaxRays);
+  if (rays < 2 || rays > kMaxRays) return formatted("scan has %zu rays: allowed are 2 to %zu", rays, kMaxRays);
   if (!std::isfinite(scan.angle_min) || !std::isfinite(scan.angle_increment) || scan.angle_increment == 0) {
     return formatted("scan has angle_min %g and angle_increment %g: both must be finite, the increment not zero",
                      scan.angle_min, scan.angle_increment);
   }
   constexpr double kTurn = 2 * M_PI + 0.1;  // rad
   if (std::abs(scan.angle_increment) * static_cast<double>(rays - 1) > kTurn) {
-    return formatted("scan covers %.1f rad: one turn at most is taken",
+    return formatted("scan covers %.1f rad: allowed is one turn",
                      std::abs(scan.angle_increment) * static_cast<double>(rays - 1));
   }
   const double last = scan.angle(rays - 1);
@@ -26,7 +26,8 @@ std::string ScanWatch::structure_problem(const Scan& scan) const {
         scan.angle_max, last);
   }
   if (!std::isfinite(scan.range_max)) {
-    return formatted("scan has range_max %g m: it must be finite, set that of the laser's driver", scan.range_max);
+    return formatted("scan has range_max %g m: it must be finite: set range_max in the driver of the laser",
+                     scan.range_max);
   }
   if (!(scan.range_min >= 0 && scan.range_min < scan.range_max)) {
     return formatted("scan has range_min %g m and range_max %g m: 0 <= range_min < range_max must hold", scan.range_min,
@@ -59,14 +60,14 @@ std::string ScanWatch::receive(const Scan& scan, const std::string& publisher, d
 
 std::string ScanWatch::problem(double now) const {
   if (now - received_ > kScanTimeout) {
-    return refused_.empty() ? formatted("scan is silent for %.1f s: check the laser and its driver", now - received_)
+    return refused_.empty() ? formatted("no scan for %.1f s: check the laser and its driver", now - received_)
                             : refused_;
   }
   if (std::abs(now - stamp_) > kScanTimeout) {
-    return formatted("the stamps of scan are %.1f s %s: synchronise the clocks of laser and robot",
+    return formatted("the stamps of scan are %.1f s %s: check the clocks of laser and robot (chrony)",
                      std::abs(now - stamp_), now > stamp_ ? "old" : "ahead");
   }
-  if (blind_) return "scan has no range that was measured: is the laser covered?";
+  if (blind_) return "scan has no measured range: check whether the laser is covered";
   if (moved_ - changed_at_ > kFrozenMotion) return "scan is frozen: its ranges stay the same while the robot moves";
   return "";
 }

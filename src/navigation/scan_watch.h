@@ -34,7 +34,7 @@ class ScanWatch {
  private:
   std::string structure_problem(const Scan& scan) const;
 
-  std::string publisher_, refused_ = "no scan has come: start the laser's driver, which publishes scan";
+  std::string publisher_, refused_ = "no scan received: start the driver of the laser, which publishes scan";
   double received_ = -1e9, stamp_ = -1e9;  // s
   std::vector<float> ranges_;
   double changed_at_ = 0, moved_ = 0;  // m + rad, at the last change of the ranges; now

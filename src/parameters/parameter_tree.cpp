@@ -88,7 +88,7 @@ class Documents : public YAML::EventHandler {
 
   void refuse_tags(const std::string& source, ProblemList& problems) const {
     for (const auto& [tag, mark] : tags_) {
-      problems.add({printable(tag), "", "is a YAML tag, and none is read", at_line(source, mark),
+      problems.add({printable(tag), "", "is a YAML tag, which is not supported", at_line(source, mark),
                     "write the plain value, in the unit of the key: angles in rad"});
     }
   }
@@ -122,7 +122,7 @@ void read_file(const std::string& yaml_path, Foreign foreign, ParameterTree& tre
   std::error_code ignored;
   const std::filesystem::path path = std::filesystem::absolute(yaml_path, ignored);
   const auto text =
-      read_text_file(yaml_path, kMaxParameterFile, "name a YAML file like config/robot_params.yaml", problems);
+      read_text_file(yaml_path, kMaxParameterFile, "give a YAML file like config/robot_params.yaml", problems);
   if (!text) return;
   try {
     const Documents documents(*text);

@@ -101,11 +101,11 @@ class TreeReader : public GivenValues {
     if (entry != tree_.entries.end()) {
       if (read_value(entry->second, path, key, problems_)) accepted_.insert(path);
       if (const std::string_view now = word_now(entry->second, key.field); !now.empty()) {
-        warnings_.push_back(path + " = " + as_written(entry->second) + " is an old value: write " + std::string(now) +
-                            " [" + entry->second.origin + "]");
+        warnings_.push_back(path + " = " + as_written(entry->second) + " is an old value: replace it with " +
+                            std::string(now) + " [" + entry->second.origin + "]");
       }
       if ((key.traits & kObsolete) != 0) {
-        warnings_.push_back(path + " has no effect any more: leave it out [" + entry->second.origin + "]");
+        warnings_.push_back(path + " has no effect any more: remove it [" + entry->second.origin + "]");
       }
     } else if ((key.traits & kOptional) == 0) {
       const auto map = tree_.entries.find(group);
@@ -155,7 +155,7 @@ class TreeReader : public GivenValues {
       return value_text(key.field);
     };
     if (text_of(other) == text_of(path)) return;
-    refuse(path, "is another name of " + shown(other) + " and differs", "give one of them");
+    refuse(path, "is another name of " + shown(other) + " and differs", "remove one of them");
   }
 
   ParameterTree tree_;

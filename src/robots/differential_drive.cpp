@@ -46,8 +46,8 @@ std::vector<std::string> DifferentialDrive::rate_notes(Role role) const {
   std::vector<std::string> notes = wheeled_rate_notes(parameters_, machine_, role);
   if (role == Role::kMonitor && machine_.wheel_command == WheelCommand::kVelocity) {
     notes.emplace_back(
-        "robot.wheel_command is velocity: where drives measure no torque, wheel_effort, power and torque_oscillation "
-        "are blind, and stall judges speeds alone");
+        "robot.wheel_command is velocity: if the drives measure no torque, wheel_effort, power and torque_oscillation "
+        "detect nothing, and stall uses speeds only");
   }
   return notes;
 }

@@ -34,11 +34,11 @@ Quadruped::Quadruped(const Parameters& parameters, const LegModel& machine)
 void Quadruped::require_drivable() const {
   if (parameters_.loop.fail_action == StopKind::kCoast) {
     throw ParameterError(
-        "robot.fail_action = coast: without torque a robot on legs falls. Leave it out: it folds its legs");
+        "robot.fail_action = coast: without torque, a robot on legs falls. Remove it: the robot then folds its legs");
   }
   if (parameters_.driver != DriverName::kMujoco || !parameters_.drives.empty()) {
     throw ParameterError(
-        "robot.driver: motor drives move robots on wheels alone. Leave robot.driver and robot.drives out");
+        "robot.driver: motor drives support only robots on wheels. Remove robot.driver and robot.drives");
   }
   if (parameters_.loop.rate < kMinWalkingRate) {
     throw ParameterError("robot.rate = " + shortest(parameters_.loop.rate) + " Hz: a robot on legs falls below " +

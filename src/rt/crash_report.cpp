@@ -21,14 +21,14 @@ struct FatalSignal {
   std::string_view remedy;
 };
 
-constexpr std::string_view kReportRemedy = "keep its core dump (coredumpctl) and report it, then start the node again";
+constexpr std::string_view kReportRemedy = "report its core dump (coredumpctl), then restart the node";
 constexpr FatalSignal kFatalSignals[] = {
     {SIGBUS, "SIGBUS", "shared memory was truncated, or its file system is full",
-     "look at 'df /dev/shm' and at the processes that write there, then start the node again"},
-    {SIGSEGV, "SIGSEGV", "it used an address that is not its own", kReportRemedy},
-    {SIGILL, "SIGILL", "it came to an instruction that cannot be", kReportRemedy},
+     "check 'df /dev/shm' and the processes that write there, then restart the node"},
+    {SIGSEGV, "SIGSEGV", "it accessed an invalid address", kReportRemedy},
+    {SIGILL, "SIGILL", "it reached an invalid instruction", kReportRemedy},
     {SIGFPE, "SIGFPE", "it divided an integer by zero", kReportRemedy},
-    {SIGABRT, "SIGABRT", "it gave up, the message before says why", kReportRemedy},
+    {SIGABRT, "SIGABRT", "it aborted; the message before gives the reason", kReportRemedy},
 };
 
 /// A Text holds at most Size bytes; the rest is cut.

@@ -19,7 +19,7 @@ std::string descriptor_problem() {
     if (setrlimit(RLIMIT_NOFILE, &limit) == 0) return "";
   }
   return "only " + std::to_string(max_descriptors) +
-         " files may be open at a time (RLIMIT_NOFILE), a node needs at least " + std::to_string(kMinDescriptors) +
+         " files may be open at a time (RLIMIT_NOFILE), but a node needs at least " + std::to_string(kMinDescriptors) +
          "; remedy: `ulimit -n 1024` before the start, or LimitNOFILE= of its service";
 }
 

@@ -225,7 +225,7 @@ namespace {
 
 std::string remedy_of(int error) {
   if (error == EACCES || error == EPERM) return "scripts/privileges install, or in a container the device itself";
-  return "leave robot.cpu_dma_latency out, or use a kernel with CONFIG_CPU_IDLE and its device";
+  return "remove robot.cpu_dma_latency, or use a kernel with CONFIG_CPU_IDLE and its device";
 }
 
 }  // namespace

@@ -14,7 +14,7 @@ namespace robot_control {
 namespace {
 
 constexpr std::uint64_t kDriverInstance =
-    1;  // any number except 0; the same holds for a run: no other process uses these channels
+    1;  // any number except 0; the same applies to a run: no other process uses these channels
 
 /// Reads the command script. ClosedLoop is the only sender of commands, so each run begins with a zero request.
 CommandScript script_of(const Parameters& parameters, const Robot& robot) {
@@ -35,8 +35,8 @@ std::unique_ptr<Driver> copy_of(Driver& machine) {
   std::unique_ptr<Driver> copy = simulator == nullptr ? nullptr : simulator->clone();
   if (copy != nullptr) return copy;
   throw DriverError(
-      "a loop whose motors stand behind simulated drives (robot.drives) cannot be cloned; make another one with the "
-      "same arguments and give it the same calls");
+      "a loop with simulated drives (robot.drives) cannot be cloned; create another one with the same arguments and "
+      "repeat the calls");
 }
 
 }  // namespace

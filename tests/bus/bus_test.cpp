@@ -241,7 +241,7 @@ TEST_F(BusTest, RecreatesWhatIsLeftOfAnObject) {
   for (const auto& [left, obstacle] : {std::pair{whole.substr(0, whole.size() - 1), "is truncated"},
                                        {"short", "is truncated"},
                                        {std::string(sizeof(Frames), '\0'), "has no content yet"},  // its maker died
-                                       {std::string(sizeof(Frames), 'x'), "is not of this software"},
+                                       {std::string(sizeof(Frames), 'x'), "was not written by robot_control"},
                                        {"", ""}}) {
     plant(left);
     ForeignChannel<Frames> reader(bus_.name(), ChannelNames::kState);
@@ -265,7 +265,7 @@ TEST_F(BusTest, AFileOfAnotherKindIsReplacedAndNeverWrittenTo) {
   const std::string kept = file() + ".kept";
   ASSERT_EQ(link(file().c_str(), kept.c_str()), 0);
   EXPECT_FALSE(reader_.poll());
-  EXPECT_EQ(reader_.obstacle(), "is not of this software");
+  EXPECT_EQ(reader_.obstacle(), "was not written by robot_control");
   const OwnedChannel<Frames> writer(bus_.name(), ChannelNames::kState);
   EXPECT_TRUE(reader_.poll());
   std::ifstream old(kept, std::ios::binary);

@@ -100,7 +100,7 @@ def test_a_definition_out_of_the_file_is_never_used():
     """genpy would turn it into a program."""
     kind = type(text(""))
     for name, md5sum, said in (
-        ("std_msgs/String", "0" * 32, "another definition of std_msgs/String than the installed one"),
+        ("std_msgs/String", "0" * 32, "different definition of std_msgs/String than the installed one"),
         ("nobody_msgs/Nothing", kind._md5sum, "is of nobody_msgs/Nothing, which is not installed"),
         ("../../etc/passwd", kind._md5sum, "which is not installed"),
         ("no name", kind._md5sum, "which is not installed"),
@@ -140,5 +140,5 @@ def test_what_is_no_file_is_refused():
     with pytest.raises(OSError, match="nowhere"):
         BagFile(Path("nowhere.bag"))
     Path("empty.bag").touch()
-    with pytest.raises(BagFileError, match=r"empty\.bag is no ROS 1 bag that can be read: "):
+    with pytest.raises(BagFileError, match=r"empty\.bag is not a readable ROS 1 bag: "):
         BagFile(Path("empty.bag"))

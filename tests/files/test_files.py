@@ -58,9 +58,8 @@ def test_a_path_counts_from_the_callers_folder_and_a_tilde_is_the_home(tmp_path,
 
 def test_both_languages_say_what_was_given_what_it_became_and_why_it_does_not_open(tmp_path, monkeypatch):
     monkeypatch.setenv("ROBOT_CONTROL_CALLER_FOLDER", str(tmp_path))
-    why = "cannot be opened or written: No such file or directory"
-    sentence = f"mine.urdf ({tmp_path}/mine.urdf) {why}"
-    assert file_error(given_path("mine.urdf"), "No such file or directory") == sentence
+    sentence = f"mine.urdf: file not found ({tmp_path}/mine.urdf)"
+    assert file_error(given_path("mine.urdf"), "file not found") == sentence
     with pytest.raises(RobotError, match=re.escape(sentence)):
         ClosedLoop(urdf="mine.urdf")
     with pytest.raises(DriverError, match=re.escape(sentence.replace("urdf", "xml"))):

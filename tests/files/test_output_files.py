@@ -29,13 +29,13 @@ def test_what_cannot_be_written_is_refused_by_name(tmp_path):
     (tmp_path / "input").touch()
     (tmp_path / "same").symlink_to("input")
     for outputs, said in (
-        ([tmp_path], "it is a folder"),
-        ([tmp_path / "none" / "file"], f"there is no folder {tmp_path / 'none'}"),
-        ([tmp_path / "away"], f"there is no folder {tmp_path / 'none'}"),
+        ([tmp_path], "is a folder"),
+        ([tmp_path / "none" / "file"], f"folder {tmp_path / 'none'} not found"),
+        ([tmp_path / "away"], f"folder {tmp_path / 'none'} not found"),
         ([tmp_path / "loop"], "its symbolic link leads to itself"),
         ([tmp_path / "input"], "is an input of this program"),
         ([tmp_path / "same"], "is an input of this program"),
-        ([tmp_path / "a", tmp_path / "b", tmp_path / "a"], "is named for two outputs"),
+        ([tmp_path / "a", tmp_path / "b", tmp_path / "a"], "is the name of two outputs"),
     ):
         with pytest.raises(ValueError, match=said):
             check_outputs(outputs, [tmp_path / "input"])
@@ -44,7 +44,7 @@ def test_what_cannot_be_written_is_refused_by_name(tmp_path):
 def test_a_picture_has_the_suffix_of_one():
     check_picture(Path("a.png"))
     for name in ("a", "a.docx", "/dev/null"):
-        with pytest.raises(ValueError, match="is no picture: its suffix is none of"):
+        with pytest.raises(ValueError, match="is not a picture: its suffix must be one of"):
             check_picture(Path(name))
 
 
@@ -74,5 +74,5 @@ def test_no_robot_is_driven_for_a_file_that_cannot_be_written(program, option, t
     main = module_of(program)
     monkeypatch.setattr(main, "running_settings", None)  # it is not reached
     monkeypatch.setattr("sys.argv", [f"{program}.py", option, str(tmp_path / "none" / "out.yaml")])
-    with pytest.raises(SystemExit, match="there is no folder"):
+    with pytest.raises(SystemExit, match=r"folder .* not found"):
         main.main()

@@ -37,7 +37,7 @@ def refused(payload, topic="order", words="", **options):
         (b'{"headerId": NaN}', "no JSON"),
         (b'{"headerId": 1e999}', "must be finite"),
         (b'{"headerId": 1, "headerId": 2}', "a name twice"),
-        (b"\xff", "no JSON of UTF-8"),
+        (b"\xff", "not JSON in UTF-8"),
         (b"", "no JSON"),
         (b"[]", "must be an object"),
         (b'{"headerId": ' + b"9" * 5000 + b"}", "JSON"),

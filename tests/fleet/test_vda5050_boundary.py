@@ -153,7 +153,7 @@ def test_instant_actions_that_never_end_are_bounded_and_a_pause_is_taken():
         run.client.receive("instantActions", encoded({**header(), "actions": [action("horn", number)]}), run.now)
     state = run.send({**header(), "actions": [action("startPause", "p")]})
     assert (len(state["actionStates"]), state["paused"]) == (101, True)
-    assert "100 instant actions are not over" in state["errors"][0]["errorDescription"]
+    assert "100 instant actions have not ended" in state["errors"][0]["errorDescription"]
 
 
 def test_a_flood_of_what_concerns_the_order_is_bounded_and_each_of_it_is_taken():

@@ -227,7 +227,7 @@ TEST_F(ABagLog, SaysThatItsFileWasRemovedCountsAndBeginsAnother) {
   open();
   drive_on(1500);
   std::filesystem::remove_all(folder.path() / "log");
-  EXPECT_THAT([&] { drive_on(1000); }, ThrowsMessage<LogError>(HasSubstr("is not there any more")));
+  EXPECT_THAT([&] { drive_on(1000); }, ThrowsMessage<LogError>(HasSubstr("was removed while it was written")));
   EXPECT_TRUE(log->broken());
   drive_on(1500);
   log->poll(1);

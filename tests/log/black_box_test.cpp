@@ -116,11 +116,11 @@ TEST_F(ABlackBox, HoldsTheRowsOfTheOtherNodesWhereOneIsDead) {
 
 TEST_F(ABlackBox, IsNothingElse) {
   folder.write("ring", std::string(5 << 20, 'x'));
-  EXPECT_THAT([&] { save(); }, ThrowsMessage<LogError>(HasSubstr("is no black box of this version")));
+  EXPECT_THAT([&] { save(); }, ThrowsMessage<LogError>(HasSubstr("is not a black box of this version")));
   std::filesystem::remove(path("ring"));
   std::filesystem::create_directories(path("ring"));
   folder.write("ring/run.bag", "");
-  EXPECT_THAT([&] { save(); }, ThrowsMessage<LogError>(HasSubstr("is no black box of this version")));
+  EXPECT_THAT([&] { save(); }, ThrowsMessage<LogError>(HasSubstr("is not a black box of this version")));
 }
 
 }  // namespace robot_control::tests

@@ -122,7 +122,7 @@ TEST_F(ADamagedBlackBox, LeavesNoBagWhereItsBagCannotBeWritten) {
   const rlimit full{.rlim_cur = 300'000, .rlim_max = before.rlim_max};
   std::signal(SIGXFSZ, SIG_IGN);
   setrlimit(RLIMIT_FSIZE, &full);
-  EXPECT_THAT([&] { save(); }, ThrowsMessage<LogError>(HasSubstr("make room")));
+  EXPECT_THAT([&] { save(); }, ThrowsMessage<LogError>(HasSubstr("remove files")));
   setrlimit(RLIMIT_FSIZE, &before);
   EXPECT_FALSE(fs::exists(path("saved")));
   folder.write("saved", "a file, no folder");

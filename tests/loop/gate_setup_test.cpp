@@ -112,8 +112,9 @@ TEST(RequireNeeds, NamesEverythingThatTheDriverLacksWithTheRemedy) {
   };
   EXPECT_EQ(refusal({.modes = {JointMode::kBrake}, .inputs = {MachineInput::kJointMotion}}), "");
   EXPECT_EQ(refusal({.modes = {JointMode::kImpedance}, .inputs = {MachineInput::kImu, MachineInput::kContacts}}),
-            "this kind of robot needs what its driver lacks: commands of impedances: let the driver compute their "
-            "torques (drivers/joint_law.h); an IMU: set robot.imu to topic and start the IMU's node, or use a "
+            "this kind of robot needs functions that its driver does not have: commands of impedances: add the "
+            "computation of torques to the driver (drivers/joint_law.h); an IMU: set robot.imu to topic and start the "
+            "IMU's node, or use a "
             "driver with an IMU; forces of contacts: use a driver with contact sensors");
   EXPECT_THAT(refusal({.modes = {JointMode::kBrake, JointMode::kDriveVelocity}}),
               HasSubstr("set robot.wheel_command to torque"));
@@ -130,7 +131,7 @@ TEST(DriverCycleAndGate, AStopActionThatTheDriverDoesNotImplementIsRefusedAtStar
   };
   EXPECT_EQ(refusal(StopKind::kBrake), "");
   EXPECT_EQ(refusal(StopKind::kCoast), "joint " + two_wheels().joints[1].name +
-                                           " is to be stopped by the action \"coast\", which this driver does not "
+                                           " must be stopped by the action \"coast\", which this driver does not "
                                            "implement. Set robot.fail_action to brake.");
   EXPECT_THAT(refusal(StopKind::kDamp), HasSubstr("\"damp\""));
 }

@@ -39,7 +39,7 @@ struct AFullDisk : Losses {
     expect_lives(LoopNode::kTelemetry);
     const std::string said = nodes().said(LoopNode::kTelemetry);
     EXPECT_NE(said.find(why), std::string::npos) << said;
-    EXPECT_NE(said.find("make room"), std::string::npos) << said;
+    EXPECT_NE(said.find("remove files"), std::string::npos) << said;
     EXPECT_EQ(std::count(said.begin(), said.end(), '\n'), 1) << "once: " << said;
   }
 
@@ -78,7 +78,7 @@ TEST_F(NightlyFullDisk, IsReportedAndCountedAsAFolderThatIsRemoved) {
   expect_drives_on(kRingRows + 500);
   EXPECT_EQ(nodes().controls().lost_rows.load(), 0u) << "by the rings";
   expect_lives(LoopNode::kTelemetry);
-  EXPECT_NE(nodes().said(LoopNode::kTelemetry).find("is not there any more"), std::string::npos);
+  EXPECT_NE(nodes().said(LoopNode::kTelemetry).find("was removed while it was written"), std::string::npos);
 }
 
 /// A file system cannot be made read-only while a log on it is open. But a read-only one may be mounted over the

@@ -146,7 +146,7 @@ TEST(DriveTrain, OverridesBeyondOnePercentAreNotedOnce) {
   for (const RobotNote& note : read_drive_train(diffbot_urdf(), parameters).notes) {
     if (note.kind == RobotNote::Kind::kOverridden) noted.push_back(note.element);
   }
-  EXPECT_EQ(noted, (std::vector<std::string>{"robot/wheel_radius", "robot/mass"}));
+  EXPECT_EQ(noted, (std::vector<std::string>{"robot.wheel_radius", "robot.mass"}));
 }
 
 TEST(DriveTrain, RadiusMultipliersApplyToTheWheelsOfTheirSide) {
@@ -233,8 +233,8 @@ TEST(DriveTrain, AnotherPlaceOfTheImuReplacesTheUrdfs) {
     if (note.kind == RobotNote::Kind::kOverridden) noted.push_back(note.element + ": " + note.text);
   }
   EXPECT_EQ(noted, (std::vector<std::string>{
-                       "robot/imu_position: -0.1, 0.03, 0.2 m holds, the URDF says 0.05, 0.02, 0.06 m",
-                       "robot/imu_orientation: 1.5708, 0, 1.5708 rad holds, the URDF says 0, 0, 0 rad"}));
+                       "robot.imu_position: -0.1, 0.03, 0.2 m is used, the URDF has 0.05, 0.02, 0.06 m",
+                       "robot.imu_orientation: 1.5708, 0, 1.5708 rad is used, the URDF has 0, 0, 0 rad"}));
 }
 
 // The differences are 4 mm of a wheel base of 0.5 m, and 0.005 rad: the accuracy of a ruler and of a screw.

@@ -70,7 +70,7 @@ TEST(JointRanges, TheUsersEffortRateHoldsForEveryWheel) {
 TEST(JointRanges, AnEffortRateOfZeroIsRefused) {
   DriveTrainParameters parameters;
   parameters.wheel_effort_rate = 0;
-  EXPECT_THAT(refusal_of(robot_of(two_wheels()), parameters), HasSubstr("robot/wheel_effort_rate"));
+  EXPECT_THAT(refusal_of(robot_of(two_wheels()), parameters), HasSubstr("robot.wheel_effort_rate"));
 }
 
 TEST(JointRanges, NothingLimitsTheEffortRateOfOtherJoints) {

@@ -36,7 +36,7 @@ TEST(Caster, IsAnOmniWheelWithoutASwivel) {
   const DriveTrain robot = read_drive_train(robot_of(two_wheels() + wheel("rear", "-0.3 0 0")), {});
   ASSERT_EQ(robot.casters.size(), 1u);
   EXPECT_TRUE(robot.casters[0].omni);
-  EXPECT_THAT(notes_of(robot, RobotNote::Kind::kAssumed), HasSubstr("no swivel turns it"));
+  EXPECT_THAT(notes_of(robot, RobotNote::Kind::kAssumed), HasSubstr("it has no swivel"));
 }
 
 /// Two wheels on an arm on the side of `y`, which pitches about the body's middle.
@@ -131,7 +131,7 @@ TEST(ScrubMultiplier, IsDoubtfulForUnequalLoads) {
 
 TEST(Tracks, AreRefusedForTheirManyRollers) {
   EXPECT_THAT(refusal_of(robot_of(axles({"0.4", "0.2", "0", "-0.2", "-0.4"}))),
-              HasSubstr("10 wheels roll, and nothing says which of them drive: tracks are not supported"));
+              HasSubstr("it is not clear which of 10 wheels drive, and tracks are not supported"));
 }
 
 TEST(Tracks, DriveOnTheWheelsThatAreGiven) {

@@ -63,7 +63,8 @@ std::string driven_by(const std::string& left, const std::string& right) {
 
 TEST(Suspicious, AVelocityLimitThatNoWheelReachesMayBeInDegrees) {
   const std::string speed = "effort=\"5\" velocity=\"573\"";
-  EXPECT_THAT(driven_by(speed, speed), HasSubstr("573 rad/s is 57.3 m/s at its rim: is it in degrees per second"));
+  EXPECT_THAT(driven_by(speed, speed),
+              HasSubstr("573 rad/s is 57.3 m/s at its rim: check whether it is in degrees per second"));
   const std::string slow = "effort=\"5\" velocity=\"30\"";
   EXPECT_THAT(driven_by(slow, slow), Not(HasSubstr("at its rim")));
 }
@@ -99,12 +100,12 @@ std::string arm_of(const std::string& effort) {
 
 TEST(Suspicious, AHeldJointThatIsTooWeakForItsLoad) {
   EXPECT_THAT(arm_of("9.7"),
-              HasSubstr("<joint name=\"shoulder\">: its effort limit of 9.7 N·m does not hold its load of 9.81"));
+              HasSubstr("<joint name=\"shoulder\">: its effort limit of 9.7 N·m is below its load of 9.81"));
   EXPECT_THAT(arm_of("9.9"), Not(HasSubstr("shoulder")));
 }
 
 TEST(Suspicious, AJointThatNothingHolds) {
-  EXPECT_THAT(arm_of("0"), HasSubstr("<joint name=\"shoulder\">: no effort limit above zero is given"));
+  EXPECT_THAT(arm_of("0"), HasSubstr("<joint name=\"shoulder\">: no effort limit above zero"));
 }
 
 TEST(Suspicious, OuterWheelsOfADeepMiddlePairThatDoNotDrive) {
@@ -118,10 +119,10 @@ TEST(Suspicious, OuterWheelsOfADeepMiddlePairThatDoNotDrive) {
     }
     return suspicion(text);
   };
-  EXPECT_THAT(six(0.01), AllOf(HasSubstr("ends 10 mm above them: taken as passive, only 2 wheels drive"),
-                               HasSubstr("robot/left_wheel_joints")));
+  EXPECT_THAT(six(0.01), AllOf(HasSubstr("lowest point is 10 mm above theirs: assumed passive, only 2 wheels drive"),
+                               HasSubstr("robot.left_wheel_joints")));
   EXPECT_THAT(six(-0.01), HasSubstr("only 4 wheels drive"));
-  EXPECT_THAT(six(0), Not(HasSubstr("taken as passive")));
+  EXPECT_THAT(six(0), Not(HasSubstr("assumed passive")));
 }
 
 std::string base_of(double radius, double wheel_base) {
@@ -173,7 +174,7 @@ TEST(Suspicious, MassesInGrams) {
 TEST(Suspicious, ABaseThatWeighsNextToNothing) {
   expect_suspicion(
       20, [](Made& m, Random& random) { m.mass = between(random, 0.001, 0.1) * m.wheel_mass; },
-      "<link name=\"base_link\">: it and what is fixed to it weigh only");
+      "<link name=\"base_link\">: it and the links fixed to it weigh only");
 }
 
 TEST(Suspicious, WheelsOfSixtyCentimetresAndMoreThatStandCloseTogether) {
@@ -198,7 +199,7 @@ TEST(Suspicious, ACentreOfGravityThatTipsTheRobotWhenItBrakes) {
 
 TEST(Suspicious, ARobotThatOnlyItsDriveWheelsCarry) {
   expect_suspicion(
-      20, [](Made& m, Random&) { m.casters = false; }, "carries it on one side of its centre of gravity");
+      20, [](Made& m, Random&) { m.casters = false; }, "supports it on one side of its centre of gravity");
 }
 
 TEST(Suspicious, NothingOfARobotWhoseSpringsLetItStandOtherwise) {
@@ -247,7 +248,7 @@ TEST(Suspicious, AWorldThatTheRobotIsFixedToFarAway) {
            made({});
   };
   EXPECT_EQ(suspicion(world(0.5)), "");
-  EXPECT_THAT(suspicion(world(50)), HasSubstr("<link name=\"world\">: it lies 50"));
+  EXPECT_THAT(suspicion(world(50)), HasSubstr("<link name=\"world\">: it is 50"));
 }
 
 struct Files : testing::Test {
@@ -297,7 +298,7 @@ TEST_F(Files, AMissingCollisionMeshOfWhatTouchesNothingIsNoted) {
   const DriveTrain robot =
       read_drive_train(with(two_wheels() + casters() + part("top", shell("package://nowhere/top.stl"))), {});
   EXPECT_THAT(notes_of(robot, RobotNote::Kind::kSuspicious),
-              AllOf(HasSubstr("<link name=\"top\">"), HasSubstr("top.stl"), HasSubstr("left out")));
+              AllOf(HasSubstr("<link name=\"top\">"), HasSubstr("top.stl"), HasSubstr("ignored")));
 }
 
 // Two wheels and a missing caster would fall over, and nothing would tell why.
@@ -328,13 +329,13 @@ TEST(Suspicious, AnArmWhoseTipWheelCountsAsACastersBecauseNothingHoldsIt) {
   const std::string lateral = "<axis xyz=\"0 1 0\"/>",
                     motor = R"(<limit lower="-1" upper="1" effort="20" velocity="1"/>)";
   const auto noted =
-      AllOf(HasSubstr("<joint name=\"shoulder\">: it has an effort limit of 20 N·m, but nothing holds it"),
+      AllOf(HasSubstr("<joint name=\"shoulder\">: it has an effort limit of 20 N·m, but no motor holds it"),
             HasSubstr("the wheel of tip_joint"), HasSubstr("more than 30 mm above the ground"));
   EXPECT_THAT(suspicion(tip_wheel(0.002, lateral, motor)), noted);
-  EXPECT_THAT(suspicion(tip_wheel(0.031, lateral, motor)), Not(HasSubstr("nothing holds it, because")));
+  EXPECT_THAT(suspicion(tip_wheel(0.031, lateral, motor)), Not(HasSubstr("no motor holds it, because")));
   EXPECT_THAT(suspicion(tip_wheel(0.002, "<axis xyz=\"0 0 1\"/>", motor)), Not(HasSubstr("shoulder")));
   EXPECT_THAT(suspicion(tip_wheel(0.002, lateral, R"(<limit lower="-1" upper="1" effort="0" velocity="1"/>)")),
-              Not(HasSubstr("nothing holds it, because")));
+              Not(HasSubstr("no motor holds it, because")));
 }
 
 }  // namespace robot_control::tests

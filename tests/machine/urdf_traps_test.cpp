@@ -53,7 +53,7 @@ TEST(UrdfTraps, AFreeJointOnAnEmptyRootLinkSaysNothingButThatTheRobotIsFree) {
     EXPECT_EQ(notes_of(free, RobotNote::Kind::kSuspicious), notes_of(robot, RobotNote::Kind::kSuspicious));
     EXPECT_EQ(notes_of(free, RobotNote::Kind::kIgnored),
               notes_of(robot, RobotNote::Kind::kIgnored) + "<joint name=\"world_joint\">: type=\"" + type +
-                  "\" on the empty root link world says that the robot is free: base_link is its base, and the joint's "
+                  "\" on the empty root link world marks the robot as free: base_link is its base, and the joint's "
                   "origin is not used\n");
   }
 }

@@ -152,10 +152,10 @@ TEST_F(MapFileTest, EachWrongPictureIsRefused) {
     return refusal("", "");
   };
   EXPECT_THAT(refused("P5 3 2 255\n12345"), HasSubstr("is truncated: it has 5 of 6 pixels"));
-  EXPECT_THAT(refused("P5 10000 10000 255\n123"), HasSubstr("10000 x 10000 cells: 1 to 25000000 are taken"));
+  EXPECT_THAT(refused("P5 10000 10000 255\n123"), HasSubstr("10000 x 10000 cells: 1 to 25000000 are allowed"));
   EXPECT_THAT(refused("P5 -3 2 255\n123456"), HasSubstr("-3 x 2 cells"));
   EXPECT_THAT(refused("P5 3 2 65535\n123456789012"), HasSubstr("has 65535 grey values"));
-  EXPECT_THAT(refused("P5 3 # 2"), HasSubstr("the head of the PGM is incomplete"));
+  EXPECT_THAT(refused("P5 3 # 2"), HasSubstr("the header of the PGM is incomplete"));
   EXPECT_THAT(refused("\x89PNG"), HasSubstr("is not a binary PGM (P5)"));
   EXPECT_THAT(refused(""), HasSubstr("is not a binary PGM (P5)"));
 }

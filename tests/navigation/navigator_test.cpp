@@ -76,7 +76,7 @@ TEST_F(NavigatorTest, AGoalInAWallIsRefusedAtOnce) {
   navigator_.begin({3.15, 0.3, 0}, now_);
   step();
   EXPECT_EQ(out_.state, State::kFailed);
-  EXPECT_THAT(out_.reason, HasSubstr("lies in an obstacle"));
+  EXPECT_THAT(out_.reason, HasSubstr("is in an obstacle"));
 }
 
 TEST_F(NavigatorTest, ANewGoalTakesThePlaceOfTheOneBeforeWithoutAStop) {
@@ -116,7 +116,7 @@ TEST_F(NavigatorTest, ADoorThatIsShutWhileItDrivesIsWaitedForAndPassedWhenItOpen
   box(31, 16);
   run(8);
   EXPECT_EQ(out_.state, State::kWaiting);
-  EXPECT_THAT(out_.reason, HasSubstr("there is no way"));
+  EXPECT_THAT(out_.reason, HasSubstr("no path"));
   EXPECT_GT(least_air_, 0);
   box(31, 16, kFreeCell);
   run(20);

@@ -16,14 +16,14 @@ struct ScanWatchTest : testing::Test {
 };
 
 TEST_F(ScanWatchTest, AHealthyScanCounts) {
-  EXPECT_THAT(watch_.problem(10), HasSubstr("no scan has come"));
+  EXPECT_THAT(watch_.problem(10), HasSubstr("no scan received"));
   EXPECT_EQ(watch_.receive(healthy(), "laser", 10, 10, 0), "");
   EXPECT_EQ(watch_.problem(10.1), "");
 }
 
 TEST_F(ScanWatchTest, EachMessageThatIsNoScanIsRefused) {
   const auto nan = std::nan("");
-  EXPECT_THAT(refusal([](Scan& scan) { scan.ranges.clear(); }), HasSubstr("has 0 rays: 2 to 20000"));
+  EXPECT_THAT(refusal([](Scan& scan) { scan.ranges.clear(); }), HasSubstr("has 0 rays: allowed are 2 to 20000"));
   EXPECT_THAT(refusal([](Scan& scan) { scan.ranges.resize(1); }), HasSubstr("has 1 rays"));
   EXPECT_THAT(refusal([](Scan& scan) { scan.ranges.resize(100'000); }), HasSubstr("has 100000 rays"));
   EXPECT_THAT(refusal([](Scan& scan) { scan.angle_increment = 0; }), HasSubstr("the increment not zero"));
@@ -47,7 +47,7 @@ TEST_F(ScanWatchTest, ALaserOnItsHeadIsTaken) {
 
 TEST_F(ScanWatchTest, SilenceAndWrongStampsAreNamed) {
   watch_.receive(healthy(), "laser", 10, 10, 0);
-  EXPECT_THAT(watch_.problem(10.6), HasSubstr("silent for 0.6 s"));
+  EXPECT_THAT(watch_.problem(10.6), HasSubstr("no scan for 0.6 s"));
   watch_.receive(healthy(1), "laser", 10.1, 11, 0);
   EXPECT_THAT(watch_.problem(11), HasSubstr("stamps of scan are 0.9 s old"));
   watch_.receive(healthy(), "laser", 20, 11.1, 0);
@@ -86,7 +86,7 @@ TEST_F(ScanWatchTest, AnOpenFieldIsNotFrozenAndACoveredLaserIsBlind) {
   watch_.receive(healthy(infinity), "laser", 10.1, 10.1, 0.5);
   EXPECT_EQ(watch_.problem(10.1), "");
   watch_.receive(healthy(0), "laser", 10.2, 10.2, 0.5);
-  EXPECT_THAT(watch_.problem(10.2), HasSubstr("no range that was measured"));
+  EXPECT_THAT(watch_.problem(10.2), HasSubstr("no measured range"));
 }
 
 }  // namespace robot_control::navigation::tests

@@ -98,7 +98,7 @@ TEST_F(LiveParameters, RefusesContradictionsWithWhatHolds) {
 
 TEST_F(LiveParameters, RefusesWhatIsReadAtStartAlone) {
   EXPECT_THAT(problem("{command_rate: 100}"),
-              AllOf(HasSubstr("command_rate = 100: is read at start alone"), HasSubstr("start the node again")));
+              AllOf(HasSubstr("command_rate = 100: is read only at start"), HasSubstr("restart the node")));
 }
 
 TEST_F(LiveParameters, RefusesUnknownKeysAndMeansTheNearest) {

@@ -58,14 +58,15 @@ TEST_F(OwnGaitsTest, AreRefusedWithPathRuleAndRemedy) {
   expect({{"gait_3", "{name: pace, duty: 0.5}", {}}}, {"gait_3.name = pace", "add period, phases, lift"});
   expect({{"gait_3", "{lift: 0.05}", {}}}, {"gait_3.lift = 0.05", "add name, period, duty, phases"});
   for (const char* name : {"auto", "stand", "trot", "crawl"})
-    expect({{"gait_2.name", name, {}}}, {std::string("gait_2.name = ") + name, "taken", "another name"});
+    expect({{"gait_2.name", name, {}}},
+           {std::string("gait_2.name = ") + name, "is already the name of a gait", "another name"});
   for (const char* name : {"Amble", "an amble", "an_amble_with_17b", "\"ämble\""})
     expect({{"gait_2.name", name, {}}}, {"gait_2.name", "must be at most 16 of a … z, 0 … 9 and _"});
   expect({{"gait_4", "{name: amble, period: 0.5, duty: 0.6, phases: [0, 0.5, 0.75, 0.25], lift: 0.05}", {}}},
-         {"gait_4.name = amble", "taken"});
-  expect({{"gait_2.period", "0.12", {}}}, {"gait_2.period = 0.12", "less than 0.05 s", "raise the period"});
+         {"gait_4.name = amble", "is already the name of a gait"});
+  expect({{"gait_2.period", "0.12", {}}}, {"gait_2.period = 0.12", "less than 0.05 s", "set a longer period"});
   expect({{"gait_2.phases", "[0, 0, 0, 0]", {}}},
-         {"gait_2.phases", "two feet", "duty 0.6 they leave 0", "raise the duty"});
+         {"gait_2.phases", "two feet", "duty 0.6 they leave 0", "set a larger duty"});
   expect({{"gait_2.phases", "[0, 0, 0.25, 0.5]", {}}}, {"they leave 1"});
 }
 
@@ -95,12 +96,12 @@ TEST_F(OwnGaitsTest, AreRefusedIfTheyTipOver) {
     }
     EXPECT_EQ(problems_in(refusal(changes)), 1u);
     EXPECT_THAT(refusal(changes), HasSubstr("gait_3.duty = "));
-    EXPECT_THAT(refusal(changes), HasSubstr("raise the duty, or lower the period"));
+    EXPECT_THAT(refusal(changes), HasSubstr("set a larger duty or a shorter period"));
   }
-  EXPECT_THAT(
-      refusal({{"gait_3", gait_of(pace, 0.36, 0.18), {}}}),
-      HasSubstr("lets the feet of one side bear alone for 0.18 s, in 1 of the period, and the body tips over: at "
-                "most 0.122 s, and time · part of the period at most 0.07 s"));
+  EXPECT_THAT(refusal({{"gait_3", gait_of(pace, 0.36, 0.18), {}}}),
+              HasSubstr("lets the feet of one side are in stance by themselves for 0.18 s, in 1 of the period, so the "
+                        "body tips over: at "
+                        "most 0.122 s, and time · part of the period at most 0.07 s"));
 }
 
 }  // namespace robot_control::tests

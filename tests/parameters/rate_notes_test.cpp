@@ -24,7 +24,7 @@ TEST(RateNotes, NameTheTimeFromALossToTheBrake) {
   EXPECT_THAT(
       notes_at("20", "safety_monitor"),
       ElementsAre("at robot.rate = 20 Hz, the brake follows within 20 cycles (loss_cycles), which are 1 s, after a "
-                  "node of the loop has stopped: lower the speed limits, or raise robot.rate"));
+                  "node of the loop has stopped: set lower speed limits or a higher robot.rate"));
 }
 
 }  // namespace robot_control::tests

@@ -119,7 +119,7 @@ def test_what_surprises_the_program_stops_what_moves_first(boundary: Boundary, s
     with boundary.crossing("order"):
         raise ZeroDivisionError("division by zero")
     assert order[0] == "stopped"
-    assert order[1].startswith("order: an input is dropped (1 until now): ZeroDivisionError: division by zero (")
+    assert order[1].startswith("order: an input is ignored (1 until now): ZeroDivisionError: division by zero (")
     assert boundary.dropped == {"order": 1}
 
 
@@ -141,7 +141,7 @@ def test_an_input_that_the_checks_refuse_stops_nothing(boundary: Boundary, said:
     boundary.stops(lambda: stopped.append(1))
     with boundary.crossing("odom"):
         raise UnfitError("must be finite")
-    assert (stopped, said) == ([], ["odom: an input is dropped (1 until now): must be finite"])
+    assert (stopped, said) == ([], ["odom: an input is ignored (1 until now): must be finite"])
 
 
 def test_a_flood_is_named_ever_more_rarely(boundary: Boundary, said: list[str]) -> None:
@@ -186,7 +186,7 @@ def test_a_message_that_is_too_long_for_its_type_is_refused_before_it_is_read(ki
 
 
 def test_a_text_with_a_zero_byte_is_refused() -> None:
-    with pytest.raises(UnfitError, match="child_frame_id must have no zero byte"):
+    with pytest.raises(UnfitError, match="child_frame_id must not contain a zero byte"):
         opened(sealed(Odometry, wire(Odometry(child_frame_id="a\0b"))))
 
 

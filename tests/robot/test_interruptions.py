@@ -97,7 +97,7 @@ def test_a_pause_of_the_program_interrupts_what_it_did():
     made.step(0.1 + GAP)
     assert made.count == 0
     made.step(0.11 + 2 * GAP)
-    assert made.revoked(0.1 + GAP) == "this program stood still for 1.0 s"
+    assert made.revoked(0.1 + GAP) == "this program did not run for 1.0 s"
     assert made.revoked(0.2 + 2 * GAP) == ""
 
 

@@ -65,7 +65,7 @@ TEST_F(RetuningTest, DerivesFromTheNewValuesWhatWasDerived) {
 TEST_F(RetuningTest, RefusesTheWholeSetWithEveryReason) {
   const std::string text = refusal("{max_linear_speed: 3, pid_kp: 20, pid_kd: .nan, command_rate: 1, typo: 2}");
   EXPECT_THAT(text, HasSubstr("set_parameters refused, nothing is changed: 5 problems\n"));
-  for (const char* reason : {"safety_monitor", "unstable", "must be finite", "read at start alone", "unknown key"}) {
+  for (const char* reason : {"safety_monitor", "unstable", "must be finite", "read only at start", "unknown key"}) {
     EXPECT_THAT(text, HasSubstr(reason));
   }
   EXPECT_EQ(retuning.in_force().controller.max_linear_speed, 1.0);
@@ -77,7 +77,7 @@ TEST_F(RetuningTest, RefusesSpeedsAtWhichTheMonitorWouldStopTheRobot) {
   retuning.set("{max_linear_speed: 1.2}");
   const std::string text = refusal("{max_linear_speed: 1.25}");
   EXPECT_THAT(text, AllOf(HasSubstr("turns a wheel at 17.5 rad/s"), HasSubstr("beyond 18.75 rad/s"),
-                          HasSubstr("max_linear_speed + 0.25 m·max_angular_speed at or below 1.705 m/s")));
+                          HasSubstr("max_linear_speed + 0.25 m·max_angular_speed to at most 1.705 m/s")));
   retuning.set("{max_linear_speed: 1.4, max_angular_speed: 1.2}");  // 1.7 m/s at the rim
 }
 

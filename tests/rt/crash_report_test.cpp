@@ -98,7 +98,7 @@ TEST(CrashReport, TruncatedSharedMemoryIsNamedWithItsRemedyAndTheConsequence) {
   EXPECT_EQ(lines_of(death.words), 1);
   EXPECT_THAT(death.words,
               AllOf(StartsWith("some_node: SIGBUS at 0x"), HasSubstr("shared memory was truncated"),
-                    HasSubstr("the process ends, the motors brake without it"), HasSubstr("remedy: look at 'df")));
+                    HasSubstr("the process ends, the motors brake without it"), HasSubstr("remedy: check 'df")));
 }
 
 TEST(CrashReport, NamesTheSignalAndItsReasonInOneLine) {

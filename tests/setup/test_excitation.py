@@ -112,7 +112,7 @@ def test_a_healthy_robot_may_be_driven():
         ({"linear": 0.2}, "the robot moves"),
         ({"speed_limit": 0.3}, "limited to 0.3 m/s"),
         ({"state": "STOPPED", "sentences": ("the e-stop is pressed",)}, "the e-stop is pressed; remove the cause"),
-        ({"state": "INIT", "missing": ("state_estimator",)}, "waiting: state_estimator; do what is named"),
+        ({"state": "INIT", "missing": ("state_estimator",)}, "waiting: state_estimator; apply the remedy"),
     ],
 )
 def test_says_why_it_cannot_begin(broken, said):
@@ -135,4 +135,4 @@ def test_stops_when_something_is_not_as_planned(broken, said):
 
 
 def test_stops_when_the_robot_does_not_answer():
-    assert "stands; rosrun robot_control why.py" in interruption(observation(), START, 0.7, ANSWER + 0.1)
+    assert "does not move; check: rosrun robot_control why.py" in interruption(observation(), START, 0.7, ANSWER + 0.1)

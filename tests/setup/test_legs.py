@@ -94,8 +94,8 @@ def test_a_closed_loop_on_legs_moves_its_joints_while_it_lies_and_stands_up():
 @pytest.mark.parametrize(
     ("call", "words"),
     [
-        (lambda loop: loop.set_posture("sitting"), "there is no posture 'sitting'; name one of lying, standing"),
-        (lambda loop: loop.foot_target("tail"), "there is no foot 'tail'; name one of front_left, front_right"),
+        (lambda loop: loop.set_posture("sitting"), "unknown posture 'sitting'; set one of lying, standing"),
+        (lambda loop: loop.foot_target("tail"), "unknown foot 'tail'; set one of front_left, front_right"),
         (lambda loop: loop.joint_targets([0.0] * 11), r"positions must have the shape \(12,\)"),
     ],
 )

@@ -231,7 +231,7 @@ def test_refuses_a_file_that_is_none(tmp_path, what, text, error, said):
 def test_refuses_a_command_that_is_not_two_or_three_numbers(loop, command):
     with pytest.raises(TypeError, match="linear, angular"):
         loop.run(0.01, command)
-    assert drive(loop, 0.01)["time"].shape == (10,), "the loop goes on"
+    assert drive(loop, 0.01)["time"].shape == (10,), "the loop continues"
 
 
 def test_refuses_to_step_inside_its_own_run(loop):

@@ -172,7 +172,7 @@ def test_one_loop_has_several_futures():
 
 def test_simulated_drives_are_not_copied():
     loop = ClosedLoop(drives=share_file("config/drives/cia402.yaml"))
-    with pytest.raises(DriverError, match="cannot be cloned; make another one"):
+    with pytest.raises(DriverError, match="cannot be cloned; create another one"):
         loop.clone()
 
 

@@ -1,4 +1,4 @@
-"""When the feet of a robot on legs were asked to bear, and when they bore, from a log."""
+"""When the feet of a robot on legs were commanded stance, and when they bore, from a log."""
 
 from dataclasses import dataclass
 

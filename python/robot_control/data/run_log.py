@@ -101,7 +101,7 @@ def read_run(path: Path | str, columns: Sequence[str] = ()) -> RunLog:
     """As `read_log`, with what stands around the rows."""
     path = Path(path)
     if not is_bag(path):
-        raise LogError(f"{path} is no run.bag (a run.csv is a table that export.py makes of one, for other programs)")
+        raise LogError(f"{path} is not a run.bag (export.py makes a run.csv of one, for other programs)")
     try:
         read = read_run_bag(utf8(path), list(columns))
     except (BagError, TraceError, RuntimeError) as error:

@@ -49,7 +49,7 @@ class BagFile:
         head: dict[str, Any] = json.loads(data)
         self.cut = head["cut"]
         if self.cut and head["count"] == 0:
-            raise BagFileError(f"{path} holds no message that can be read: {self.cut}")
+            raise BagFileError(f"{path} contains no readable message: {self.cut}")
         self.connections = {int(number): tuple(fields) for number, fields in head["connections"].items()}
         self.topics = {}
         for topic, kind, _, _ in self.connections.values():
@@ -100,7 +100,7 @@ class BagFile:
                 data = answer.read(size)
                 if number == ERROR:
                     reason = printable(data.decode(errors="replace"))
-                    raise BagFileError(f"{self._path} is no ROS 1 bag that can be read: {reason}")
+                    raise BagFileError(f"{self._path} is not a readable ROS 1 bag: {reason}")
                 if number == END:
                     self._reader = reader
                     return
@@ -131,6 +131,6 @@ class BagFile:
             raise BagFileError(f"{self._path}: {printable(topic)} is of {printable(name)}, which is not installed")
         sums = [md5sum for of, _, md5sum, _ in self.connections.values() if of == topic]
         if any(md5sum != kind._md5sum for md5sum in sums):  # noqa: SLF001 (genpy's name)
-            why = f"{self._path}: {printable(topic)} has another definition of {name} than the installed one"
+            why = f"{self._path}: {printable(topic)} has a different definition of {name} than the installed one"
             raise BagFileError(why)
         return kind

@@ -1,6 +1,7 @@
 """Files that a user names, their errors, and text from them in a message: the same rules as src/files/."""
 
 import contextlib
+import errno
 import os
 import re
 import shutil
@@ -25,7 +26,9 @@ _given: dict[str, str] = {}
 """The given text of every resolved path that differs from it"""
 
 _KINDS = {stat.S_IFDIR: "a folder", stat.S_IFIFO: "a FIFO", stat.S_IFSOCK: "a socket"}
-"""of what is no regular file; anything else is a device"""
+"""of what is not a regular file; anything else is a device"""
+_FAILURES = {errno.EISDIR: "is a folder, not a file", errno.ENOSPC: "cannot be written: no space left on the disk"}
+"""of a call for a file, in words; that of any other one is the system's"""
 _PARTS = re.compile("\"[^\"]*\"|'[^']*'|[^ ]+| ")
 """of a line: quoted ones, words, blanks"""
 
@@ -50,16 +53,26 @@ def file_error(path: str | os.PathLike[str], why: str) -> str:
     """A sentence that says what was given, what it became, and why it does not open."""
     became = str(Path(path).absolute())
     given = _given.get(became, os.fspath(path))
-    return f"{given}{'' if given == became else f' ({became})'} cannot be opened or written: {why}"
+    return f"{given}: {why}{'' if given == became else f' ({became})'}"
 
 
 def in_words(error: Exception) -> str:
-    """The message of any exception; of an OSError which file it is and why, without its number."""
+    """The message of any exception; of an OSError which file it is and which operation failed, without its number."""
     if not isinstance(error, OSError) or error.strerror is None:
         return str(error)
     if error.filename is None:
         return error.strerror
-    return file_error(str(error.filename), error.strerror)
+    return file_error(str(error.filename), _failure(str(error.filename), error))
+
+
+def _failure(path: str, error: OSError) -> str:
+    folder = str(Path(path).absolute().parent)
+    if error.errno == errno.ENOENT:
+        return "file not found" if Path(folder).is_dir() else f"folder {folder} not found"
+    if error.errno == errno.EACCES:
+        writes = os.access(path, os.R_OK) or (os.access(folder, os.X_OK) and not os.path.lexists(path))
+        return f"no permission to {'write' if writes else 'read'} it"
+    return _FAILURES.get(error.errno or 0, str(error.strerror))
 
 
 @contextlib.contextmanager
@@ -82,7 +95,7 @@ def problems_of(setting: str, path: Path, *, secret: bool, remedy: str = "") -> 
         if secret and stat.S_IMODE(path.stat().st_mode) & 0o077:
             yield f"{setting} = {path}: others can read it; chmod 600 {path}"
     except OSError as error:
-        yield f"{setting} = {path}: cannot be read: {error.strerror}{remedy}"
+        yield f"{setting} = {path}: {_failure(str(path), error)}{remedy}"
 
 
 def check_input(path: Path, max_size: int) -> None:
@@ -110,7 +123,7 @@ def utf8(text: str | bytes | os.PathLike[str] | os.PathLike[bytes]) -> str:
     try:
         name.encode()
     except UnicodeEncodeError:
-        raise InputFileError(f"{printable(name)} is not UTF-8, and only such names are read: rename it") from None
+        raise InputFileError(f"{printable(name)} is not UTF-8, but only such names are supported: rename it") from None
     return name
 
 

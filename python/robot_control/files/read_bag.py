@@ -40,7 +40,7 @@ def _open(rosbag: Any, path: str) -> tuple[Any, str]:  # noqa: ANN401 (a module 
             pass
     bag._connection_indexes_read = True  # noqa: SLF001
     chunks = len(bag._chunks)  # noqa: SLF001
-    cut = "the bag has no end: its recorder was stopped, or the copy is not whole. Read are the messages of "
+    cut = "the bag has no end: its recorder was stopped, or the copy is incomplete. Read are the messages of "
     return bag, f"{cut}{chunks} whole chunks"
 
 

@@ -34,7 +34,7 @@ DUPLICATE_SILENCE = 60.0
 DUPLICATE_CLIENT = Error(
     "connectionError",
     "another client uses this serial number",
-    hint="give each robot a serial_number of its own; then stopPause or vda5050/resume",
+    hint="set a different serial_number for each robot; then stopPause or vda5050/resume",
     fatal=True,
 )
 
@@ -126,7 +126,9 @@ class Client:
             if now - self._stepped_at > GAP:
                 self._ignore_until = now + GAP
             if now < self._ignore_until:
-                raise RefusedError("orderError", f"{topic} came while the robot's client stood still: send it again")
+                raise RefusedError(
+                    "orderError", f"{topic} arrived while the client of the robot did not run: send it again"
+                )
             if topic == "connection":
                 if is_connection(payload):  # the link passes on no own one
                     self._duplicate_until = now + DUPLICATE_SILENCE
@@ -134,7 +136,7 @@ class Client:
             if now < self._duplicate_until:
                 raise RefusedError("orderError", f"{topic}: {DUPLICATE_CLIENT.description}")
             if topic not in INBOUND or retained:
-                raise RefusedError("validationError", f"{topic} must not be retained: the robot cannot know its age")
+                raise RefusedError("validationError", f"{topic} must not be retained: its age is unknown")
             message = decoded(payload, topic, self.settings.manufacturer, self.settings.serial_number)
             if topic == "order":
                 self._take_order(message)
@@ -231,7 +233,7 @@ class Client:
 
     def _against_resuming(self) -> str:
         if not self._facts.may_drive or self._facts.silent:
-            return "the safety monitor does not permit to drive, or it or odometry is silent"
+            return "the safety monitor permits no motion, or safety_status or odom is missing"
         return DUPLICATE_CLIENT.description if self._stepped_at < self._duplicate_until else ""
 
     def _resume(self, state: ActionState) -> None:
@@ -287,7 +289,7 @@ class Client:
         except (TypeError, ValueError):
             x = y = theta = math.nan
         if self.vehicle.executing or not self.vehicle.standing:
-            why = "the robot must stand without an order"
+            why = "the robot must stand still without an order"
         elif not all(abs(each) <= FARTHEST for each in (x, y, theta)) or not 0 < len(str(given["mapId"])) <= MAX_ID:
             why = f"x, y and theta must be numbers up to {FARTHEST:g}, and mapId a name"
         else:
@@ -332,7 +334,7 @@ class Client:
     def _fail(self, reason: str) -> None:
         node = self.vehicle.nodes[0].id if self.vehicle.nodes else ""
         references = (("orderId", self.vehicle.order_id), ("nodeId", node))
-        self._driving_error = Error("drivingError", reason, references, "cancelOrder, or stopPause to go on")
+        self._driving_error = Error("drivingError", reason, references, "cancelOrder, or stopPause to continue")
         self.vehicle.paused = bool(self.vehicle.nodes)
 
     def _drive(self) -> None:
@@ -366,7 +368,7 @@ class Client:
         along, off = wanted.foot(self._facts.x, self._facts.y, OFF_EDGE)
         if off > OFF_EDGE and not self._near(wanted.begin):
             end = wanted.nodes[0].id
-            self._fail(f"the robot is {off:.2f} m off the way to node {end}, more than {OFF_EDGE:g} m")
+            self._fail(f"the robot is {off:.2f} m off the path to node {end}, more than {OFF_EDGE:g} m")
             return
         if not wanted.length and self._aligned(wanted.nodes[0]):
             self._traverse()
@@ -402,7 +404,7 @@ class Client:
         if self._driving_error is not None:
             facts = replace(facts, errors=(*facts.errors, self._driving_error))
         if self.file_problem:
-            error = Error("fileError", self.file_problem, (), "free the disk, or repair the file")
+            error = Error("fileError", self.file_problem, (), "remove files from the disk, or repair the file")
             facts = replace(facts, errors=(*facts.errors, error))
         if now < self._duplicate_until:
             facts = replace(facts, errors=(*facts.errors, DUPLICATE_CLIENT))

@@ -53,7 +53,7 @@ class Node:
         self._saved: object = None
         self._save_at = -math.inf
         self._reason = ""
-        serve("~pause", self.client.pause, "paused; goes on after ~resume or stopPause")
+        serve("~pause", self.client.pause, "paused; call ~resume to continue or stopPause")
         serve("~resume", self.client.resume, "goes on")
         serve("~trigger", self.robot.actions.trigger)
         self.robot.stop_all()
@@ -95,7 +95,7 @@ class Node:
         if self.link.reason != self._reason:
             self._reason = self.link.reason
             if self._reason:
-                rospy.logwarn(f"broker: {self._reason}; the robot drives on to the end of its base")
+                rospy.logwarn(f"broker: {self._reason}; the robot continues to the end of its base")
 
     def _keep(self, vehicle: Vehicle) -> str:
         """Why it is not in the file; empty if it is."""
@@ -131,7 +131,7 @@ def arguments(given: list[str]) -> argparse.Namespace:
         "follow_path.py; fleet.launch starts all but the robot. Services: vda5050/pause, vda5050/resume, "
         "vda5050/trigger.",
     )
-    parser.add_argument("--config", type=given_path, help="YAML file, laid over the installed config/fleet.yaml")
+    parser.add_argument("--config", type=given_path, help="YAML file, overrides the installed config/fleet.yaml")
     return parser.parse_args(given)
 
 

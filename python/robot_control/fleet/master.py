@@ -138,8 +138,8 @@ def main() -> None:
     """Entry point of scripts/fleet_master.py."""
     parser = argparse.ArgumentParser(
         prog="fleet_master.py",
-        description="A small master of VDA 5050, to try vda5050.py: it says where the robot is (initPosition), sends a "
-        "square as an order with two updates, and prints every state. Exit code 0: it was driven.",
+        description="A small master of VDA 5050, to try vda5050.py. It sets the position of the robot (initPosition), "
+        "sends a square as an order with two updates, and prints every state. Exit code 0: it was driven.",
     )
     for name, default, meaning in (
         ("--host", "127.0.0.1", "of the broker"),

@@ -33,7 +33,7 @@ class Memory:
         """Begins without content; the file keeps its own under another name. Raises OSError."""
         aside = put_aside(self.path)
         self._content = {"headers": self._content["headers"]}
-        self.problem = f"{self.path} cannot be used ({why}) and is {aside} now: the order before is not known"
+        self.problem = f"{self.path} cannot be used ({why}) and is {aside} now: the previous order is unknown"
 
     def __getitem__(self, name: str) -> Any:
         """The value that was saved as `name`; None if there is none."""

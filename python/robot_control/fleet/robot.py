@@ -131,7 +131,7 @@ class RosRobot:
     def set_position(self, x: float, y: float, theta: float, map_id: str) -> str:
         """map → odom from now on; why it is refused, empty if it is not."""
         if self._tf is not None:
-            return "a localization knows the position"
+            return "localization provides the position"
         if self._odometry is None:
             return "there is no odometry"
         pose = pose_of(self._odometry)
@@ -211,7 +211,7 @@ class RosRobot:
         before, self._odometry = self._odometry, odometry
         if before is not None and self._tf is None and _jumped(before, odometry):
             self.map_odom = None
-            rospy.logwarn("odometry was set: the position on the map is not known any more; send initPosition")
+            rospy.logwarn("odometry was set: the position on the map is unknown; send initPosition")
         if safety is None:
             return
         self._run = safety.run

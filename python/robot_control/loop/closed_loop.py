@@ -49,7 +49,7 @@ def given_layers(params: Params, urdf: File | None, scene: File | None, drives: 
 
 def _index(word: str, words: Sequence[str], what: str) -> int:
     if word not in words:
-        raise ValueError(f"there is no {what} {word!r}; name one of {', '.join(words)}")
+        raise ValueError(f"unknown {what} {word!r}; set one of {', '.join(words)}")
     return words.index(word)
 
 
@@ -129,8 +129,8 @@ class ClosedLoop:
         """
         if not self._loop.fresh:
             raise TypeError(
-                "a ClosedLoop that has run cannot be pickled: a pickle holds its arguments and its seed alone. Pickle "
-                "it before its first call or after reset(seed); within this process copy it by clone()"
+                "a ClosedLoop that has run cannot be pickled: a pickle contains only its arguments and its seed. "
+                "Pickle it before its first call or after reset(seed); within this process copy it by clone()"
             )
         return {name: self.__dict__[name] for name in _KEPT}
 

@@ -131,7 +131,7 @@ class ClosedLoops:
         """
         if not all(self._loops.loop(i).fresh for i in range(len(self))):
             raise TypeError(
-                "ClosedLoops that have run cannot be pickled: a pickle holds their arguments and their seeds alone. "
+                "ClosedLoops that have run cannot be pickled: a pickle contains only their arguments and their seeds. "
                 "Pickle them before the first call or after reset(seeds); within this process copy them by clone()"
             )
         return {name: self.__dict__[name] for name in _KEPT}

@@ -93,7 +93,7 @@ class Estimator:
         path, values = layered(params, urdf)
         if urdf is None and (wheel_radius is None) != (wheel_base is None):
             one, other = ("wheel_base", "wheel_radius") if wheel_radius is None else ("wheel_radius", "wheel_base")
-            raise ValueError(f"{one} without {other}: give both, or the urdf that {one} is laid over")
+            raise ValueError(f"{one} without {other}: give both, or the urdf whose value {one} replaces")
         given: dict[str, Any] = {"wheel_radius": wheel_radius, "wheel_base": wheel_base}
         if imu_position is not None:
             given["imu_position"] = _vector("imu_position", imu_position, (3,)).tolist()
@@ -257,7 +257,7 @@ def _numbers(name: str, given: ArrayLike) -> FloatArray:
     try:
         return np.asarray(given, dtype=np.float64, order="C")
     except (TypeError, ValueError) as error:
-        raise ValueError(f"{name} is no array of numbers: {error}") from None
+        raise ValueError(f"{name} is not an array of numbers: {error}") from None
 
 
 def _axes(name: str, given: ArrayLike | None, count: int) -> FloatArray:
@@ -267,7 +267,7 @@ def _axes(name: str, given: ArrayLike | None, count: int) -> FloatArray:
     values = _numbers(name, given)
     if values.shape != (count, 3):
         what = f"{name} has the shape {values.shape}; with {count} times it must be ({count}, 3), in IMU axes, or None"
-        raise ValueError(f"{what}. Of a gyro with one axis the other two are 0.")
+        raise ValueError(f"{what}. The other two axes of a gyro with one axis are 0.")
     return values
 
 
@@ -305,4 +305,4 @@ def _check_increasing(stamps: FloatArray, last: float | None) -> None:
     if back.size:
         row = int(back[0]) + 1
         what = f"time[{row}] is {float(stamps[row])!r} s, time[{row - 1}] is {float(stamps[row - 1])!r} s"
-        raise ValueError(f"{what}; time must strictly increase: sort the rows, and merge those of one time")
+        raise ValueError(f"{what}; time must strictly increase: sort the rows, and merge rows with the same time")

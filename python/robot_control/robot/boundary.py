@@ -63,7 +63,7 @@ class Boundary:
         with self._lock:
             count = self.dropped[source] = self.dropped.get(source, 0) + 1
         if count & (count - 1) == 0:
-            self._say(fit_for_message(f"{source}: an input is dropped ({count} until now): {why}"))
+            self._say(fit_for_message(f"{source}: an input is ignored ({count} until now): {why}"))
 
     @contextlib.contextmanager
     def crossing(self, source: str) -> Iterator[None]:
@@ -77,7 +77,7 @@ class Boundary:
                 with contextlib.suppress(Exception):
                     stop()
             place = traceback.extract_tb(error.__traceback__)[-1]
-            why = f"{type(error).__name__}: {error} ({place.name}, line {place.lineno}); what moved is stopped"
+            why = f"{type(error).__name__}: {error} ({place.name}, line {place.lineno}); all motion is stopped"
             self.drop(source, why)
 
 
@@ -220,7 +220,7 @@ def require_fit(message: Any, may_be_infinite: Collection[str] = (), path: str =
                 raise UnfitError(f"{where} must be finite")
         elif element == "string":
             if "\0" in ("".join(value) if is_array else value):
-                raise UnfitError(f"{where} must have no zero byte")
+                raise UnfitError(f"{where} must not contain a zero byte")
         elif "/" in element and name not in may_be_infinite:
             for each in value if is_array else (value,):
                 require_fit(each, may_be_infinite, f"{where}.")

@@ -24,9 +24,9 @@ from robot_control.robot.safety_states import DRIVABLE, STOPPED
 GAP = 1.0
 """s; programs look every 0.02 s, and a loaded machine delays one by half a second now and then. The loop refuses a
 request from before a stop, however short the gap of the program."""
-RESTARTED = "INIT: a node or the simulation was started again, and releases no command from before"
-SURPRISE = "this program met an input that it did not foresee"
-UNSEEN = "the robot was stopped and released, or started again"
+RESTARTED = "INIT: a node or the simulation was restarted; earlier commands stay refused"
+SURPRISE = "invalid input, see the log of this program"
+UNSEEN = "the robot was stopped and released, or restarted"
 
 
 def requested_at(arrived: float, sent: float | None) -> float:
@@ -89,7 +89,7 @@ class Interruptions:
         """One pass: notes how long there was none, unless the program `waited` or planned, and takes the messages."""
         gap, self._stepped_at = now - self._stepped_at, now
         if gap > GAP and not waited:
-            self.interrupt(now, f"this program stood still for {gap:.1f} s")
+            self.interrupt(now, f"this program did not run for {gap:.1f} s")
         for status in statuses:
             self.receive(status, now)
 

@@ -22,8 +22,8 @@ def begin_node(name: str, *, anonymous: bool = False) -> None:
     if not anonymous:
         own = _resolved(name)
         if living(own):
-            what = f"{name}: a node {printable(own)} runs already. End it"
-            sys.exit(f"{what} (rosnode kill {printable(own)}), or give this one a name of its own: __name:={name}_2")
+            what = f"{name}: a node {printable(own)} already runs. Stop it"
+            sys.exit(f"{what} (rosnode kill {printable(own)}), or set another name for this one: __name:={name}_2")
     try:
         rospy.init_node(name, anonymous=anonymous)
     except rospy.exceptions.ROSInitException:

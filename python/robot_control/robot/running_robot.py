@@ -74,7 +74,7 @@ def master_state() -> State:
     """
     state: State | None = Master(rospy.get_name()).state()
     if state is None:
-        raise RefusedError("the ROS master does not answer. Nothing was driven")
+        raise RefusedError("the ROS master does not answer. The robot was not driven")
     return state
 
 

@@ -9,8 +9,8 @@ LOCKSTEP = (
     "out. Give that run a command_script instead."
 )
 START = (
-    "Sends zeros until safety_status is READY or DRIVE, then the command; in a stop and after it zeros, until the "
-    "robot is released: then it ends with exit code 1, and motion needs a new start."
+    "Sends zeros until safety_status is READY or DRIVE, then the command. During a stop, it sends zeros until the "
+    "robot is released, and ends with exit code 1; motion needs a new start."
 )
 ZERO_PERIOD = 0.2
 """s between two zeros, at most"""

@@ -32,7 +32,7 @@ def server_description() -> str:
     Raises:
         ServerValueError: it is of another type.
     """
-    return server_text("robot_description", "that of a URDF")
+    return server_text("robot_description", "the text of a URDF")
 
 
 def server_tree(name: str) -> dict[str, Any]:

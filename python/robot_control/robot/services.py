@@ -50,8 +50,8 @@ def in_words(answer: Answer, facts: Facts) -> str:
     causes = () if safety is None else safety.causes
     if not answer.accepted and any(cause.name == "e_stop_topic" and cause.active for cause in causes):
         command = f"rostopic pub -1 {facts.path('e_stop')} std_msgs/Bool false"
-        what = "reset REFUSED: the topic e_stop still says true; once its reason is gone"
-        return f"{what}, by its publisher's false, or if that has ended: {command}, then the reset again"
+        what = "reset REFUSED: the topic e_stop is still true; once its cause is removed"
+        return f"{what}, publish false from the same node, or if it has ended: {command}, then call the reset again"
     return f"reset {'accepted' if answer.accepted else 'REFUSED'}: {answer.text}"
 
 
@@ -126,14 +126,14 @@ class Services:
         if state:
             return [Answer(E_STOP, accepted=True, text=f"sent on the topic e_stop ({why}); the robot is {state}")]
         receivers = self._topic.get_num_connections()
-        silence = f"{receivers} nodes receive e_stop, and safety_status names no stop" if receivers else NO_RECEIVER
-        return [Answer(E_STOP, accepted=False, text=f"{why}; {silence}. Use the button on the robot")]
+        silence = f"{receivers} nodes receive e_stop, and safety_status reports no stop" if receivers else NO_RECEIVER
+        return [Answer(E_STOP, accepted=False, text=f"{why}; {silence}. Press the button on the robot")]
 
     def _work(self) -> None:
         while True:
             name, requested, attempts = self._wanted.get()
             if name == "e_stop_reset" and time.monotonic() - requested > LATEST:
-                self._answers.put(Answer(name, accepted=False, text="it could not be called in time; request it again"))
+                self._answers.put(Answer(name, accepted=False, text="no answer in time; request it again"))
                 continue
             try:
                 response = self._proxies[name]()

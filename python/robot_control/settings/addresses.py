@@ -53,8 +53,8 @@ def require_protection(address: str, *, users: bool, tls: bool) -> None:
     """Raises AddressError for an address that others reach, without users or TLS."""
     missing = [word for word, there in (("users (console_users.py add)", users), ("TLS (--tls)", tls)) if not there]
     if missing and not is_loopback(address):
-        what = f"--address {address}: others reach it, so it needs {' and '.join(missing)}"
-        raise AddressError(f"{what}; or leave --address out, and use ssh -L")
+        what = f"--address {address}: other computers can reach it, so it needs {' and '.join(missing)}"
+        raise AddressError(f"{what}; or remove --address, and use ssh -L")
 
 
 def origins_of(address: str, port: int, names: list[str], *, tls: bool, further: list[str]) -> Origins:

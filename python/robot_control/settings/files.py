@@ -102,7 +102,7 @@ def settings_of(
                 raise ValueError
             tree = yaml.safe_load(text) or {}
         except Exception as error:  # PyYAML raises any
-            raise SettingsError(f"{path}: is no YAML{_place_of(error)}") from None
+            raise SettingsError(f"{path}: is not YAML{_place_of(error)}") from None
         found = [f"{path}: {problem}" for problem in problems_of(tree)]
         problems += found
         values |= {} if found else tree

@@ -47,14 +47,12 @@ def hindrance(observed: Observation) -> str:
     if observed.pose is None:
         return f"no odometry: does {ESTIMATOR} run? Start the robot first"
     if observed.senders:
-        return (
-            f"{', '.join(observed.senders)} may send on cmd_vel, too: two senders would pull at one robot. End it first"
-        )
+        return f"{', '.join(observed.senders)} may also send on cmd_vel, and two senders would compete. Stop it first"
     if moves(observed):
-        return f"the robot moves ({observed.linear:.2f} m/s, {observed.angular:.2f} rad/s); wait until it stands"
+        return f"the robot moves ({observed.linear:.2f} m/s, {observed.angular:.2f} rad/s); wait until it stands still"
     if math.isfinite(observed.speed_limit):
         what = f"the speed is limited to {observed.speed_limit:.2g} m/s by warnings or `clearance`"
-        return f"{what}; rosrun robot_control why.py says by which. What is limited is not driven as planned"
+        return f"{what}; the robot does not drive as planned. Check: rosrun robot_control why.py"
     return _stopped(observed)
 
 
@@ -79,14 +77,16 @@ def ignored(unanswered: float) -> str:
     """Why the plan must end after `unanswered` s of requested motion without any; empty if it goes on."""
     if unanswered <= ANSWER:
         return ""
-    return f"the robot was asked to move for {unanswered:.0f} s and stands; rosrun robot_control why.py says why"
+    return (
+        f"motion was requested for {unanswered:.0f} s, but the robot does not move; check: rosrun robot_control why.py"
+    )
 
 
 def _unwatched(observed: Observation) -> str:
     if observed.pose is None or observed.pose_age > SILENCE:
         return f"no odometry for {SILENCE:g} s: the position of the robot is unknown"
     if observed.status_age > SILENCE + 1.0:  # published once per second where nothing changes
-        return f"no safety_status for {SILENCE + 1.0:g} s: {MONITOR} or its link is gone"
+        return f"no safety_status for {SILENCE + 1.0:g} s: {MONITOR} has ended, or its link is down"
     return ""
 
 
@@ -106,5 +106,5 @@ def _stopped(observed: Observation) -> str:
     why = "; ".join(observed.sentences) or (
         f"waiting: {', '.join(observed.missing)}" if observed.missing else "no cause is reported"
     )
-    remedy = "do what is named" if observed.state == "INIT" else "remove the cause, then rosservice call e_stop_reset"
+    remedy = "apply the remedy" if observed.state == "INIT" else "remove the cause, then rosservice call e_stop_reset"
     return f"the robot is {observed.state}: {why}; {remedy}"

@@ -92,7 +92,7 @@ def require_values(expression: str) -> None:
         hidden = name.startswith("_" if isinstance(node, ast.Attribute) else "__")
         if not isinstance(node, ADMITTED) or hidden or name in LEADS_FURTHER:
             what = name or type(node).__name__
-            raise ValueError(f"{what} is refused in an expression: a description computes values alone")
+            raise ValueError(f"{what} is refused in an expression: a robot description only computes values")
 
 
 def admit_values_alone() -> None:
@@ -155,13 +155,13 @@ def better_reason(said: str, files: Sequence[str], macros: Sequence[str]) -> str
     if files and (what := foreign(files[-1])):
         return f"{files[-1]}: {what}"
     if "amplification" in said:
-        return "its <!ENTITY …> definitions stand for each other and grow without end: write what they stand for"
+        return "its <!ENTITY …> definitions refer to each other without end: replace them with their text"
     if "recursion" not in said:
         return ""
     if ring := circle([Path(file).name for file in files]):
-        return f"files include each other in a circle: {ring}"
+        return f"cycle of included files: {ring}"
     if ring := circle(macros):
-        return f"macros call each other in a circle: {ring}"
+        return f"cycle of macro calls: {ring}"
     return ""
 
 

@@ -126,4 +126,4 @@ def _first_rows(folder: Path, telemetry: Child, going_on: Callable[[], bool]) ->
                 return path
         time.sleep(0.1)
     said = telemetry.output.read_text(errors="replace").strip().splitlines()
-    raise RecordingError("telemetry gives no rows: " + (said[-1] if said else f"nothing within {START_LIMIT:g} s"))
+    raise RecordingError("no rows from telemetry: " + (said[-1] if said else f"nothing within {START_LIMIT:g} s"))

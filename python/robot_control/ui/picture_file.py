@@ -17,4 +17,4 @@ def check_picture(path: Path, inputs: Sequence[Path | None] = ()) -> None:
 
     formats = sorted(FigureCanvasBase.get_supported_filetypes())
     if path.suffix.removeprefix(".").lower() not in formats:
-        raise ValueError(f"{path} is no picture: its suffix is none of {', '.join(formats)}")
+        raise ValueError(f"{path} is not a picture: its suffix must be one of {', '.join(formats)}")

@@ -45,12 +45,12 @@ def parse(arguments: Sequence[str] | None = None) -> argparse.Namespace:
     )
     what = "diffbot, quadbot, or a URDF or xacro file (default %(default)s)"
     parser.add_argument("robot", nargs="?", type=_robot, default=ROBOTS[0], help=what)
-    parser.add_argument("--scene", default="room", help="a shipped scene or an MJCF file (default %(default)s)")
+    parser.add_argument("--scene", default="room", help="an included scene or an MJCF file (default %(default)s)")
     parser.add_argument("--port", type=int, help=f"of the console (default: the first free one from {CONSOLE_PORT} on)")
     parser.add_argument("--no-browser", dest="browser", action="store_false", help="only print the address")
     given = parser.parse_args(arguments)
     if given.port is not None and not _free(given.port):
-        parser.error(f"--port {given.port} cannot be listened on: leave it out, or end the program that uses it")
+        parser.error(f"--port {given.port} is in use: remove --port, or stop the program that uses it")
     return given
 
 

@@ -5,11 +5,11 @@
 #include <algorithm>
 #include <cerrno>
 #include <cmath>
-#include <cstring>
 #include <filesystem>
 
 #include "configuration/peer_file.h"
 #include "estimation/wheeled/calibration_bounds.h"
+#include "files/given_path.h"
 #include "files/output_file.h"
 #include "parameters/parameter_tree.h"
 #include "parameters/parameters_text.h"
@@ -156,8 +156,8 @@ std::optional<LearnedCalibration> read_calibration(const std::string& path, cons
   const std::string subject = std::string(program_of(Role::kEstimator)) + ".calibration_file refused (" + path + ")";
   ProblemList problems;
   if (parameters.self_calibration && access(folder_of(path).c_str(), W_OK | X_OK) != 0) {
-    problems.add({folder_of(path).string(), "", std::string("cannot be written to: ") + std::strerror(errno), "",
-                  "make the folder, give it to this user, or name a file elsewhere"});
+    problems.add({folder_of(path).string(), "", failed("written", errno), "",
+                  "create the folder, set its owner to this user, or set another file"});
     problems.throw_if_any(subject);
   }
   std::error_code error;

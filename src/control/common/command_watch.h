@@ -59,7 +59,7 @@ class CommandWatch {
   std::uint64_t reasons() const noexcept {
     return reason_ | without_effect_ | (ignored() != 0 ? std::uint64_t{kReasonPartIgnored} : 0);
   }
-  /// Returns the RequestPart bits of the request that the machine cannot execute.
+  /// Returns the RequestPart bits of the request that the robot cannot execute.
   std::uint64_t ignored() const noexcept { return ignored_; }
   std::uint64_t partial() const noexcept { return partial_; }  ///< accepted commands with an ignored part
   std::uint64_t request_cycle() const noexcept { return request_cycle_; }

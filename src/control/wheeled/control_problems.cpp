@@ -167,19 +167,19 @@ std::string load_words(const Loop& loop, const Load& load) {
 std::string unstable_message(const Loop& loop, const Loop& derived, const std::string& joint, const Load& load) {
   const WheelLoopGains& gains = loop.gains;
   const std::string problem = formatted(
-      "%s: pid_kp %.3g, pid_ki %.3g, pid_kd %.3g, tracking_bandwidth %.3g Hz at %ld Hz: the loop of joint '%s' is "
+      "%s: pid_kp %.3g, pid_ki %.3g, pid_kd %.3g, tracking_bandwidth %.3g Hz at %ld Hz. The loop of joint '%s' is "
       "unstable with the wheel %s: spectral radius %.3g, must be < 1. ",
       kController, gains.kp, gains.ki, gains.kd, loop.bandwidth, std::lround(1 / loop.period), joint.c_str(),
       load_words(loop, load).c_str(), loop.radius(load));
   const double part = stable_part(loop, derived);
   if (part <= 0) {
     return problem +
-           "No smaller gains of this proportion are stable: lower pid_ki or pid_kd against pid_kp, or leave pid_kp and "
-           "pid_ki out: then they are derived from the robot.";
+           "No smaller gains of this proportion are stable. Reduce pid_ki or pid_kd against pid_kp, or remove pid_kp and "
+           "pid_ki: then they are derived from the robot.";
   }
   return problem +
          formatted(
-             "Use at most pid_kp %.3g, pid_ki %.3g, pid_kd %.3g, or leave pid_kp and pid_ki out: then they are "
+             "Set at most pid_kp %.3g, pid_ki %.3g, pid_kd %.3g, or remove pid_kp and pid_ki: then they are "
              "derived from the robot.",
              part * gains.kp, part * part * gains.ki, part * gains.kd);
 }
@@ -187,14 +187,14 @@ std::string unstable_message(const Loop& loop, const Loop& derived, const std::s
 std::string underdamped_message(const Loop& loop, const Loop& derived, const std::string& joint, const Load& load) {
   const double limit = damped_ki(loop, derived);
   return formatted(
-             "%s: pid_kp %.3g, pid_ki %.3g, pid_kd %.3g, tracking_bandwidth %.3g Hz: the loop of joint '%s' oscillates "
+             "%s: pid_kp %.3g, pid_ki %.3g, pid_kd %.3g, tracking_bandwidth %.3g Hz. The loop of joint '%s' oscillates "
              "with the wheel %s: damping ratio %.3g, must be at least %.3g. ",
              kController, loop.gains.kp, loop.gains.ki, loop.gains.kd, loop.bandwidth, joint.c_str(),
              load_words(loop, load).c_str(), loop.damping(load), Loop::least_damping(derived, load)) +
-         (limit > 0 ? formatted("Use at most pid_ki %.3g", limit)
-                    : formatted("Lower pid_kp and pid_kd, or bring tracking_bandwidth nearer to %.3g Hz",
+         (limit > 0 ? formatted("Set at most pid_ki %.3g", limit)
+                    : formatted("Reduce pid_kp and pid_kd, or set tracking_bandwidth nearer to %.3g Hz",
                                 derived.bandwidth)) +
-         "; or leave them out: then they are derived from the robot.";
+         "; or remove them: then they are derived from the robot.";
 }
 
 std::string oscillation_message(const Loop& loop, const Loop& derived, const std::string& joint, const Load& load) {

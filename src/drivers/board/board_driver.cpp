@@ -51,8 +51,8 @@ BoardDriver::BoardDriver(const BoardParameters& parameters, std::span<const Brak
       load_(line_load(parameters.wheels.size(), period, parameters.line.bit_rate)) {
   if (load_ > kMaxLineLoad) {
     throw DriverError("a line of " + std::to_string(parameters.line.bit_rate) +
-                      formatted(" bit/s carries the messages of this board at %g Hz at most, and robot.rate is %g Hz: "
-                                "raise board.bit_rate here and in the board, or lower robot.rate",
+                      formatted(" bit/s allows at most %g Hz for this board, but robot.rate is %g Hz: "
+                                "set a higher board.bit_rate here and in the board, or a lower robot.rate",
                                 std::floor(kMaxLineLoad / load_ / period), std::round(1 / period)));
   }
   for (std::size_t i = 0; i < wheels_.size(); ++i) laws_.emplace_back(brakes[i], parameters.wheels[i].torque_limit);

@@ -39,13 +39,13 @@ void BoardFile::check(const BoardWheelParameters& wheel, JointValues& values) co
   const double fastest = wheel.velocity_limit * wheel.counts_per_turn / (2 * std::numbers::pi);
   if (request().takes_speeds && fastest > kMaxCountsPerSecond) {
     values.refuse("velocity_limit", "must be below 4 194 303 counts per second, the greatest speed of an order",
-                  "lower it, or count fewer edges per turn");
+                  "set a lower one, or fewer counts per turn");
   }
   const double unseen = fastest * (static_cast<double>(line.max_silence) + 1) * request().period();
   if (wheel.counter_bits == 16 && unseen > kMaxCountsUnseen) {
     values.refuse("counter_bits",
                   "must be 32: a counter of 16 bits wraps unseen within max_silence at this velocity_limit",
-                  "send counts of 32 bits, or lower max_silence");
+                  "set counts of 32 bits, or a lower max_silence");
   }
   if (wheel.wheel >= request().joints.size() && values.accepted("wheel"))
     values.refuse("wheel", "must be below the number of joints, " + std::to_string(request().joints.size()));

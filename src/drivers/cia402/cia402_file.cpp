@@ -70,7 +70,7 @@ void Cia402File::check(const Cia402Parameters& joint, JointValues& values) const
     values.refuse("node", "must be 1 … 127 and not bus.host_node");
   if (joint.host_timeout < kMinTimeoutPeriods / request().rate * (1 - 1.0e-9)) {
     values.refuse("host_timeout", "must be at least ten periods of the loop (robot.rate)",
-                  "a host that is late for a few cycles would stop the drive");
+                  "set a longer one: a host that is late for a few cycles would stop the drive");
   }
   const bool takes_speeds = request().takes_speeds;
   if (joint.mode != ModeChoice::kAny && is_of_speeds(joint.mode) != takes_speeds) {
@@ -81,7 +81,7 @@ void Cia402File::check(const Cia402Parameters& joint, JointValues& values) const
   }
   if (joint.abort_option == 0 && drive.on_silence != SilenceReaction::kUnknown) {
     values.refuse("on_silence", "contradicts abort_option: 0, with which the drive does nothing",
-                  "leave one of them out");
+                  "remove one of them");
   }
 }
 

@@ -272,8 +272,8 @@ void DriveSetup::judge_modes(bool present, std::uint32_t modes) noexcept {
 void DriveSetup::judge_counts() noexcept {
   if (units_.counts_per_turn != 0) return;  // stated in the drive file
   const std::optional<double> counts = counts_per_turn({.encoder = encoder_, .gear = gear_, .feed = feed_});
-  if (!counts) return refuse(DriveCause::kLacks, "feed constant (6092) beside its gear (6091); state counts_per_turn");
-  if (*counts == 0) return refuse(DriveCause::kLacks, "increments per turn (608F); state counts_per_turn");
+  if (!counts) return refuse(DriveCause::kLacks, "feed constant (6092) beside its gear (6091); set counts_per_turn");
+  if (*counts == 0) return refuse(DriveCause::kLacks, "increments per turn (608F); set counts_per_turn");
   units_.counts_per_turn = *counts;
 }
 
@@ -283,7 +283,7 @@ void DriveSetup::judge_velocity_unit(bool present, std::uint32_t value) noexcept
   if (present && of_the_motor) units_.velocity_unit = velocity_unit(value);
   if (units_.velocity_unit != 0) return;
   if (parameters_.drive.takes_speeds)
-    return refuse(DriveCause::kLacks, "unit of the velocity (60A9); state velocity_unit");
+    return refuse(DriveCause::kLacks, "unit of the velocity (60A9); set velocity_unit");
   units_.velocity_unit = kRpm;
   if (parameters_.velocity_pdo == VelocityPdo::kDerived && velocity_ == VelocitySource::kDrive)
     velocity_ = VelocitySource::kNoUnit;
@@ -299,7 +299,7 @@ void DriveSetup::judge_torque(const Step& step, bool present, std::uint32_t valu
   if (step.use == Use::kRated) {
     const double read = present ? rated_torque(value) : 0;
     const double stated = parameters_.rated_torque;
-    if (stated == 0 && read == 0) return refuse(DriveCause::kLacks, "rated torque (6076); state rated_torque");
+    if (stated == 0 && read == 0) return refuse(DriveCause::kLacks, "rated torque (6076); set rated_torque");
     if (stated != 0 && read != 0 && std::abs(read - stated) > kSameTorque * stated) {
       return refuse(DriveCause::kDiffers, step.subject, 0, read, stated);
     }

@@ -18,9 +18,9 @@ const char* why_no_velocity(VelocitySource source) noexcept {
     case VelocitySource::kNotRequested:
       return "velocity_pdo is off";
     case VelocitySource::kNoRoom:
-      return "the bus has no room for it: lower robot.rate";
+      return "the bus load does not allow it: set a lower robot.rate";
     case VelocitySource::kNoUnit:
-      return "its unit is not known: state velocity_unit";
+      return "its unit is not known: set velocity_unit";
     case VelocitySource::kNotMapped:
       return "the drive does not map 606C";
     case VelocitySource::kNotSent:
@@ -176,8 +176,7 @@ std::string CanDriver::description() const {
     without += (without.empty() ? "" : ", ") + drives_[i].drive_parameters().joint + " (" + reason + ")";
   }
   if (!without.empty()) {
-    text << "; the velocity follows from the positions, so that frames that are late by up to a period move the joint "
-            "and the robot sways (docs/drivers.md), of "
+    text << "; the velocity is computed from the positions, so late frames make the robot sway (docs/drivers.md), of "
          << without;
   }
   return text.str();

@@ -18,7 +18,7 @@ class SerialDriveFile : public DriveFile {
   void check_line(GivenValues& given) const override {
     const std::string path = std::string(line_block()) + ".bit_rate";
     if (given.accepted(path) && line.bit_rate != 0 && !is_bit_rate(static_cast<unsigned>(line.bit_rate)))
-      given.refuse(path, "is no bit rate of a tty", "take 115200, 460800, 921600 …, or 0 for USB");
+      given.refuse(path, "is not a bit rate of a tty", "set 115200, 460800, 921600 …, or 0 for USB");
   }
   const std::string& address() const override { return line.address; }
   LineEnd open_line(RealtimePolicy policy, const DriverClock& clock) const override {

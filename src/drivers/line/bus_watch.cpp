@@ -32,11 +32,11 @@ std::string words(const BusStatus& status) {
   if (status.silent) add("no frame was received in the last 1.5 s");
   if (text.empty()) return text;
   if (status.bus_off) {
-    text += "; look at the cable and the bit rate; the interface restarts by itself with restart-ms 100 (ip link)";
+    text += "; check the cable and the bit rate; with restart-ms 100 (ip link), the interface restarts by itself";
   } else if (status.silent) {
-    text += "; look at the cable, its terminators, the power of the drives and the bit rate";
+    text += "; check the cable, its terminators, the power of the drives and the bit rate";
   } else {
-    text += "; look at the cable and its terminators, the bit rate, and how much is sent";
+    text += "; check the cable, its terminators, the bit rate and the bus load";
   }
   return text;
 }
@@ -51,9 +51,9 @@ struct ErrorWords {
 };
 
 constexpr ErrorWords kWords[] = {
-    {CAN_ERR_BUSOFF, 0, 0, "bus-off: the controller takes no part until it is restarted"},
+    {CAN_ERR_BUSOFF, 0, 0, "bus-off: the CAN controller is off until it is restarted"},
     {CAN_ERR_RESTARTED, 0, 0, "controller restarted"},
-    {CAN_ERR_ACK, 0, 0, "no acknowledgement: no other node is awake at this bit rate"},
+    {CAN_ERR_ACK, 0, 0, "no acknowledgement: no other node is active at this bit rate"},
     {CAN_ERR_TX_TIMEOUT, 0, 0, "transmit timeout"},
     {CAN_ERR_LOSTARB, 0, 0, "lost arbitration"},
     {CAN_ERR_BUSERROR, 0, 0, "bus error"},
@@ -67,7 +67,7 @@ constexpr ErrorWords kWords[] = {
     {CAN_ERR_CRTL, 1, CAN_ERR_CRTL_ACTIVE, "error active again"},
     {CAN_ERR_PROT, 2, CAN_ERR_PROT_BIT, "single bit error"},
     {CAN_ERR_PROT, 2, CAN_ERR_PROT_FORM, "frame format error"},
-    {CAN_ERR_PROT, 2, CAN_ERR_PROT_STUFF, "bit stuffing error: is the bit rate that of the other nodes?"},
+    {CAN_ERR_PROT, 2, CAN_ERR_PROT_STUFF, "bit stuffing error: check that all nodes have the same bit rate"},
     {CAN_ERR_PROT, 2, CAN_ERR_PROT_BIT0, "no dominant bit could be sent"},
     {CAN_ERR_PROT, 2, CAN_ERR_PROT_BIT1, "no recessive bit could be sent"},
     {CAN_ERR_PROT, 2, CAN_ERR_PROT_OVERLOAD, "bus overload"},

@@ -41,9 +41,9 @@ Descriptor locked_folder(const std::string& path) {
   if (mkdir(path.c_str(), 0700) != 0 && errno != EEXIST) fail(reason(), "its parent folder must exist and be writable");
   Descriptor folder(open(path.c_str(), O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC));
   struct stat status {};
-  if (!folder.open() || fstat(folder.number(), &status) != 0) fail(reason(), "name a folder of your own");
+  if (!folder.open() || fstat(folder.number(), &status) != 0) fail(reason(), "set a folder of your own");
   if (status.st_uid != geteuid() || (status.st_mode & (S_IWGRP | S_IWOTH)) != 0) {
-    fail("other users may write to this folder", "name a folder of your own: chmod 700");
+    fail("other users may write to this folder", "set a folder of your own: chmod 700");
   }
   flock(folder.number(), LOCK_EX);
   return folder;
@@ -115,12 +115,12 @@ void CanSocket::request_time_stamps() const noexcept {
 
 void CanSocket::open_interface(const std::string& name) {
   if (name.empty() || name.size() >= IFNAMSIZ) {
-    refuse(name, "this is no name of an interface", "write can0, or unix:FOLDER");
+    refuse(name, "this is not the name of an interface", "set can0, or unix:FOLDER");
   }
   descriptor_ = Descriptor(socket(PF_CAN, SOCK_RAW | SOCK_CLOEXEC | SOCK_NONBLOCK, CAN_RAW));
   if (!descriptor_.open()) {
     const bool absent = errno == EAFNOSUPPORT;
-    refuse(name, absent ? "this kernel has no CAN" : reason(),
+    refuse(name, absent ? "this kernel does not support CAN" : reason(),
            "load the modules can and can_raw, or use unix:FOLDER for simulated drives");
   }
   sockaddr_can address{};
@@ -138,7 +138,7 @@ void CanSocket::open_interface(const std::string& name) {
       (!filters_.empty() && setsockopt(descriptor(), SOL_CAN_RAW, CAN_RAW_FILTER, filters_.data(),
                                        static_cast<socklen_t>(filters_.size() * sizeof(can_filter))) != 0) ||
       bind(descriptor(), generic(&address), sizeof address) != 0) {
-    refuse(name, reason(), "is it a CAN interface?");
+    refuse(name, reason(), "check that it is a CAN interface");
   }
   request_time_stamps();
 }
@@ -148,14 +148,14 @@ void CanSocket::open_folder(const std::string& folder) {
   own_party_ = kMaxParties;
   const Descriptor lock = locked_folder(folder);
   descriptor_ = datagram_socket();
-  if (!descriptor_.open()) refuse(kFolderPrefix + folder, reason(), "close other programs");
+  if (!descriptor_.open()) refuse(kFolderPrefix + folder, reason(), "stop other programs");
   for (const sockaddr_un& party : parties_) {
     if (abandoned(party)) unlink(party.sun_path);
   }
   bind_first_free_name();
   if (own_party_ == kMaxParties) {
-    refuse(kFolderPrefix + folder, "no name is free: " + reason(),
-           "at most " + std::to_string(kMaxParties) + " parties share a folder");
+    refuse(kFolderPrefix + folder, "no free name: " + reason(),
+           "at most " + std::to_string(kMaxParties) + " programs share a folder");
   }
   request_time_stamps();
 }

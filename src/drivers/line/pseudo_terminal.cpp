@@ -19,12 +19,12 @@ namespace robot_control {
 PseudoTerminal::PseudoTerminal(std::string path) : path_(std::move(path)) {
   std::error_code ignored;
   const auto left = std::filesystem::symlink_status(path_, ignored);
-  const std::string remedy = ", or choose another address (board.address)";
+  const std::string remedy = ", or set another address (board.address)";
   if (std::filesystem::exists(left) && !std::filesystem::is_symlink(left))
-    throw DriverError("no tty can be made at " + path_ + ", which is no link. Remove it" + remedy);
+    throw DriverError("no tty can be created at " + path_ + ", which is not a link. Remove it" + remedy);
   if (std::filesystem::exists(path_, ignored)) {
-    throw DriverError("no tty can be made at " + path_ + ", which leads to " +
-                      std::filesystem::read_symlink(path_, ignored).string() + " in use. End the program that made it" +
+    throw DriverError("no tty can be created at " + path_ + ", which leads to " +
+                      std::filesystem::read_symlink(path_, ignored).string() + " in use. Stop the program that created it" +
                       remedy);
   }
   std::filesystem::remove(path_, ignored);  // of a program that was killed
@@ -43,7 +43,7 @@ void PseudoTerminal::plug() {
   if (made && tcsetattr(descriptor_, TCSANOW, &line) == 0 && symlink(name.data(), path_.c_str()) == 0) return;
   const std::string why = std::strerror(errno);
   unplug();
-  throw DriverError("no tty can be made at " + path_ + ": " + why + ". Choose another address (board.address)");
+  throw DriverError("no tty can be created at " + path_ + ": " + why + ". Set another address (board.address)");
 }
 
 void PseudoTerminal::unplug() noexcept {

@@ -94,13 +94,13 @@ bool SerialPort::try_open() {
   const auto refuse = [&](const std::string& why) {
     throw DriverError("the serial line " + address_ + " cannot be used: " + why);
   };
-  if (!device.open() && errno == EBUSY) refuse("another program uses it. End that program");
+  if (!device.open() && errno == EBUSY) refuse("another program uses it. Stop that program");
   if (!device.open()) {
     refuse(std::string(std::strerror(errno)) +
            (errno == EACCES ? ". Add this user to the group dialout, and log in again" : ""));
   }
-  if (isatty(device.number()) == 0) refuse("it is no tty. State the device of the board (board.address)");
-  if (flock(device.number(), LOCK_EX | LOCK_NB) != 0) refuse("another program uses it. End that program");
+  if (isatty(device.number()) == 0) refuse("it is not a tty. Set the device of the board (board.address)");
+  if (flock(device.number(), LOCK_EX | LOCK_NB) != 0) refuse("another program uses it. Stop that program");
   ioctl(device.number(), TIOCEXCL);
   make_raw(device.number(), bit_rate_);
   request_low_latency(device.number());

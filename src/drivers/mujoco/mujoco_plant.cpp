@@ -138,16 +138,16 @@ void MujocoPlant::settle() {
     }
     if (fallen(model_, *data_)) {
       refuse(
-          "the robot falls over where it is set down. Look at its centre of gravity and at what it stands on, and at "
-          "the ground around the site \"start\".");
+          "the robot falls over at its start. Check its centre of gravity, its support, and the ground around the site "
+          "\"start\".");
     }
     rested = at_rest(model_, *data_, kRestSpeed, kJointRestSpeed) ? rested + model_.substeps * step : 0;
   }
   const std::string side = unloaded_side(model_, wheels_);
   const std::string standing = links_on_ground(model_, *data_);
   if (!side.empty() && !standing.empty()) {
-    refuse("its " + side + " wheels bear no load, what stands on the ground is " + standing +
-           ". Look at how low the wheels reach, and the <collision> shapes of the rest.");
+    refuse("its " + side + " wheels carry no load; on the ground is " + standing +
+           ". Check how low the wheels reach, and the other <collision> shapes.");
   }
   if (rested < kRestTime && !at_rest(model_, *data_, kLastRestSpeed, kLastJointSpeed)) {
     const std::vector<std::string> moving = moving_joints(model_, *data_, kJointRestSpeed);

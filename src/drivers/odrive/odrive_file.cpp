@@ -29,7 +29,7 @@ void OdriveFile::check(const OdriveParameters& joint, JointValues& values) const
   if (joint.motor_velocity_limit != 0 && joint.motor_velocity_limit < fastest) {
     values.refuse("motor_velocity_limit",
                   "must be at least 1.5 · velocity_limit · gear: else the axis reduces what was planned",
-                  "lower velocity_limit, or leave it out");
+                  "set a lower velocity_limit, or remove it");
   }
   if (joint.enable_watchdog_endpoint != 0 && joint.firmware == Firmware::k05)
     values.refuse("firmware", "must not be 0.5, which has no endpoints on CAN");

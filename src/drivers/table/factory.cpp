@@ -14,10 +14,9 @@ namespace {
 void refuse_held_joints(const MachineModel& machine, const std::string& driver) {
   for (const JointModel& joint : machine.joints) {
     if (joint.role == JointRole::kHeld)
-      throw DriverError("joint '" + joint.name + "' is to be held, and robot.driver: " + driver +
-                        " moves only the joints that the controller drives: give the joint no actuator in the "
-                        "description, or hold it by "
-                        "another controller");
+      throw DriverError("joint '" + joint.name + "' must be held, but robot.driver: " + driver +
+                        " moves only the joints that the controller drives: remove the actuator of the joint from the "
+                        "URDF, or hold it with another controller");
   }
 }
 
@@ -27,12 +26,12 @@ std::unique_ptr<Driver> make_driver(const Parameters& parameters, const MachineM
                                     const std::vector<Brake>& brakes, const DriverClock& clock) {
   if (parameters.driver == DriverName::kMujoco)
     throw DriverError(
-        "robot.driver is mujoco, which is the program mujoco_plant: start that one, or set robot.driver "
+        "robot.driver is mujoco, which is the program mujoco_plant: start mujoco_plant, or set robot.driver "
         "(_driver:=can)");
   const std::string driver = word_of(parameters.driver);
   if (parameters.drives.empty())
     throw DriverError("robot.driver is " + driver +
-                      ", but robot.drives names no drive file: set it, for instance to config/drives/" +
+                      ", but robot.drives names no drive file: set it, for example to config/drives/" +
                       std::string(std::ranges::find(kDriveRows, driver, &DriveRow::driver)->name) + ".yaml");
   refuse_held_joints(machine, driver);
   const DriveMotors motors = drive_motors(machine, brakes);

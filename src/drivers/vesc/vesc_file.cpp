@@ -20,7 +20,7 @@ void VescFile::check(const VescParameters& joint, JointValues& values) const {
   }
   if (!request().takes_speeds && joint.torque_constant == 0) {
     values.refuse("torque_constant", "is missing: with robot.wheel_command: torque the currents follow from it",
-                  "state N·m per A of the motor, or set robot.wheel_command to velocity");
+                  "set N·m per A of the motor, or set robot.wheel_command to velocity");
   }
 }
 

@@ -50,11 +50,11 @@ void read_bag_chunk(BagFile& file, const BagChunk& chunk, std::string& content) 
     std::size_t used = from.size(), room = full ? 1 : content.size() - made;
     const std::size_t result =
         LZ4F_decompress(context.get(), full ? &surplus : content.data() + made, &room, from.data(), &used, nullptr);
-    if (LZ4F_isError(result) != 0) refuse(at, "data", "is no sound lz4 stream");
+    if (LZ4F_isError(result) != 0) refuse(at, "data", "is not a valid lz4 stream");
     at += used;
     if (full && room > 0) {
       refuse(chunk.record, "size",
-             "the chunk inflates to more than the " + std::to_string(chunk.size) + " bytes that it says");
+             "the chunk inflates to more than the " + std::to_string(chunk.size) + " bytes that it states");
     }
     made += room;
     ended = result == 0;
@@ -94,7 +94,7 @@ BagFile::BagFile(const std::string& path) {
   if (!file_.open()) throw std::runtime_error(std::strerror(errno));
   struct stat status {};
   if (fstat(file_.number(), &status) != 0 || !S_ISREG(status.st_mode))
-    throw std::runtime_error("is no regular file any more");
+    throw std::runtime_error("is no longer a regular file");
   size_ = static_cast<std::uint64_t>(status.st_size);
 }
 

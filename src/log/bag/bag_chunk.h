@@ -18,7 +18,7 @@ inline constexpr std::uint64_t kMaxBag = std::uint64_t{16} << 30U;  ///< bytes; 
 /// with a mapping of the file the process would end.
 class BagFile {
  public:
-  /// Throws std::runtime_error if the path is no regular file, cannot be read or is larger than kMaxBag.
+  /// Throws std::runtime_error if the path is not a regular file, cannot be read or is larger than kMaxBag.
   explicit BagFile(const std::string& path);
 
   std::uint64_t size() const { return size_; }

@@ -75,7 +75,7 @@ BagReader::End BagReader::read_bag_header() {
   const FileRecord record = read_file_record(file_, kBagMagic.size());
   expect_data(file_, record);
   const BagHeader header = record.header();
-  if (header.op() != BagOp::kBagHeader) throw BagError(header.place(), "op", "the first record is no bag header");
+  if (header.op() != BagOp::kBagHeader) throw BagError(header.place(), "op", "the first record is not a bag header");
   End end{.index = header.u64("index_pos"),
           .connections = header.u32("conn_count"),
           .chunks = header.u32("chunk_count"),
@@ -133,7 +133,7 @@ std::uint64_t BagReader::read_record(const End& end, std::uint64_t at) {
   const bool list = op == BagOp::kConnection || op == BagOp::kChunkInfo;
   if (list && !behind_ && !end.cut) {
     throw BagError({.offset = at}, "index_pos",
-                   "the chunks end here, but the bag header says at byte " + std::to_string(end.index));
+                   "the chunks end here, but by the bag header at byte " + std::to_string(end.index));
   }
   behind_ = behind_ || list;
   expect_data(file_, record);
@@ -149,7 +149,7 @@ std::uint64_t BagReader::read_record(const End& end, std::uint64_t at) {
     check_index(file_.read(record.data, 8, "time"), {.offset = record.data});
   } else {
     throw BagError(header.place(), "op",
-                   "record of kind " + std::to_string(static_cast<int>(op)) + " at a place where it has no meaning");
+                   "record of kind " + std::to_string(static_cast<int>(op)) + " at a position where it has no meaning");
   }
   return record.data + record.length;
 }
@@ -192,7 +192,7 @@ void BagReader::read_chunk(BagChunk chunk, const BagHeader& header) {
   };
   parse_bag_chunk(content_, chunk, {.connection = connection, .message = add});
   if (!chunks_.empty() && chunk.first_ns < chunks_.back().last_ns) {
-    throw BagError(header.place(), "time", "the chunk begins before the end of the one before");
+    throw BagError(header.place(), "time", "the chunk begins before the end of the previous chunk");
   }
   pending_ = chunk;
   indexed_ = false;
@@ -201,7 +201,7 @@ void BagReader::read_chunk(BagChunk chunk, const BagHeader& header) {
 void BagReader::check_index(std::string_view data, const BagPlace& place) {
   const std::uint64_t time_ns = bag_time_ns(data, place, "time");
   if (!pending_ || time_ns < pending_->first_ns || time_ns > pending_->last_ns) {
-    refuse_index(place, "time", "the index is not that of the chunk before");
+    refuse_index(place, "time", "the index does not belong to the previous chunk");
   }
   indexed_ = true;
 }

@@ -78,7 +78,7 @@ BagOp BagHeader::op() const {
   const Field& field = sized("op", 1);
   const auto op = static_cast<std::uint8_t>(field.value[0]);
   if (op < static_cast<std::uint8_t>(BagOp::kMessage) || op > static_cast<std::uint8_t>(BagOp::kConnection)) {
-    throw BagError(place_ + field.offset, "op", std::to_string(op) + " is no kind of record");
+    throw BagError(place_ + field.offset, "op", std::to_string(op) + " is not a kind of record");
   }
   return static_cast<BagOp>(op);
 }

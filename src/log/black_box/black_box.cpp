@@ -11,6 +11,7 @@
 #include <filesystem>
 #include <limits>
 
+#include "files/given_path.h"
 #include "log/black_box/black_box_folder.h"
 #include "log/log_error.h"
 
@@ -37,7 +38,7 @@ BlackBox::BlackBox(const std::string& folder, std::size_t bytes, const LogHeader
   bag_bytes_ = std::max({kBagBytes, 4 * encode(header_).size(), bytes / kMaxBags});
   bags_ = (bytes + bag_bytes_ - 1) / bag_bytes_ + 1;
   if (mkdir(folder.c_str(), 0700) == 0) lock_ = Descriptor(open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
-  if (!lock_.open()) throw LogError(folder + ": " + std::strerror(errno));
+  if (!lock_.open()) throw LogError(file_error(folder, failed("created", errno)));
   flock(lock_.number(), LOCK_EX | LOCK_NB);
   make_bags();
 }
@@ -51,7 +52,7 @@ void BlackBox::make_bags() {
     std::filesystem::remove_all(folder_, ignored);
     throw LogError(folder_ + ": there is no room for the black box of " +
                    std::to_string(bags_ * bag_bytes_ / 1'000'000) + " MB: " + std::strerror(problem) +
-                   "; make room, or set telemetry.black_box to 0 or telemetry.directory");
+                   "; remove files, or set telemetry.black_box to 0 or telemetry.directory");
   }
 }
 

@@ -74,8 +74,8 @@ void BlackBoxFolder::put_ring_aside() {
   std::error_code error;
   fs::create_directories(folder_, error);
   if (error) {
-    throw LogError("black box " + file_error(folder_, error.message()) +
-                   "; name one that can be written (telemetry.directory)");
+    throw LogError("black box " + file_error(folder_, failed("created", error.value())) +
+                   "; set a folder that can be written (telemetry.directory)");
   }
   if (in_use(ring())) {
     throw LogError("black box " + ring() +

@@ -73,7 +73,7 @@ struct Ring {
       }
     }
     if (files == 0) {
-      throw LogError(path + ": is no black box of this version; name the folder black_box/ring in that of the logs");
+      throw LogError(path + ": is not a black box of this version; give the folder black_box/ring in that of the logs");
     }
     absent = numbers - files;
     std::ranges::sort(bags, {}, &RingBag::part);

@@ -258,8 +258,8 @@ void TelemetryProcess::finish() {
   const std::int64_t end_ns = monotonic_ns() + kSavingNs;
   if (black_box_ != nullptr) black_box_->finish([end_ns] { return monotonic_ns() >= end_ns; });
   if (bag_ == nullptr || bag_->unwritten() == 0) return;
-  throw LogError(std::to_string(bag_->unwritten()) + " rows are not in " + bag_path_ +
-                 " or those before it: " + (problem_.empty() ? "the disk took none for a while" : problem_));
+  throw LogError(std::to_string(bag_->unwritten()) + " rows are missing in " + bag_path_ + " or the files before it: " +
+                 (problem_.empty() ? "the disk did not accept them for a while" : problem_));
 }
 
 template <class Act>

@@ -29,13 +29,13 @@ void read_limits(const urdf::JointLimits& limits, const std::string& source, dou
   if (joint.type == JointType::kContinuous) return;
   if (!(limits.lower <= limits.upper)) {
     refuse(source, element, "<limit> from " + number(limits.lower) + " to " + number(limits.upper),
-           "Give lower no greater than upper");
+           "Set lower not greater than upper");
   }
   const double range = limits.upper - limits.lower;
   const bool degrees = limits.upper == 180 || limits.upper == 360;
   if (joint.type == JointType::kRevolute && degrees) {
     notes.push_back({RobotNote::Kind::kSuspicious, element,
-                     "upper=\"" + number(limits.upper) + "\" is in radians, were degrees meant?"});
+                     "upper=\"" + number(limits.upper) + "\" is in radians; check whether degrees were meant"});
   }
   if (joint.type == JointType::kRevolute && range > endless) {
     joint.type = JointType::kContinuous;
@@ -44,7 +44,7 @@ void read_limits(const urdf::JointLimits& limits, const std::string& source, dou
     return;
   }
   if (range == 0) {
-    notes.push_back({RobotNote::Kind::kSuspicious, element, "lower equals upper: taken as no limit at all"});
+    notes.push_back({RobotNote::Kind::kSuspicious, element, "lower equals upper: assumed to have no limits"});
     return;
   }
   joint.lower = limits.lower;
@@ -66,7 +66,7 @@ BodyJoint read_joint(const urdf::Joint& joint, const std::string& source, double
   result.type = type_of(joint);
   const Eigen::Vector3d axis(joint.axis.x, joint.axis.y, joint.axis.z);
   if (!(axis.norm() > 0) || !std::isfinite(axis.norm())) {
-    refuse(source, joint_element(joint.name), "its <axis> has no direction", "Give a direction, such as xyz=\"0 1 0\"");
+    refuse(source, joint_element(joint.name), "its <axis> is zero", "Set a direction, such as xyz=\"0 1 0\"");
   }
   result.axis = axis.normalized();
   if (joint.limits) read_limits(*joint.limits, source, endless, result, notes);
@@ -82,11 +82,11 @@ BodyJoint read_joint(const urdf::Joint& joint, const std::string& source, double
     result.mimic_offset = joint.mimic->offset;
   }
   if (!finite(result)) {
-    refuse(source, joint_element(joint.name), "a number in it is not finite", "Give numbers that a double can hold");
+    refuse(source, joint_element(joint.name), "a number in it is not finite", "Set finite numbers");
   }
   if (const double loss = std::max(result.damping, result.friction); loss > kMaxPlausible) {
     refuse(source, joint_element(joint.name), "<dynamics> of " + number(loss),
-           "Give damping in N·m·s/rad or N·s/m, and friction in N·m or N");
+           "Set damping in N·m·s/rad or N·s/m, and friction in N·m or N");
   }
   return result;
 }

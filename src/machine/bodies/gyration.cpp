@@ -55,8 +55,8 @@ void note_gyration(const urdf::Link& link, const std::vector<Shape>& shapes, std
   for (const Shape& shape : shapes) largest = std::max(largest, extent(shape));
   if (gyration <= largest) return;
   notes.push_back({RobotNote::Kind::kSuspicious, link_element(link.name),
-                   "its radius of gyration is " + number(gyration) + " m, the part itself measures " + number(largest) +
-                       " m: inertia too large for " + number(link.inertial->mass) + " kg"});
+                   "its radius of gyration is " + number(gyration) + " m, but the size of the part is " +
+                       number(largest) + " m: inertia too large for " + number(link.inertial->mass) + " kg"});
 }
 
 }  // namespace robot_control

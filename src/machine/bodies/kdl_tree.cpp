@@ -27,7 +27,7 @@ KDL::Joint kdl_joint(const UrdfDocument& document, const urdf::Joint& joint) {
       return {joint.name, frame.p, axis, KDL::Joint::TransAxis};
     default:
       refuse(document.source, "<joint name=\"" + joint.name + "\">", "floating and planar joints are not supported",
-             "Use fixed, revolute, continuous or prismatic");
+             "Set type to fixed, revolute, continuous or prismatic");
   }
 }
 

@@ -60,8 +60,8 @@ PointInertia inertia_of(const urdf::Link& link, const Eigen::Isometry3d& in_body
   if (!link.inertial) return result;
   const urdf::Inertial& given = *link.inertial;
   if (!(given.mass >= 0)) {
-    refuse(source, link_element(link.name), "<mass value=\"" + number(given.mass) + "\"/>: a mass is not negative",
-           "Give the mass in kg");
+    refuse(source, link_element(link.name), "<mass value=\"" + number(given.mass) + "\"/>: a mass must not be negative",
+           "Set the mass in kg");
   }
   if (given.mass == 0) return result;
   const Eigen::Matrix3d tensor = eigen_inertia(given);

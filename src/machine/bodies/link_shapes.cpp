@@ -24,7 +24,7 @@ std::vector<Eigen::Vector3d> mesh_points(const urdf::Mesh& mesh, const std::stri
   const Eigen::Vector3d scale(mesh.scale.x, mesh.scale.y, mesh.scale.z);
   if (!scale.allFinite() || (scale.array() == 0).any()) {
     refuse(description.source, element, "<mesh filename=\"" + mesh.filename + "\">: its scale is empty or zero",
-           "Give scale=\"1 1 1\" for a mesh in metres, \"0.001 0.001 0.001\" for one in millimetres");
+           "Set scale=\"1 1 1\" for a mesh in metres, \"0.001 0.001 0.001\" for one in millimetres");
   }
   // A message that already begins with the URDF keeps it only once.
   const auto located = [&](const RobotError& error) {
@@ -44,7 +44,7 @@ std::vector<Eigen::Vector3d> mesh_points(const urdf::Mesh& mesh, const std::stri
     if (mesh_read.not_finite > 0) {
       notes.push_back({RobotNote::Kind::kSuspicious, element,
                        "<mesh filename=\"" + mesh.filename + "\">: " + std::to_string(mesh_read.not_finite) +
-                           " points of it are infinite or not a number: left out"});
+                           " points are infinite or NaN: ignored"});
     }
     return std::move(mesh_read.points);
   } catch (const RobotError& error) {
@@ -97,7 +97,7 @@ bool has_extent(const Shape& shape, const std::string& source, const std::string
   bool extent = true;
   for (const double size : sizes_of(shape)) {
     if (!std::isfinite(size) || size < 0) {
-      refuse(source, element, "a shape with a size of " + number(size) + " m", "Give sizes above zero");
+      refuse(source, element, "a shape with a size of " + number(size) + " m", "Set sizes above zero");
     }
     extent = extent && size > 0;
   }
@@ -118,7 +118,7 @@ std::vector<Shape> shapes_of(const urdf::Link& link, ShapeSource which, const Ei
     if (has_extent(shape, description.source, element + kind)) {
       shapes.push_back(std::move(shape));
     } else {
-      notes.push_back({RobotNote::Kind::kIgnored, element + kind, "a shape without extent is left out"});
+      notes.push_back({RobotNote::Kind::kIgnored, element + kind, "a shape without extent is ignored"});
     }
   };
   const auto add = [&](const auto& given, const std::string& kind) {
@@ -129,8 +129,8 @@ std::vector<Shape> shapes_of(const urdf::Link& link, ShapeSource which, const Ei
       if (missing == nullptr) throw;
       missing->push_back(error.what());
       notes.push_back({RobotNote::Kind::kSuspicious, element + kind,
-                       "no such file as " + static_cast<const urdf::Mesh&>(*given->geometry).filename +
-                           ": left out, what the robot stands on is there without it"});
+                       "file not found: " + static_cast<const urdf::Mesh&>(*given->geometry).filename +
+                           ": ignored, the robot stands without it"});
     }
   };
   if (which == ShapeSource::kCollision) {

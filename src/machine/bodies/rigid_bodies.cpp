@@ -51,15 +51,15 @@ std::set<std::string> idle_massless_joints(const LumpedBodies& lumped) {
 void assign_massless_inertia(LumpedBodies& lumped) {
   RigidBodies& robot = lumped.robot;
   if (robot.bodies.size() > 1 && !(robot.bodies[0].mass > 0)) {
-    refuse(robot.source, link_element(robot.bodies[0].name), "neither it nor anything fixed to it has a mass",
-           "Give it an <inertial> with <mass> and <inertia>");
+    refuse(robot.source, link_element(robot.bodies[0].name), "neither it nor any link fixed to it has a mass",
+           "Add an <inertial> with <mass> and <inertia>");
   }
   for (std::size_t i = 1; i < robot.bodies.size(); ++i) {
     RigidBody& body = robot.bodies[i];
     if (body.mass > 0) continue;
     if (lumped.weighed[i]) {
-      refuse(robot.source, link_element(body.name), "it moves, and its mass is zero",
-             "Give <mass value=\"kg\"/> above zero and an <inertia>, or make joint \"" + body.joint.name + "\" fixed");
+      refuse(robot.source, link_element(body.name), "it moves, but its mass is zero",
+             "Set <mass value=\"kg\"/> above zero and an <inertia>, or make joint \"" + body.joint.name + "\" fixed");
     }
     RigidBody& parent = robot.bodies[body.parent];
     const RollingMeasure measure = measure_wheel(body);
@@ -70,7 +70,7 @@ void assign_massless_inertia(LumpedBodies& lumped) {
     parent.inertia *= 1 - kMasslessShare;
     robot.notes.push_back(
         {RobotNote::Kind::kAssumed, link_element(body.name),
-         "it moves without an <inertial>: " + number(body.mass) + " kg taken from \"" + parent.name + "\""});
+         "it moves, but has no <inertial>: " + number(body.mass) + " kg taken from \"" + parent.name + "\""});
   }
 }
 
@@ -161,8 +161,8 @@ class Lumper {
     if (gyration > largest_) {
       part.inertia *= std::pow(largest_ / gyration, 2);
       add_note(RobotNote::Kind::kRepaired, link_element(link.name),
-               "a radius of gyration of " + number(gyration) + " m, the whole robot measures " + number(largest_) +
-                   " m: inertia scaled down to that");
+               "a radius of gyration of " + number(gyration) + " m, but the size of the whole robot is " +
+                   number(largest_) + " m: inertia reduced to that size");
     }
     const PointInertia both = sum({target.mass, target.centre_of_gravity, target.inertia}, part);
     target.mass = both.mass;
@@ -198,12 +198,13 @@ class Lumper {
       }
     } catch (const RobotError& error) {
       add_note(RobotNote::Kind::kIgnored, link_element(body.name),
-               std::string("no <collision>, and its <visual> cannot serve: ") + error.what());
+               std::string("no <collision>, and its <visual> cannot be used: ") + error.what());
       body.shapes.clear();
     }
     if (body.shapes.empty()) return;
     if (measure_wheel(body).objection.empty()) {
-      add_note(RobotNote::Kind::kAssumed, link_element(body.name), "no <collision>: the wheel has its <visual> shape");
+      add_note(RobotNote::Kind::kAssumed, link_element(body.name),
+               "no <collision>: the <visual> shape of the wheel is used");
     } else {
       body.shapes.clear();
     }
@@ -214,7 +215,7 @@ class Lumper {
     if (root.type.empty()) return;
     add_note(RobotNote::Kind::kIgnored, joint_element(root.joint),
              "type=\"" + root.type + "\" on the empty root link " + root.link +
-                 " says that the robot is free: " + root.base + " is its base, and the joint's origin is not used");
+                 " marks the robot as free: " + root.base + " is its base, and the joint's origin is not used");
   }
 
   void note_turned_origins() {
@@ -236,7 +237,7 @@ class Lumper {
     }
     if (missing_visuals_.size() > kNamed) files += " and " + std::to_string(missing_visuals_.size() - kNamed) + " more";
     add_note(RobotNote::Kind::kSuspicious, link_element(missing_visuals_.front().first),
-             "<visual>: no such file, nothing is drawn there: " + files);
+             "<visual>: file not found, so it is not drawn: " + files);
   }
 
   void check_mimics() {
@@ -251,9 +252,10 @@ class Lumper {
       if (joint.mimicked.empty()) continue;
       const RigidBody* leader = result_.moved_by(joint.mimicked);
       if (leader != nullptr && leader->joint.mimicked.empty()) continue;
-      add_note(RobotNote::Kind::kIgnored, joint_element(joint.name),
-               "<mimic joint=\"" + joint.mimicked +
-                   (leader == nullptr ? "\">: no joint of that name moves" : "\">: that joint is a follower itself"));
+      add_note(
+          RobotNote::Kind::kIgnored, joint_element(joint.name),
+          "<mimic joint=\"" + joint.mimicked +
+              (leader == nullptr ? "\">: no moving joint has this name" : "\">: that joint is itself a mimic joint"));
       joint.mimicked.clear();
     }
   }
@@ -320,14 +322,14 @@ RigidBodies read_rigid_bodies(const RobotDescription& description, double endles
   }
   for (const std::string& joint : idle) {
     lumped.robot.notes.push_back({RobotNote::Kind::kAssumed, joint_element(joint),
-                                  "what it moves has no <inertial>, and nothing rolls on it: taken as fixed"});
+                                  "the link that it moves has no <inertial> and no wheel: assumed fixed"});
   }
   lumped.robot.massless = std::move(massless);
   assign_massless_inertia(lumped);
   for (RigidBody& body : lumped.robot.bodies) {
     if (!of_this_world(body)) {
       refuse(document.source, link_element(body.name),
-             "a mass, length or inertia in it or on the way to it exceeds 1e9", "Give kg, m and kg·m²");
+             "a mass, length or inertia of it, or of a link above it, exceeds 1e9", "Set kg, m and kg·m²");
     }
     if (body.mass > 0) body.inertia = possible_inertia(body.inertia, body.mass);
   }

@@ -152,10 +152,10 @@ void measure_shapes(const RigidBody& body, RollingMeasure& measure) {
   if (!(reach > 0) || tyre.empty()) {
     const std::string turn = lacking_turn(body);
     measure.nearly = !turn.empty();
-    measure.objection =
-        measure.nearly
-            ? "its cylinder lies across the axle (did you forget rpy=\"" + turn + "\" of the cylinder?)"
-            : "its shape does not lie round about the axle, from which it reaches as far as " + number(reach) + " m";
+    measure.objection = measure.nearly
+                            ? "its cylinder lies across the axle"
+                            : "its shape is not round about the axle: it reaches " + number(reach) + " m from it";
+    measure.fix = measure.nearly ? "Set rpy=\"" + turn + "\" in the <origin> of the cylinder" : kRoundShape;
     return;
   }
   reach = 0;
@@ -202,12 +202,16 @@ RollingMeasure measure_wheel(const RigidBody& body) {
   measure.axle_in_root = body.in_root.linear() * joint.axis;
   if (joint.type == JointType::kRevolute && joint.lower < joint.upper) {
     measure.objection = "it turns only from " + number(joint.lower) + " to " + number(joint.upper) + " rad";
+    measure.fix = kContinuous;
   } else if (joint.type != JointType::kContinuous && joint.type != JointType::kRevolute) {
-    measure.objection = "it slides, a wheel has to turn";
+    measure.objection = "it is type=\"prismatic\", but a drive wheel needs type=\"continuous\"";
+    measure.fix = kContinuous;
   } else if (!turns_upright(body)) {
-    measure.objection = "its axis is not level";
+    measure.objection = "its axis is not horizontal";
+    measure.fix = kLateralAxis;
   } else if (body.shapes.empty()) {
-    measure.objection = "it has no shape to take a radius from";
+    measure.objection = "it has no <collision> shape that gives its radius";
+    measure.fix = kRoundShape;
   }
   if (!measure.objection.empty()) return measure;
   measure_shapes(body, measure);

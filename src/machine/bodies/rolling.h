@@ -28,8 +28,15 @@ inline constexpr double kOutOfRound = 0.0026;    ///< m
 inline constexpr double kMaxOutOfRound = 0.128;  ///< a hexagon, which is no wheel at any size, has 0.134
 inline constexpr double kTrueRunning = 0.005;
 
+/// A reason why a body is not a wheel, and the changes of the file that make it one.
+inline constexpr const char* kFixedWheel = "it is type=\"fixed\", but a drive wheel needs type=\"continuous\"";
+inline constexpr const char* kContinuous = "Set type=\"continuous\" on the joint of each drive wheel";
+inline constexpr const char* kLateralAxis = "Set <axis xyz=\"0 1 0\"/>, or correct <origin rpy=\"…\"> of the joint";
+inline constexpr const char* kRoundShape = "Add a <collision> with a <cylinder> or <sphere> about the axle";
+
 struct RollingMeasure {
   std::string objection;    ///< why it does not roll, with numbers; empty: it rolls
+  std::string fix;          ///< the change of the file that makes it roll
   bool nearly = false;      ///< one number of the file keeps it from rolling, and `objection` names it
   double out_of_round = 0;  ///< m by which the farthest corner exceeds the radius; 0: runs true
   Vector3 centre_base{};    ///< m, centre of the shape

@@ -68,9 +68,9 @@ std::string parsed(std::string_view bytes, const std::string& format) {
 
 MeshFaces parse_with_assimp(std::string_view bytes, const std::string& format) {
   const ProcessResult result = run_apart([&] { return parsed(bytes, format); });
-  if (result.end == ProcessResult::End::kNotStarted) return {{}, "no process to read it in"};
+  if (result.end == ProcessResult::End::kNotStarted) return {{}, "the process that reads it did not start"};
   if (result.end != ProcessResult::End::kExited || result.code != 0 || result.output.empty()) {
-    return {{}, "assimp breaks down over it"};
+    return {{}, "assimp crashes when it reads it"};
   }
   if (result.output[0] == 'P') return {{}, result.output.substr(1)};
   MeshFaces faces;

@@ -14,7 +14,7 @@
 namespace robot_control {
 namespace {
 
-constexpr const char* kExport = "Export the mesh again, as STL, OBJ or DAE";
+constexpr const char* kExport = "Export the mesh again as STL, OBJ or DAE";
 
 std::string lower_ending(const std::filesystem::path& path) {
   std::string ending = path.extension().string();
@@ -26,25 +26,26 @@ std::string lower_ending(const std::filesystem::path& path) {
 std::string read_bytes(const std::filesystem::path& path) {
   std::error_code error;
   if (!std::filesystem::is_regular_file(path, error)) {
-    refuse(path, "mesh", "there is no such file", "Repair the <mesh filename>, or put the file there");
+    refuse(path, "mesh", "file not found", "Correct the <mesh filename>, or add the file");
   }
   const std::uintmax_t size = std::filesystem::file_size(path, error);
   if (!error && size == 0) {
-    refuse(path, "mesh", "the file is empty (0 bytes)", "It is a placeholder: fetch the real file, or draw a <box>");
+    refuse(path, "mesh", "the file is empty (0 bytes)", "Replace it with the real file, or with a <box>");
   }
   if (!error && size > kMaxMeshSize) {
-    refuse(path, "mesh", std::to_string(size >> 20U) + " MiB are more than " + std::to_string(kMaxMeshSize >> 20U),
-           "Thin the mesh out");
+    refuse(path, "mesh",
+           std::to_string(size >> 20U) + " MiB exceed the limit of " + std::to_string(kMaxMeshSize >> 20U),
+           "Reduce the number of faces");
   }
   InputFile file = read_input_file(path, kMaxMeshSize);
-  if (!file.problem.empty()) refuse(path, "mesh", "it cannot be read: " + file.problem, "Check the file's permissions");
+  if (!file.problem.empty()) refuse(path, "mesh", file.problem, "Check the file's permissions");
   return std::move(file.text);
 }
 
 Points faces_of(const std::filesystem::path& path) {
   const std::string ending = lower_ending(path);
   if (ending != ".stl" && ending != ".obj" && ending != ".dae") {
-    refuse(path, "mesh", "\"" + ending + "\" is no format that is read here", kExport);
+    refuse(path, "mesh", "unsupported mesh format \"" + ending + "\"", kExport);
   }
   const std::string bytes = read_bytes(path);
   if (is_lfs_pointer(bytes)) refuse(path, "mesh", kLfsPointer, kLfsRemedy);
@@ -66,8 +67,7 @@ Points read_mesh(const std::filesystem::path& path, std::size_t* not_finite) {
   std::sort(points.begin(), points.end(), before);
   points.erase(std::unique(points.begin(), points.end()), points.end());
   if (points.size() < 3) {
-    refuse(path, "mesh", "it is empty: it has no face of any size, at most lines or points",
-           "Draw a <box> or <cylinder> in its place");
+    refuse(path, "mesh", "it is empty: it has no face with an area", "Replace it with a <box> or <cylinder>");
   }
   return points;
 }

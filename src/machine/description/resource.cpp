@@ -133,16 +133,17 @@ fs::path package_file(const std::string& uri, const RobotDescription& descriptio
   const std::size_t slash = rest.find('/');
   const std::string package = rest.substr(0, slash);
   if (package.empty() || slash == std::string::npos) {
-    refuse(description.source, element_of(uri), "it names no file in a package", "Write package://PACKAGE/PATH");
+    refuse(description.source, element_of(uri), "its filename names no file in a package",
+           "Set it to package://PACKAGE/PATH");
   }
   const std::string file = rest.substr(slash + 1);
   const std::optional<fs::path> folder = find_package(package, file, description);
   if (!folder) {
     const std::string searched = environment("ROS_PACKAGE_PATH");
     refuse(description.source, element_of(uri),
-           "there is no package \"" + package + "\", neither in ROS_PACKAGE_PATH (" +
-               (searched.empty() ? "which is not set" : searched) + "), nor in share/ of CMAKE_PREFIX_PATH" +
-               (folder_of_urdf(description) ? ", nor beside the URDF or above it" : ""),
+           "package not found: \"" + package + "\", not in ROS_PACKAGE_PATH (" +
+               (searched.empty() ? "which is not set" : searched) + "), not in share/ of CMAKE_PREFIX_PATH" +
+               (folder_of_urdf(description) ? ", not in the folder of the URDF or above it" : ""),
            "Install it, or add the folder that holds it to ROS_PACKAGE_PATH");
   }
   return *folder / file;
@@ -174,15 +175,15 @@ fs::path locate(const std::string& uri, const RobotDescription& description) {
     return path.starts_with(kHost) ? path.substr(kHost.size() - 1) : path;
   }
   if (const std::size_t scheme = uri.find("://"); scheme != std::string::npos) {
-    refuse(description.source, element_of(uri), "\"" + uri.substr(0, scheme) + "://\" is not read",
-           "Use package://, file:// or a path");
+    refuse(description.source, element_of(uri), "\"" + uri.substr(0, scheme) + "://\" is not supported",
+           "Replace it with package://, file:// or a path");
   }
   fs::path path = uri;
   if (path.is_absolute()) return path;
   const std::optional<fs::path> folder = folder_of_urdf(description);
   if (!folder) {
-    refuse(description.source, element_of(uri), "a relative path has no folder to start from here",
-           "Use package:// or an absolute path, or give the URDF as a file");
+    refuse(description.source, element_of(uri), "a relative path needs the folder of a URDF file",
+           "Replace it with package:// or an absolute path, or give the URDF as a file");
   }
   return *folder / path;
 }
@@ -191,14 +192,14 @@ fs::path locate(const std::string& uri, const RobotDescription& description) {
 
 fs::path resolve_resource(const std::string& uri, const RobotDescription& description) {
   if (uri.find_first_not_of(" \t\r\n") == std::string::npos) {
-    refuse(description.source, element_of(uri), "it names no file", "Give its filename");
+    refuse(description.source, element_of(uri), "it names no file", "Set its filename");
   }
   fs::path path = locate(uri, description);
   if (is_there(path)) return path;
   // In a/b/../c, where b does not exist, the path is normalised as in a URL.
   if (fs::path cleaned = path.lexically_normal(); is_there(cleaned)) return cleaned;
-  refuse(description.source, element_of(uri), "there is no file " + path.string(),
-         "Put it there, or correct the file name (letters count in upper and lower case)");
+  refuse(description.source, element_of(uri), "file not found: " + path.string(),
+         "Add the file, or correct its name (upper and lower case differ)");
 }
 
 }  // namespace robot_control

@@ -39,16 +39,23 @@ bool is_lfs_pointer(const std::string& bytes) {
 void refuse(const std::string& source, const std::string& element, const std::string& what, const std::string& remedy) {
   // TinyXML's sentences already have a full stop.
   const std::string sentence = what.substr(0, what.find_last_not_of('.') + 1);
-  throw RobotError(printable(source) + ": " + printable(element) + ": " + fit_for_message(sentence) + ". " +
+  const std::string fix = sentence.find('\n') == std::string::npos ? ". " : ".\nFix: ";
+  throw RobotError(printable(source) + ": " + printable(element) + ": " + fit_for_message(sentence) + fix +
                    fit_for_message(remedy) + ".");
+}
+
+void refuse(const std::string& source, const std::string& element, const std::string& problem, const std::string& found,
+            const std::string& fix) {
+  refuse(source, element, problem + ".\nFound: " + found, fix);
 }
 
 RobotDescription load_description(const std::string& path) {
   InputFile file = read_input_file(path, kMaxDescription);
   if (file.problem.empty() && is_lfs_pointer(file.text)) refuse(path, "URDF", kLfsPointer, kLfsRemedy);
   if (ends_with_xacro(path)) return {expand_xacro(path), path};
-  if (!file.problem.empty()) throw RobotError(fit_for_message(file_error(path, file.problem)) + ". Name a URDF file.");
-  if (file.text.empty()) refuse(path, "URDF", "it is empty", "Give the path of a URDF file");
+  if (!file.problem.empty())
+    throw RobotError(fit_for_message(file_error(path, file.problem)) + ". Give the path of an existing URDF file.");
+  if (file.text.empty()) refuse(path, "URDF", "the file is empty", "Give the path of a URDF file");
   return {std::move(file.text), path};
 }
 

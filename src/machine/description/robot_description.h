@@ -23,6 +23,10 @@ inline constexpr const char* kLfsRemedy = "Fetch the file: git lfs pull";
 [[noreturn]] void refuse(const std::string& source, const std::string& element, const std::string& what,
                          const std::string& remedy);
 
+/// Throws RobotError with three lines: "<source>: <element>: <problem>.", "Found: <found>.", "Fix: <fix>."
+[[noreturn]] void refuse(const std::string& source, const std::string& element, const std::string& problem,
+                         const std::string& found, const std::string& fix);
+
 /// Holds a URDF text and where it was read, for messages ("urdf/diffbot.urdf", "/robot_description").
 struct RobotDescription {
   std::string text;

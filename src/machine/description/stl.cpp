@@ -77,19 +77,19 @@ MeshFaces parse_text(std::string_view text) {
     if (is(word, "vertex")) {
       Eigen::Vector3d point;
       if (!words.number(point[0]) || !words.number(point[1]) || !words.number(point[2])) {
-        faces.problem = "a vertex of it is no three numbers";
+        faces.problem = "a vertex does not have three numbers";
         return faces;
       }
       faces.points.push_back(point);
     } else if (is(word, "endfacet") && faces.points.size() % 3 != 0) {
-      faces.problem = "a facet of it has another number of vertices than three";
+      faces.problem = "a facet does not have three vertices";
       return faces;
     } else if (is(word, "endsolid")) {
       ended = true;
     }
   }
   if (!ended)
-    faces.problem = "it is cut short: neither 84 + 50 n bytes long, as a binary STL, nor a text with endsolid";
+    faces.problem = "the file is incomplete: neither a binary STL of 84 + 50 n bytes, nor a text with endsolid";
   return faces;
 }
 

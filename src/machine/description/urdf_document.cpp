@@ -78,8 +78,8 @@ UrdfDocument parse_urdf(const RobotDescription& description) {
   std::string errors;
   document.model = parsed_by_urdfdom(printed(robot), errors);
   if (!document.model || !errors.empty()) {
-    refuse(description.source, "<robot>", errors.empty() ? "urdfdom refuses it" : errors,
-           "See http://wiki.ros.org/urdf/XML");
+    refuse(description.source, "<robot>", errors.empty() ? "the URDF parser (urdfdom) rejects it" : errors,
+           "Check the element against http://wiki.ros.org/urdf/XML");
   }
   document.joint_order = names_of(robot, "joint");
   document.link_order = names_of(robot, "link");

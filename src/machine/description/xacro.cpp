@@ -16,7 +16,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr int kNotInstalled = 69;  // python/robot_control/setup/expand_xacro.py
-constexpr const char* kByHand = "or expand the file by hand if you trust it as a program: xacro FILE > robot.urdf";
+constexpr const char* kByHand = "or expand the file yourself if you trust it as a program: xacro FILE > robot.urdf";
 
 std::string python() {
   if (std::string chosen = environment("ROBOT_CONTROL_XACRO_PYTHON"); !chosen.empty()) return chosen;
@@ -35,7 +35,7 @@ std::string python_path() {
 
 std::string expand_xacro(const std::string& path) {
   if (const std::string problem = input_file_problem(path, kMaxDescription); !problem.empty()) {
-    throw RobotError(fit_for_message(file_error(path, problem)) + ". Name a .xacro file.");
+    throw RobotError(fit_for_message(file_error(path, problem)) + ". Give the path of an existing .xacro file.");
   }
   const std::string interpreter = python();
   const ProcessResult result =
@@ -46,11 +46,12 @@ std::string expand_xacro(const std::string& path) {
       refuse(path, "xacro", interpreter + " cannot be started",
              "Set ROBOT_CONTROL_XACRO_PYTHON to a Python that has xacro, " + std::string(kByHand));
     case ProcessResult::End::kEnded:
-      refuse(path, "xacro", "it wrote nothing for " + std::to_string(kXacroSeconds) + " s, or without end",
-             "Look for a circle of includes or macros, " + std::string(kByHand));
+      refuse(path, "xacro",
+             "it did not finish within " + std::to_string(kXacroSeconds) + " s, or its output has no end",
+             "Check for a cycle of includes or macros, " + std::string(kByHand));
     case ProcessResult::End::kKilled:
       refuse(path, "xacro", "it was killed by signal " + std::to_string(result.code),
-             "Start it again, " + std::string(kByHand));
+             "Restart the program, " + std::string(kByHand));
     case ProcessResult::End::kExited:
       break;
   }
@@ -61,8 +62,8 @@ std::string expand_xacro(const std::string& path) {
   if (result.code != 0) {
     refuse(
         path, "xacro", on_one_line(result.errors),
-        "Repair the file; set ROS_PACKAGE_PATH so that $(find …) works; write defaults for its arguments into it, or "
-        "take the URDF that its author expanded: a .xacro file is a program, which `xacro FILE` runs unguarded");
+        "Correct the file; set ROS_PACKAGE_PATH for $(find …), and defaults for its arguments; or give the URDF that "
+        "its author expanded: `xacro FILE` runs the file as a program, without protection");
   }
   return result.output;
 }

@@ -59,7 +59,7 @@ std::string ends_of(const RigidBodies& robot, const std::vector<BodyChain>& chai
   return list(names);
 }
 
-constexpr const char* kAxesRule = "a leg turns about x, y and y at the zero pose";
+constexpr const char* kAxesRule = "at zero angles, the axes of a leg are x, y and y";
 constexpr const char* kAxesRemedy = "Correct its <axis xyz=\"…\">, or the <origin rpy=\"…\"> of the joints up to it";
 
 /// Names all axes that are off those of a leg. They are nearer to these than to others.
@@ -75,13 +75,13 @@ void refuse_other_axes(const RigidBodies& robot, const std::vector<BodyChain>& c
       if (first == nullptr) {
         first = &body;
         text = "its axis is " + angle + " off the " + (i == 0 ? "lengthwise (x)" : "lateral (y)") + " axis of " +
-               robot.bodies[0].name + ", 0.2° are allowed: " + kAxesRule;
+               robot.bodies[0].name + ", allowed is 0.2°";
       } else {
-        others += (others.empty() ? "; also off are " : ", ") + body.joint.name + " by " + angle;
+        others += (others.empty() ? "; also off: " : ", ") + body.joint.name + " by " + angle;
       }
     }
   }
-  if (first != nullptr) refuse(robot.source, joint_element(first->joint.name), text + others, kAxesRemedy);
+  if (first != nullptr) refuse(robot.source, joint_element(first->joint.name), text, kAxesRule + others, kAxesRemedy);
 }
 
 /// Names the first difference of a limb from a leg, and the limbs that have the same one.
@@ -98,7 +98,7 @@ void refuse_other_axes(const RigidBodies& robot, const std::vector<BodyChain>& c
     for (const RigidBody* body : bodies(joint)) {
       if (body != &first && is_the_same(*body)) same.push_back(body->joint.name);
     }
-    return same.empty() ? "" : "; the same holds for " + list(same);
+    return same.empty() ? "" : "; the same applies to " + list(same);
   };
   const std::string almost = "almost a quadruped: ";
   for (std::size_t i = 0; i < kLegJoints; ++i) {
@@ -106,15 +106,15 @@ void refuse_other_axes(const RigidBodies& robot, const std::vector<BodyChain>& c
       const std::string joint = std::string("the ") + kJointNames[i];
       if (!turns(*body)) {
         refuse(robot.source, joint_element(body->joint.name),
-               almost + joint + " slides, and the joints of a leg turn" +
+               almost + joint + " is prismatic, but leg joints turn" +
                    collect(
                        *body, [](const RigidBody& other) { return !turns(other); }, i),
-               "Make it type=\"revolute\"");
+               "Set type=\"revolute\"");
       }
       const Eigen::Index axis = nearest_axis(*body);
       if (axis == leg_axis(i)) continue;
       refuse(robot.source, joint_element(body->joint.name),
-             almost + joint + "'s axis is " + "xyz"[axis] + ", and " + kAxesRule +
+             almost + joint + "'s axis is " + "xyz"[axis] + ", but " + kAxesRule +
                  collect(
                      *body, [axis](const RigidBody& other) { return nearest_axis(other) == axis; }, i),
              kAxesRemedy);
@@ -123,8 +123,8 @@ void refuse_other_axes(const RigidBodies& robot, const std::vector<BodyChain>& c
   const BodyChain& shortest = limbs.front();  // no other differs
   refuse(robot.source, link_element(robot.bodies[shortest.bodies.back()].name),
          almost + "the leg that ends here has " + std::to_string(shortest.bodies.size()) +
-             " joints that move, and a leg has three: " + kAxesRule,
-         "Give it a hip, a thigh and a knee that turn");
+             " moving joints, but a leg has three: " + kAxesRule,
+         "Add the missing joints: hip, thigh and knee turn");
 }
 
 }  // namespace
@@ -163,21 +163,22 @@ void refuse_other_chains(const RigidBodies& robot, const std::vector<BodyChain>&
   for (const BodyChain& chain : chains) {
     if (chain.bodies.size() == kLegJoints) continue;
     refuse(robot.source, joint_element(robot.bodies[chain.bodies[kLegJoints]].joint.name),
-           "it moves on a leg, behind the leg's three joints: wheels or feet on legs are not supported",
-           "Make this joint type=\"fixed\", or describe a robot whose legs end in feet");
+           "it is a fourth moving joint of a leg: wheels or moving feet on legs are not supported",
+           "Set type=\"fixed\" on this joint");
   }
   if (chains.size() != kLegs) {
     refuse(robot.source, "<robot>",
            std::to_string(chains.size()) + (chains.size() == 1 ? " leg found" : " legs found") +
-               (chains.empty() ? "" : " (to " + ends_of(robot, chains) + ")") + ", a quadruped has four",
-           "A leg is three joints in a row on the root link that turn about x, y and y at the zero pose");
+               (chains.empty() ? "" : " (to " + ends_of(robot, chains) + ")") + ", but a quadruped has four",
+           "Add the missing legs: a leg is three joints in series from the root link; at zero angles, their axes are "
+           "x, y and y");
   }
   std::set<std::size_t> of_legs{0};
   for (const BodyChain& chain : chains) of_legs.insert(chain.bodies.begin(), chain.bodies.end());
   for (std::size_t i = 0; i < robot.bodies.size(); ++i) {
     if (of_legs.contains(i)) continue;
-    refuse(robot.source, joint_element(robot.bodies[i].joint.name), "it moves, but belongs to no leg",
-           "Make it type=\"fixed\": besides its twelve leg joints nothing on a quadruped may move");
+    refuse(robot.source, joint_element(robot.bodies[i].joint.name), "it moves, but is not part of a leg",
+           "Set type=\"fixed\": only the twelve leg joints of a quadruped may move");
   }
 }
 

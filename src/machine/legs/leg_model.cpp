@@ -57,8 +57,8 @@ Foot foot_of(const RigidBodies& robot, const RigidBody& body) {
     }
   }
   if (farthest == nullptr) {
-    refuse(robot.source, link_element(body.name), "the leg that ends here has no shape that reaches the ground",
-           "Give the foot a <collision>, best a sphere, on this link or on one that is fixed to it");
+    refuse(robot.source, link_element(body.name), "the leg that ends here has no shape",
+           "Add a <collision> for the foot, best a <sphere>, to this link or to one fixed to it");
   }
   if (ball != nullptr && ball_reach >= reach - kSameReach)
     return {body.in_root * ball->in_body.translation(), foot_radius(body, *ball)};
@@ -91,7 +91,8 @@ std::array<Chain, kLegs> placed(const RigidBodies& robot, const std::vector<Body
     if (!ends[place].empty()) {
       refuse(robot.source, link_element(end),
              std::string("this leg and that to ") + ends[place] + " are both " + name_of(static_cast<LegPlace>(place)),
-             "Each corner has one leg: hips before and behind their mean x, feet left (y > 0) and right of the middle");
+             "Move the joints: each corner has one leg, hips before and behind their mean x, feet left (y > 0) and "
+             "right (y < 0)");
     }
     ends[place] = end;
     std::copy_n(chain.bodies.begin(), kLegJoints, result[place].begin());
@@ -125,8 +126,8 @@ LegGeometry geometry_of(const RigidBodies& robot, const Chain& chain, const Eige
   for (const auto& [part, body] : {std::pair{geometry.lower, chain[1]}, std::pair{geometry.foot, chain[2]}}) {
     if (std::hypot(part.x(), part.z()) >= kShortest) continue;
     refuse(robot.source, link_element(robot.bodies[body].name),
-           "this part of the leg has no length between its axis and the next, or the foot",
-           "Give the origins of the joints and the place of the foot in m");
+           "this part of the leg has the length 0 to the next joint, or to the foot",
+           "Set the origins of the joints and the position of the foot in m");
   }
   return geometry;
 }
@@ -189,7 +190,7 @@ Bends paired(const RigidBodies& robot, const Geometries& geometries, const std::
   if (bends[odd] * majority > 0) --odd;
   const std::string others = majority == 0 ? knee_of(robot, places[odd - 1]) + " points " : "the other three point ";
   refuse(robot.source, joint_element(knee_of(robot, places[odd])),
-         std::string("the range of this knee lets it point ") + side_of(bends[odd]) + " alone, and " + others +
+         std::string("the range of this knee allows it to point only ") + side_of(bends[odd]) + ", but " + others +
              side_of(-bends[odd]),
          "Mirror its <limit lower=\"…\" upper=\"…\"/> or its <axis xyz=\"…\">");
 }
@@ -206,10 +207,10 @@ Bends bends_of(const RigidBodies& robot, const Geometries& geometries, const std
     const bool forward = wanted == KneeBend::kForward || wanted == (leg < 2 ? KneeBend::kOutwards : KneeBend::kMiddle);
     bends[leg] = forward ? 1 : -1;
     if (room(geometries[leg], bends[leg]) >= kMinBendBothWays) continue;
-    refuse(
-        robot.source, joint_element(knee_of(robot, places[leg])),
-        std::string("robot/knee_bend lets this knee point ") + side_of(bends[leg]) + ", which its range does not allow",
-        "Leave robot/knee_bend out, or set the other side");
+    refuse(robot.source, joint_element(knee_of(robot, places[leg])),
+           std::string("robot.knee_bend requires this knee to point ") + side_of(bends[leg]) +
+               ", but its range does not allow this",
+           "Remove robot.knee_bend, or set the other side");
   }
   return wanted == KneeBend::kDerived ? paired(robot, geometries, places, bends) : bends;
 }
@@ -218,12 +219,12 @@ void require_limits(const RigidBodies& robot, const BodyJoint& joint) {
   if (const double end = std::max(std::abs(joint.lower), std::abs(joint.upper)); end > kTurns && end <= 360) {
     refuse(robot.source, joint_element(joint.name),
            "its range of " + number(joint.lower) + " to " + number(joint.upper) + " rad looks like degrees",
-           "Give lower and upper in rad");
+           "Set lower and upper in rad");
   }
   if (joint.effort_limit > 0 && joint.velocity_limit > 0) return;
   refuse(robot.source, joint_element(joint.name),
-         std::string("a joint of a leg without ") + (joint.effort_limit > 0 ? "velocity" : "effort") + " limit",
-         "Give <limit effort=\"…\" velocity=\"…\"/> in N·m and rad/s, as the drive's data sheet states them");
+         std::string("the leg joint has no ") + (joint.effort_limit > 0 ? "velocity" : "effort") + " limit",
+         "Set <limit effort=\"…\" velocity=\"…\"/> in N·m and rad/s, from the data sheet of the drive");
 }
 
 void refuse_massless_limbs(const RobotDescription& description, const RigidBodies& bodies,
@@ -231,8 +232,8 @@ void refuse_massless_limbs(const RobotDescription& description, const RigidBodie
   if (chains.size() == kLegs || bodies.massless.empty()) return;
   if (joints_on_limbs(read_moving_bodies(description)) <= joints_on_limbs(bodies)) return;
   refuse(bodies.source, "<robot>",
-         "almost a quadruped: these links have no <inertial>, and count as fixed: " + list(bodies.massless),
-         "Give each link of a leg its <inertial> with <mass> and <inertia>");
+         "almost a quadruped: these links have no <inertial> and count as fixed: " + list(bodies.massless),
+         "Add to each link of a leg its <inertial> with <mass> and <inertia>");
 }
 
 }  // namespace
@@ -258,7 +259,7 @@ double usual_rotor_inertia(double mass, double leg_length) noexcept {
 
 const LegModel& leg_model_of(const MachineModel& machine) {
   const auto* const legged = dynamic_cast<const LegModel*>(&machine);
-  if (legged == nullptr) throw RobotError(machine.source + ": this machine has no legs");
+  if (legged == nullptr) throw RobotError(machine.source + ": this robot has no legs");
   return *legged;
 }
 
@@ -283,8 +284,8 @@ LegModel read_legs(const RobotDescription& description, const MachineParameters&
   model.hash = hash.value();
   const Belly belly = belly_of(*bodies, places);
   if (!std::isfinite(belly.height)) {
-    refuse(bodies->source, link_element(bodies->bodies[0].name), "a robot on legs lies on its body, which has no shape",
-           "Give it a <collision>");
+    refuse(bodies->source, link_element(bodies->bodies[0].name),
+           "a robot on legs lies on its body, but this has no shape", "Add a <collision>");
   }
   model.belly = belly.height;
   model.lying_pitch = std::atan2(belly.down.x(), -belly.down.z());

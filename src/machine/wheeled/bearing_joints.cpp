@@ -178,11 +178,11 @@ void refuse_unheld_joints(const DriveTrain& robot) {
   if (sinking.empty() || load.stands_without_them()) return;
   const std::vector<std::string> names = load.names(sinking);
   const double sink = std::ranges::max(sinking, {}, &Support::sink).sink;
-  const std::string depth = std::isfinite(sink) ? "by up to " + number(sink) + " m" : "without end";
-  refuse(robot.source, joint_element(names.front()),
-         "the robot stands on joints that nothing holds: " + list(names) + "; it would sink " + depth +
-             ", and a suspension gives way by at most " + number(load.allowed()) + " m, half of a wheel's radius",
-         "Only wheels are driven here: make these joints type=\"fixed\", in the pose in which the robot drives");
+  const std::string depth = std::isfinite(sink) ? "by up to " + number(sink) + " m" : "without limit";
+  refuse(robot.source, joint_element(names.front()), "the robot stands on joints without effort limit",
+         list(names) + "; the robot would sink " + depth + ", but a suspension may sink at most " +
+             number(load.allowed()) + " m, half of a wheel's radius",
+         "Set type=\"fixed\" on these joints, in the pose in which the robot drives: only wheels are driven");
 }
 
 }  // namespace robot_control

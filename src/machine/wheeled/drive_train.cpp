@@ -80,8 +80,8 @@ void read_geometry(const RigidBodies& robot, const DriveTrainParameters& paramet
   model.wheel_base_multiplier =
       overridden("wheel_base_multiplier", "", parameters.wheel_base_multiplier, scrub, robot, model.notes);
   if (gear.wheels.size() > 2 && !parameters.wheel_base_multiplier) {
-    model.notes.push_back({RobotNote::Kind::kAssumed, "robot/wheel_base_multiplier",
-                           number(scrub) + ", from where the axles stand; measure it, and set it"});
+    model.notes.push_back({RobotNote::Kind::kAssumed, "robot.wheel_base_multiplier",
+                           number(scrub) + ", from the positions of the axles; measure it and set it"});
   }
 }
 
@@ -159,9 +159,9 @@ void note_unequal_loads(const DriveTrainParameters& parameters, DriveTrain& mode
   if (model.wheels.size() == 2 || parameters.wheel_base_multiplier) return;
   const Eigen::Vector2d offset = centre_from_axles(model);
   if (offset.norm() <= kCentral * model.wheel_base) return;
-  model.notes.push_back({RobotNote::Kind::kSuspicious, "robot/wheel_base_multiplier",
+  model.notes.push_back({RobotNote::Kind::kSuspicious, "robot.wheel_base_multiplier",
                          "the centre of gravity lies " + length(offset.x()) + " m before and " + length(offset.y()) +
-                             " m left of the middle of the wheels, the multiplier is that of equal loads"});
+                             " m left of the middle of the wheels, but the multiplier assumes equal loads"});
 }
 
 /// Without a missing mesh the robot may have nothing to stand on.
@@ -179,8 +179,7 @@ void check_finite(const DriveTrain& model) {
                       std::all_of(model.wheels.begin(), model.wheels.end(), all_finite) &&
                       std::all_of(model.casters.begin(), model.casters.end(), all_finite);
   if (!finite) {
-    refuse(model.source, "<robot>", "masses, lengths or inertias that are beyond all numbers",
-           "Give numbers of a robot that fits on this earth, in kg and m");
+    refuse(model.source, "<robot>", "masses, lengths or inertias overflow", "Set masses in kg and lengths in m");
   }
 }
 
@@ -224,7 +223,7 @@ std::string DriveTrain::parts() const {
 
 const DriveTrain& drive_train_of(const MachineModel& machine) {
   const auto* const wheeled = dynamic_cast<const DriveTrain*>(&machine);
-  if (wheeled == nullptr) throw RobotError(machine.source + ": this machine has no drive wheels");
+  if (wheeled == nullptr) throw RobotError(machine.source + ": this robot has no drive wheels");
   return *wheeled;
 }
 

@@ -49,7 +49,7 @@ void leave_out_footprints(RigidBodies& robot, const RunningGear& gear, double fl
     std::erase_if(body.shapes, [&](const Shape& shape) {
       if (!is_footprint(robot, body, shape, floor)) return false;
       notes.push_back({RobotNote::Kind::kIgnored, link_element(shape.link) + "<collision>",
-                       "a thin shape on the floor marks the footprint, nothing stands on it: left out"});
+                       "a thin shape on the floor only marks the footprint: ignored"});
       return true;
     });
   }
@@ -59,7 +59,7 @@ void note_levelled(const std::string& link, double gap, std::vector<RobotNote>& 
   if (std::abs(gap) < kNotedHeight) return;
   notes.push_back({RobotNote::Kind::kAssumed, link_element(link),
                    "it ends " + number(std::abs(gap) * 1000) + " mm " + (gap < 0 ? "below" : "above") +
-                       " the drive wheels: taken as level with them"});
+                       " the drive wheels: assumed level with them"});
 }
 
 void raise(RigidBodies& robot, std::size_t body, double by) {

@@ -26,7 +26,8 @@ void note_large_wheels(DriveTrain& robot) {
   for (const WheelModel& wheel : robot.wheels) {
     if (wheel.radius < kMaxWheelRadius) continue;
     note(robot, joint_element(robot.joints[wheel.joint].name),
-         "a wheel radius of " + number(wheel.radius) + " m: are lengths in millimetres? A URDF's are metres");
+         "a wheel radius of " + number(wheel.radius) +
+             " m: check whether lengths are in millimetres; a URDF has metres");
   }
 }
 
@@ -52,16 +53,16 @@ void note_tipping(DriveTrain& robot) {
       return;
     }
     note(robot, "<robot>",
-         "nothing within 3° of the ground carries it on one side of its centre of gravity (x " +
+         "no wheel, caster or foot within 3° of the ground supports it on one side of its centre of gravity (x " +
              length(robot.centre_of_gravity_base[0]) +
-             " m): it falls over, or leans on what should not touch the ground. Look at where its wheels and casters "
-             "stand, and how low they reach");
+             " m): it tips over, or another part touches the ground. Check the positions of wheels and casters, and "
+             "their lowest points");
     return;
   }
   if (lifting >= limit) return;
   note(robot, "<robot>",
-       "its centre of gravity lies so high, or so near to where it stands, that it tips from " + number(lifting) +
-           " m/s² on; its own limit is " + number(limit) + " m/s²");
+       "its centre of gravity is so high, or so near to the edge of its support, that it tips over from " +
+           number(lifting) + " m/s²; its own limit is " + number(limit) + " m/s²");
 }
 
 void note_weak_wheels(DriveTrain& robot) {
@@ -77,7 +78,7 @@ void note_weak_wheels(DriveTrain& robot) {
   note(robot, joint_element(robot.joints[robot.wheels.back().joint].name),
        "an effort limit of " + number(effort) + " N·m and a friction of " + number(friction) +
            " N·m: the wheels accelerate the robot by no more than " + number(acceleration) +
-           " m/s². A URDF's efforts are those of the joint, behind its gear");
+           " m/s². Check that the efforts refer to the joint, after the gear");
 }
 
 std::string limits_of(const JointModel& joint) {
@@ -97,12 +98,12 @@ void note_limits(DriveTrain& robot) {
     if (rim >= kFastRim) {
       note(robot, joint_element(joint.name),
            "a velocity limit of " + number(joint.velocity_limit) + " rad/s is " + number(rim) +
-               " m/s at its rim: is it in degrees per second or turns per minute? A URDF's are rad/s");
+               " m/s at its rim: check whether it is in degrees per second or turns per minute; a URDF has rad/s");
     }
     if (differ(joint.effort_limit, first.effort_limit) || differ(joint.velocity_limit, first.velocity_limit)) {
       note(robot, joint_element(joint.name),
            "its limits are " + limits_of(joint) + ", those of " + first.name + " " + limits_of(first) +
-               ": is that meant? The weaker side limits both");
+               ": check whether this is intended; the weaker side limits both");
     }
   }
 }
@@ -118,9 +119,9 @@ void note_far_root(DriveTrain& robot) {
   }
   if (box.isEmpty() || nearest <= kMaxRootDistance * box.sizes().norm()) return;
   note(robot, link_element(robot.base_link),
-       "it lies " + number(nearest) +
-           " m from the next wheel, farther than the robot is large: odom and cmd_vel are "
-           "those of this frame. Where it is the world, leave it and its joint out");
+       "it is " + number(nearest) +
+           " m from the nearest wheel, farther than the size of the robot: odom and cmd_vel refer to this frame. If it "
+           "is the world, remove it and its joint");
 }
 
 void note_caster_joints(DriveTrain& robot) {
@@ -133,8 +134,9 @@ void note_caster_joints(DriveTrain& robot) {
       if (is_swivel(bodies.bodies[i])) continue;
       note(robot, joint_element(joint.name),
            "it has an effort limit of " + number(joint.effort_limit) +
-               (joint.type == JointType::kPrismatic ? " N" : " N·m") + ", but nothing holds it, because the wheel of " +
-               wheel + " stands on the ground as a caster's. If it is an arm, let that wheel end more than " +
+               (joint.type == JointType::kPrismatic ? " N" : " N·m") +
+               ", but no motor holds it, because the wheel of " + wheel +
+               " touches the ground as a caster. If it is an arm, move that wheel more than " +
                number(1000 * kCasterTolerance) + " mm above the ground");
     }
   }
@@ -151,7 +153,7 @@ void note_free_joints(DriveTrain& robot) {
   for (std::size_t i = 1; i < bodies.bodies.size(); ++i) {
     const BodyJoint& joint = bodies.bodies[i].joint;
     if (joint.effort_limit > 0 || joint.spring_stiffness > 0 || !joint.mimicked.empty() || carries_a_wheel(i)) continue;
-    note(robot, joint_element(joint.name), "no effort limit above zero is given: nothing holds it");
+    note(robot, joint_element(joint.name), "no effort limit above zero: no motor holds it");
   }
 }
 

@@ -150,9 +150,9 @@ Localizer::Localizer(const Grid& map, std::uint32_t seed) : parts_(std::make_uni
   parts.map = likelihood_field(grid, 0.1f);
   parts.wide = likelihood_field(grid, 0.2f);  // few of the particles of a search are near the place
   parts.walls = wall_points(grid);
-  if (parts.walls.empty()) throw std::invalid_argument("the map has no occupied cell, so that no scan fits it");
+  if (parts.walls.empty()) throw std::invalid_argument("the map has no occupied cell, so no scan can match it");
   if (std::ranges::count(map.cells, kFreeCell) == 0)
-    throw std::invalid_argument("the map has no free cell, in which the robot could be");
+    throw std::invalid_argument("the map has no free cell for the robot");
   parts.particles.options.KLD_params.KLD_maxSampleSize = kMaxParticles;
   mrpt::random::getRandomGenerator() = {seed};  // randomize() keeps the second number of the last normal pair
 }
@@ -205,15 +205,15 @@ std::string Localizer::reason() const {
     case Localization::kLocalized:
       return "";
     case Localization::kNoPose:
-      return "no pose was given: set one (initialpose) or search (global_localization)";
+      return "no pose yet: set one (initialpose) or call global_localization";
     case Localization::kSearching:
-      return "it searches in the whole map: the poses that fit differ by " + cm(parts_->spread) + "; drive on";
+      return "searching in the whole map: the matching poses differ by " + cm(parts_->spread) + "; drive on";
     case Localization::kLost:
       break;
   }
-  return "the place is lost: " + std::to_string(std::lround(100 * parts_->explained)) +
-         " % of what the laser sees is in the map there, less than " + std::to_string(std::lround(100 * kFits)) +
-         " %; set the pose or search again";
+  return "the pose is lost: " + std::to_string(std::lround(100 * parts_->explained)) +
+         " % of the scan matches the map there, less than " + std::to_string(std::lround(100 * kFits)) +
+         " %; set the pose (initialpose) or call global_localization";
 }
 
 UncertainPose Localizer::pose() const {

@@ -123,9 +123,9 @@ bool Mapper::fits() const noexcept {
 }
 std::string Mapper::reason() const {
   if (fits()) return "";
-  return "the laser and the map agree in " + std::to_string(std::lround(100 * parts_->matched)) +
-         " % of the points, less than " + std::to_string(std::lround(100 * kMinMatched)) +
-         " %: drive back to where the map is known, or load it again";
+  return "the scan matches the map in " + std::to_string(std::lround(100 * parts_->matched)) +
+         " % of its points, less than " + std::to_string(std::lround(100 * kMinMatched)) +
+         " %: drive back to a mapped area, or load the map again";
 }
 Grid Mapper::grid() const {
   return grid_of(parts_->grid);

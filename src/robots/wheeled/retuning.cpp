@@ -75,10 +75,10 @@ std::string Retuning::monitor_problem(const DriveControllerParameters& wanted) c
   if (!stops(wheel_speed_) || asked <= commanded_at_start_) return "";
   if (needed <= *wheel_speed_.limit) return "";
   return formatted(
-      "%s: max_linear_speed %.4g m/s with max_angular_speed %.4g rad/s turns a wheel at %.4g rad/s; %s, whose "
-      "wheel_speed limit was fixed at its start, stops the robot beyond %.4g rad/s, and would have to bear %.4g. Keep "
-      "max_linear_speed + %.4g m·max_angular_speed at or below %.4g m/s, or set both in the YAML file and start all "
-      "nodes again.",
+      "%s: max_linear_speed %.4g m/s with max_angular_speed %.4g rad/s turns a wheel at %.4g rad/s. %s, whose "
+      "wheel_speed limit was fixed at its start, stops the robot beyond %.4g rad/s; needed is %.4g. Set "
+      "max_linear_speed + %.4g m·max_angular_speed to at most %.4g m/s, or set both in the YAML file and restart all "
+      "nodes.",
       kBlock.c_str(), wanted.max_linear_speed, wanted.max_angular_speed, asked,
       std::string(program_of(Role::kMonitor)).c_str(), *wheel_speed_.limit, needed, robot_.effective_wheel_base() / 2,
       smallest_radius(robot_) * fastest_within(*wheel_speed_.limit));

@@ -28,7 +28,7 @@ std::string note_on_slow_driving(const Parameters& parameters, const DriveTrain&
   if (speed <= kSlowRim) return {};
   return formatted(
       "encoders of %.0f counts a turn (%s.encoder_noise): below about %.2g m/s of their rims, wheels "
-      "may start and creep in jerks where friction, ground or load is not as described",
+      "may move in jerks if friction, ground or load differ from the description",
       2 * std::numbers::pi / count, std::string(program_of(Role::kEstimator)).c_str(), speed);
 }
 

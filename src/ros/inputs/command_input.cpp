@@ -69,8 +69,8 @@ void CommandInput::receive(const ArrivedCommand& arrived, const ArrivalTime& tim
     ++value_.revoked;
     return warn(
         "motion of " + arrived.sender.name +
-            " is refused: it was requested before a stop, a restart or a pause ended the permission to move, or "
-            "meanwhile, or may have been; let that sender send zero, or restart it",
+            " is refused: it must send zero once after a stop, a restart or a pause. Publish zero from this node, or "
+            "restart it",
         time.loop_ns);
   }
   accept(arrived, content, stamp.age_ns, time);
@@ -89,12 +89,12 @@ void CommandInput::accept(const ArrivedCommand& arrived, Request content, std::i
     } else {
       set_command({}, arrived.sender, kNotFiniteMessage, time);
     }
-    return warn(topic + " holds NaN or infinity: refused; repair its sender " + arrived.sender.name, time.loop_ns);
+    return warn(topic + " holds NaN or infinity: refused; check its sender " + arrived.sender.name, time.loop_ns);
   }
   if (beside_twist && !own) {
     ++value_.crowded;
     return warn(topic + " of " + arrived.sender.name + " is refused: the robot walks for " + sender_.name +
-                    "; let the sender of the twists send the pose, too",
+                    "; publish the pose from the sender of the twists",
                 time.loop_ns);
   }
   const std::int64_t stated_ns = time.loop_ns - age_ns;
@@ -188,28 +188,28 @@ void CommandInput::refuse_stamp(const Publisher& from, const JudgedStamp& stamp,
   reported_stamps_[sender] = stamp.verdict;
   const double age = 1.0e-9 * static_cast<double>(stamp.age_ns);
   const std::string judged =
-      too_old
-          ? "is " + seconds(age) + " old by its stamp, more than " + parameter_ + " (" + seconds(timeout_) +
-                "): refused; it was long under way, or that sender's clock is behind"
-          : "is stamped " + seconds(-age) + " in the future, more than clocks may differ (" +
-                seconds(1.0e-9 * kClockSkew) + "): refused; that sender's clock is ahead, or is not the robot's /clock";
+      too_old ? "is " + seconds(age) + " old by its stamp, more than " + parameter_ + " (" + seconds(timeout_) +
+                    "): refused; it was delayed, or the clock of its sender is behind"
+              : "is stamped " + seconds(-age) + " in the future, more than the allowed clock difference (" +
+                    seconds(1.0e-9 * kClockSkew) +
+                    "): refused; the clock of its sender is ahead, or is not the robot's /clock";
   lines_.push_back(
       {true, from.topic + " of " + sender + " " + judged +
-                 "; synchronise it (chrony), or let it send without a stamp: the age then counts from the arrival"});
+                 "; synchronise it (chrony), or publish without a stamp: the age then counts from the arrival"});
 }
 
 void CommandInput::report_senders(std::int64_t loop_ns) {
   const std::vector<std::string> names = senders(loop_ns);
   if (names.size() < 2) {
     if (reported_senders_.empty()) return;
-    lines_.push_back({false, names.empty() ? "no node sends commands any more"
-                                           : "one sender of commands is left: " + names.front()});
+    lines_.push_back(
+        {false, names.empty() ? "no node sends commands now" : "one sender of commands is left: " + names.front()});
     reported_senders_.clear();
     return;
   }
   if (std::ranges::includes(reported_senders_, names) || !may_report(joined(names), loop_ns)) return;
   const std::string consequence = one_sender_ ? "refused (one_sender), ramping down to standstill until one is left"
-                                              : "each message overrides the one before (one_sender: true refuses them)";
+                                              : "each message overrides the previous one (one_sender: true refuses them)";
   lines_.push_back(
       {true, std::to_string(names.size()) + " nodes send commands: " + joined(names) + "; " + consequence});
   reported_senders_ = names;

@@ -12,7 +12,7 @@ namespace {
 constexpr std::size_t kMaxPublishers = 1000;
 const char* const kFurther = "(further publishers)";
 const std::string kRestarted = std::string(program_of(Role::kMonitor)) + " was restarted";
-const std::string kSilent = " (has sent nothing since " + kRestarted + ")";
+const std::string kSilent = " (has published nothing since " + kRestarted + ")";
 const std::string kUnknown = "an unknown publisher, from before " + kRestarted;
 
 }  // namespace

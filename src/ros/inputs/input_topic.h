@@ -65,7 +65,7 @@ class InputTopic {
     const std::int64_t now_ns = monotonic_ns();
     if (reported_ns_ != 0 && now_ns - reported_ns_ < kSilence) return;
     reported_ns_ = now_ns;
-    ROS_WARN("%s: a message of the wrong length was refused; find its publisher: rostopic info %s", name_.c_str(),
+    ROS_WARN("%s: a message of the wrong length was refused; check its publisher: rostopic info %s", name_.c_str(),
              subscriber_.getTopic().c_str());
   }
 

@@ -127,7 +127,7 @@ std::string JointTrajectory::read(const trajectory_msgs::JointTrajectory& messag
       }
       const double speed = path.largest_speed();
       if (!(speed <= bounds[i].motion.speed * (1 + kWritten))) {
-        return joint + " would move at " + robot_control::number(speed) + " rad/s on the way; at most " +
+        return joint + " would move at " + robot_control::number(speed) + " rad/s on its path; at most " +
                shortest(bounds[i].motion.speed) + " rad/s are allowed: give it more time";
       }
     }

@@ -61,7 +61,7 @@ class LegControllerNode final : public CommandedNode {
     foot_target_.connect_with_sender(handle, [this](const FootTarget& message, const Publisher& sender) {
       const auto request = request_of(message);
       if (request) return receive({.sender = sender, .twist = {}, .posture = request->posture, .mode = request->mode});
-      ROS_WARN_THROTTLE(10, "foot_target of %s is refused: there is no foot '%s'; name one of %s", sender.name.c_str(),
+      ROS_WARN_THROTTLE(10, "foot_target of %s is refused: there is no foot '%s'; set one of %s", sender.name.c_str(),
                         ascii(message.foot).c_str(), foot_names().c_str());
     });
     joint_trajectory_.connect_with_sender(handle, [this](const trajectory_msgs::JointTrajectory& message,
@@ -165,21 +165,21 @@ class LegControllerNode final : public CommandedNode {
     SensorFrame sensors;
     if (process().output().newest(command) != Lookup::kFrame || !process().is_current(command.head) ||
         process().sensors().newest(sensors) != Lookup::kFrame || !process().is_current(sensors.head))
-      return "the loop does not run: send it again when safety_status says READY";
+      return "the loop does not run: send it again when safety_status is READY";
     const LegPhase phase = command.legged.phase;
     if (phase != LegPhase::kLying && phase != LegPhase::kJoints)
-      return "the robot does not lie, it is " + std::string(name_of(phase)) + ": call set_posture with 'lying'";
+      return "the robot does not lie; it is " + std::string(name_of(phase)) + ": call set_posture with 'lying'";
     if (execution_ && execution_->sender.name != to.sender.name) {
       const double left = execution_->path.duration() - execution_->time;
       return "that of " + execution_->sender.name + " is being executed for another " +
-             shortest(std::max(0.1, std::round(10 * left) / 10)) + " s; an empty one ends it";
+             shortest(std::max(0.1, std::round(10 * left) / 10)) + " s; send an empty one to end it";
     }
     const AllJointBounds bounds = joint_bounds(leg_model_of(robot()));
     JointTrajectory::Positions start{};
     for (std::size_t i = 0; i < kLegsJoints; ++i) {
       const bool moves = phase == LegPhase::kJoints && command.joints[i].mode == JointMode::kImpedance;
       if (!moves && !has_position(sensors.joints[i]))
-        return "the joint " + robot().joints[i].name + " is not measured: look at the driver's faults";
+        return "the joint " + robot().joints[i].name + " is not measured: check the faults of the driver in /diagnostics";
       start[i] = std::clamp(moves ? command.joints[i].position : sensors.joints[i].position, bounds[i].range.lower,
                             bounds[i].range.upper);
     }
@@ -209,7 +209,7 @@ class LegControllerNode final : public CommandedNode {
     if (!lies) return end_trajectory("the robot is " + std::string(name_of(phase)));
     Publisher sender = execution_->sender;
     sender.connection = execution_->connection.lock();
-    if (sender.connection == nullptr) return end_trajectory("its sender is gone");
+    if (sender.connection == nullptr) return end_trajectory("its sender has ended");
     const std::int64_t now_ns = loop_ns();
     const std::int64_t elapsed_ns = now_ns - execution_->requested_ns;
     if (elapsed_ns >= 0 && elapsed_ns < kStep) return;
@@ -246,9 +246,9 @@ class LegControllerNode final : public CommandedNode {
     const LegPhase phase = command_.legged.phase;
     std::string problem = refusal_of_permission();
     if (!mode) {
-      problem = "there is no gait '" + request.gait + "'; name one of " + joined(gait_words(gaits_));
+      problem = "unknown gait '" + request.gait + "'; set one of " + joined(gait_words(gaits_));
     } else if (problem.empty() && phase != LegPhase::kStanding && phase != LegPhase::kWalking) {
-      problem = "the robot does not stand or walk, it is " + std::string(name_of(phase)) +
+      problem = "the robot does not stand or walk; it is " + std::string(name_of(phase)) +
                 ": call set_posture with 'standing'";
     }
     if (problem.empty()) input_.choose_mode(*mode);
@@ -258,7 +258,7 @@ class LegControllerNode final : public CommandedNode {
   bool set_posture(SetPosture::Request& request, SetPosture::Response& response) {
     const std::unique_lock one_at_a_time(posture_mutex_, std::try_to_lock);
     const std::string problem =
-        one_at_a_time ? reach(request.posture) : "another set_posture is being answered: call again";
+        one_at_a_time ? reach(request.posture) : "another set_posture is in progress: call again";
     answer(response, problem.empty(), problem.empty() ? request.posture : "refused: " + problem);
     if (problem.empty()) {
       ROS_INFO("set_posture: %s", response.message.c_str());
@@ -271,7 +271,7 @@ class LegControllerNode final : public CommandedNode {
   /// Returns "" once the robot is in the posture or on its way to it, or why it is not.
   std::string reach(const std::string& posture) {
     const Mode mode = mode_of(posture);
-    if (mode == Mode{}) return "there is no posture '" + posture + "'; name standing or lying";
+    if (mode == Mode{}) return "unknown posture '" + posture + "'; set standing or lying";
     for (const std::string& name : missing()) return "the loop does not run: waiting for " + name;
     SensorFrame sensors;
     if (process().sensors().newest(sensors) == Lookup::kFrame && sensors.driver_state == DriverState::kPaused)
@@ -298,7 +298,7 @@ class LegControllerNode final : public CommandedNode {
     store();
     StateFrame state;
     process().states().newest(state);
-    return "the posture has not begun to change within 1 s: " +
+    return "the posture did not begin to change within 1 s: " +
            sentences_of(kCommandReasonNames, command.reasons, programs()) +
            slope_words(command.reasons, state, leg_model_of(robot()));
   }

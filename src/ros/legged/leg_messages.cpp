@@ -106,7 +106,7 @@ std::string slope_words(std::uint64_t reasons, const StateFrame& state, const Le
 }
 
 std::string no_permission(bool found, const Permit& permit, const MachineModel& robot, const Programs& programs) {
-  if (!found) return "the safety monitor gives no permit: start " + std::string(program_of(Role::kMonitor));
+  if (!found) return "no permit from the safety monitor: start " + std::string(program_of(Role::kMonitor));
   if (permit.action == PermitAction::kDrive) return "";
   if (permit.causes != 0) {
     const std::uint64_t cause = permit.first_cause != 0 ? permit.first_cause : permit.causes & (~permit.causes + 1);
@@ -117,10 +117,10 @@ std::string no_permission(bool found, const Permit& permit, const MachineModel& 
   if (permit.missing != 0)
     return "the safety monitor waits: " + sentences_of(kMissingNodeNames, permit.missing, programs);
   if (permit.unreleased != 0) {
-    return "a node was started or the simulation was reset: request nothing for request_timeout, or send a " +
+    return "a node was started or the simulation was reset: stop all requests for request_timeout, or publish a " +
            std::string(names_of_kind(programs.kind).request) + " of zero, then call again";
   }
-  return "the safety monitor permits no motion: look at safety_status";
+  return "the safety monitor permits no motion: check safety_status";
 }
 
 }  // namespace robot_control

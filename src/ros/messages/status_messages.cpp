@@ -28,12 +28,12 @@ std::string quantity(double value, std::string_view unit) {
   return formatted("%.4g ", value).append(unit);
 }
 
-/// Returns "free the wheel, then call e_stop_reset".
+/// Returns "charge the battery, then call e_stop_reset".
 std::string with_reset(std::string_view remedy, const Programs& programs) {
   return with_programs(remedy, programs).append(remedy.empty() ? "" : ", then ").append("call e_stop_reset");
 }
 
-/// Returns "the battery is low: 20.9 V, limit 21 V (charge it soon)".
+/// Returns "the battery is low: 20.9 V, limit 21 V (charge the battery soon)".
 std::string warning_sentence(const BitName& row, const std::string& measured, const Programs& programs) {
   std::string text = with_programs(row.sentence, programs);
   if (!measured.empty()) text.append(": ").append(measured);
@@ -123,7 +123,8 @@ void warn_of_blind_conditions(const SensorFrame& sensors, SafetyStatus& status) 
   if (!blind) return;
   status.warnings.emplace_back("torque_not_measured");
   status.warning_sentences.emplace_back(
-      "drives measure no torque: wheel_effort, power and torque_oscillation are blind, and stall judges speeds alone "
+      "the drives measure no torque: wheel_effort, power and torque_oscillation detect nothing, and stall uses speeds "
+      "only "
       "(the limits of the drives protect motor and gear)");
 }
 

@@ -22,7 +22,8 @@ void Frames::receive(const tf2_msgs::TFMessage& message, bool fixed) {
     if (std::isfinite(x + y + z + yaw_of(found.transform.rotation))) {
       buffer_.setTransform(found, "tf", fixed);
     } else {
-      ROS_WARN_THROTTLE(10, "a transform to %s is refused: it is not finite, or its rotation has not the length 1",
+      ROS_WARN_THROTTLE(10,
+                        "a transform to %s is refused: it is not finite, or its rotation does not have the length 1",
                         ascii(found.child_frame_id).c_str());
     }
   }

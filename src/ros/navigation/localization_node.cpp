@@ -48,11 +48,11 @@ class LocalizationService {
     localizer_ = std::make_unique<Localizer>(map, kSeed);
     topics_.publish(map);
     return "loaded " + path + ": " + std::to_string(map.columns) + " x " + std::to_string(map.rows) +
-           " cells; give a pose (initialpose) or search (global_localization)";
+           " cells; set a pose (initialpose) or call global_localization";
   }
 
   void begin_at(const NumberList<3>& pose) {
-    if (!localizer_) throw std::invalid_argument("localization.initial_pose needs a map: set localization.map, too");
+    if (!localizer_) throw std::invalid_argument("localization.initial_pose needs a map: also set localization.map");
     localizer_->set_pose({{pose[0], pose[1], pose[2]}, kByHand.cwiseProduct(kByHand).asDiagonal()});
   }
 

@@ -48,7 +48,7 @@ void MapTopics::publish(const std::string& state, const std::string& reason, dou
 }
 
 void MapTopics::diagnose(DiagnosticReport& report) const {
-  if (last_.state.empty()) return report.warn("no odom has come: start the robot");
+  if (last_.state.empty()) return report.warn("no odom received: start the robot");
   if (last_.reason.empty()) {
     report.ok(last_.state);
   } else {

@@ -80,7 +80,7 @@ class NavigateService {
     const PlanarPose origin = planar_of(info.origin);
     std::string problem = grid_problem(info.width, info.height, info.resolution, origin.x, origin.y, origin.yaw);
     if (problem.empty() && data.size() != std::size_t{info.width} * info.height) {
-      problem = "the map has " + std::to_string(data.size()) + " cells, and width x height are others";
+      problem = "the map has " + std::to_string(data.size()) + " cells, which differs from width x height";
     }
     if (problem.empty() && message.header.frame_id != parameters_.map_frame) {
       problem = "the map is in the frame '" + message.header.frame_id + "', and navigate.map_frame is '" +
@@ -128,9 +128,10 @@ class NavigateService {
     if (place->stamp > 0 && age > kMaxPoseAge)
       return formatted("the robot is not localised: tf from %s is %.1f s old", parameters_.map_frame.c_str(), age);
     if ((time - seen_at_).toSec() > kMaxPoseAge)
-      return "tf does not give the place of the scans in the map: " + scan_problem_;
+      return "tf has no transform from the scans to the map: " + scan_problem_;
     if (!consistency_.problem().empty()) return consistency_.problem();
-    return path_client_.connected() ? "" : "follow_path does not run: rosrun robot_control follow_path.py";
+    return path_client_.connected() ? ""
+                                    : "follow_path does not run: start it with rosrun robot_control follow_path.py";
   }
 
   void begin(const GoalServers::Goal& goal) {
@@ -139,7 +140,7 @@ class NavigateService {
     PlanarPose target = planar_of(goal.target.pose);
     std::string why, frame = goal.target.header.frame_id;
     if (!frame.empty() && frame[0] == '/') frame.erase(0, 1);
-    if (!std::isfinite(target.yaw)) return refuse("the goal's orientation is no quaternion of length 1");
+    if (!std::isfinite(target.yaw)) return refuse("the goal's orientation is not a quaternion of length 1");
     if (!(std::hypot(target.x, target.y) <= kFarthest)) return refuse("the goal is not finite, or beyond 1000 km");
     if (!(goal.speed >= 0 && goal.speed <= 10)) return refuse("the goal's speed must be from 0 to 10 m/s");
     if (frame.empty())
@@ -223,7 +224,7 @@ class NavigateService {
   ros::WallTimer timer_;
 
   double goal_speed_ = 0;  // m/s
-  std::string map_problem_ = "no map has come: start slam, or localization with a saved map";
+  std::string map_problem_ = "no map received: start slam, or localization with a saved map";
   std::optional<GuardedScan> waiting_;  // for tf
   ros::Time seen_at_, requested_;
   std::string scan_problem_, last_;

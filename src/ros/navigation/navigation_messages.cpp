@@ -56,9 +56,9 @@ std::optional<UncertainPose> given_pose(const geometry_msgs::PoseWithCovarianceS
   if (message.header.frame_id != kMapFrame) {
     ROS_WARN("initialpose is refused: its frame is '%s', it must be 'map'", message.header.frame_id.c_str());
   } else if (!is_finite(pose)) {
-    ROS_WARN("initialpose is refused: it is not finite, or its orientation has not the length 1");
+    ROS_WARN("initialpose is refused: it is not finite, or its orientation does not have the length 1");
   } else if (std::hypot(pose.mean.x, pose.mean.y) > kFarthest) {
-    ROS_WARN("initialpose is refused: it lies beyond 1000 km");
+    ROS_WARN("initialpose is refused: it is beyond 1000 km");
   } else {
     return pose;
   }

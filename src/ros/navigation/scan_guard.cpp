@@ -48,7 +48,7 @@ std::optional<GuardedScan> ScanGuard::next_scan() {
 std::string ScanGuard::reason() {
   const std::lock_guard lock(mutex_);
   if (!guards_ || published_ > 0.3) return "";
-  return formatted("the laser sees something %.2f m before the outline", published_ + kRemainingGap + kLaserNoise);
+  return formatted("the laser sees an obstacle %.2f m in front of the robot", published_ + kRemainingGap + kLaserNoise);
 }
 
 void ScanGuard::use(const PlacedScan& scan) {

@@ -47,7 +47,7 @@ void ScanInput::receive_odometry(const nav_msgs::Odometry& message) {
   {
     const std::lock_guard lock(mutex_);
     if (!is_finite(uncertain_of(message.pose)) || !std::isfinite(moved)) {
-      place_problem_ = "odom is not finite, or its orientation has not the length 1";
+      place_problem_ = "odom is not finite, or its orientation does not have the length 1";
       return;
     }
     moved_ += moved * std::clamp((message.header.stamp - odometry_.header.stamp).toSec(), 0.0, 0.1);
@@ -62,14 +62,14 @@ void ScanInput::use_pending() {
   const ros::Time stamp = pending_->header.stamp;
   if (const double wait = (stamp - odometry_.header.stamp).toSec(); wait > 0) {
     if (wait > kScanTimeout)
-      place_problem_ = "there is no odom at the stamp of the scan: synchronise the clocks of laser and robot";
+      place_problem_ = "no odom at the stamp of the scan: check the clocks of laser and robot (chrony)";
     return;
   }
   std::string why;
   const auto laser = frames_.lookup(odometry_.child_frame_id, pending_->header.frame_id, ros::Time(), why);
   const auto base = frames_.lookup(odometry_.header.frame_id, odometry_.child_frame_id, stamp, why);
-  if (!laser) place_problem_ = "tf does not give the place of the laser on the robot: " + why;
-  if (laser && !base) place_problem_ = "tf does not give the place of the robot at the stamp of the scan: " + why;
+  if (!laser) place_problem_ = "tf has no transform from the laser to the robot: " + why;
+  if (laser && !base) place_problem_ = "tf has no pose of the robot at the stamp of the scan: " + why;
   if (!laser || !base) return;  // tf may come later than odom
   Scan scan = scan_of(*std::exchange(pending_, std::nullopt));
   if (laser->upside_down) scan.angle_min *= -1, scan.angle_increment *= -1, scan.angle_max *= -1;

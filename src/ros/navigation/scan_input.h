@@ -52,7 +52,7 @@ class ScanInput {
   ScanWatch watch_;
   std::optional<sensor_msgs::LaserScan> pending_;
   nav_msgs::Odometry odometry_;  // the newest
-  std::string place_problem_ = "no odom has come: start the robot";
+  std::string place_problem_ = "no odom received: start the robot";
   double moved_ = 0, used_at_ = -1e9;  // m + rad; s
   InputTopic<BoundedLaserScan> scan_{"scan", 2};
   InputTopic<BoundedOdometry> odom_{"odom", 50};

@@ -59,14 +59,14 @@ class SlamService {
     mapper_ = Mapper(*saved_, {});
     used_ = false;
     changed_ = true;
-    return "goes on with " + path + ", the robot at its origin until initialpose says otherwise";
+    return "goes on with " + path + ", with the robot at its origin until initialpose is set";
   }
 
   void receive_pose(const geometry_msgs::PoseWithCovarianceStamped& message) {
     const auto pose = given_pose(message);
     if (!pose) return;
     if (!saved_) {
-      ROS_WARN("initialpose is refused: this map began where the robot was; load a saved one before");
+      ROS_WARN("initialpose is refused: this map began at the pose of the robot; load a saved map first");
       return;
     }
     mapper_ = Mapper(*saved_, pose->mean);

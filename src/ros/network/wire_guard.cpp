@@ -129,10 +129,10 @@ std::string unguarded() {
   }));
   if (text.empty()) return "";
   return "the loaded roscpp does not use this program's checks of " + text +
-         ": a malformed connection may end this node, and a restarted sender may have to send a zero first; "
-         "remedy: build robot_control against the roscpp that is loaded "
-         "here (Debian's libroscpp-dev; LD_LIBRARY_PATH and LD_PRELOAD must not name another one), and let no "
-         "stranger's process reach its ports (docs/security.md)";
+         ": a malformed connection may end this node, and a restarted sender may have to send a zero first. "
+         "Remedy: build robot_control against the roscpp that is loaded "
+         "here (Debian's libroscpp-dev; LD_LIBRARY_PATH and LD_PRELOAD must not name another one), and protect "
+         "its ports from other computers (docs/security.md)";
 }
 
 std::uint32_t max_message() noexcept {

@@ -43,10 +43,8 @@ void CommandedNode::log_dropped(const std::string& sender) {
   const bool runs = process().sensors().newest(sensors) == Lookup::kFrame && process().is_current(sensors.head) &&
                     process().output().newest(command) == Lookup::kFrame && command.head.run == sensors.head.run;
   if (!runs && !dropped_reported_) {
-    ROS_WARN(
-        "a command of %s arrived before the loop runs and is dropped, as are all until it does; send it again "
-        "when safety_status says READY",
-        sender.c_str());
+    ROS_WARN("a command of %s arrived before the loop runs and is ignored; send it again when safety_status is READY",
+             sender.c_str());
   }
   dropped_reported_ = !runs;
 }

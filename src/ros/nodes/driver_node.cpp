@@ -100,8 +100,7 @@ class DriverNode final : public ProcessNode<DriverProcess> {
   std::unique_ptr<Driver> with_imu(std::unique_ptr<Driver> driver) {
     if (parameters().imu == ImuChoice::kDriver) return driver;
     if (simulator_of(*driver) != nullptr)
-      throw DriverError(
-          "robot.imu is for real machines, and the simulated one measures with its own IMU: remove robot.imu");
+      throw DriverError("robot.imu is for real robots, and the simulated one has its own IMU: remove robot.imu");
     auto inbox = std::make_shared<ImuInbox>();
     if (parameters().imu == ImuChoice::kTopic) {
       imu_inbox_ = inbox;
@@ -131,7 +130,7 @@ class DriverNode final : public ProcessNode<DriverProcess> {
     if (const std::string text = driver_->description(); !text.empty()) ROS_INFO("%s", text.c_str());
     if ((sensors_.valid & (kValidGyro | kValidAccelerometer)) != 0) return;
     ROS_WARN(
-        "there is no IMU: the odometry turns by the wheels alone, and these conditions see nothing: imu_lost, "
+        "there is no IMU: the heading is computed from the wheels only, and these conditions detect nothing: imu_lost, "
         "imu_stuck, imu_jump, yaw_rate, tilt, tip_over, free_fall, impact");
   }
 

@@ -119,8 +119,8 @@ class MonitorNode final : public ProcessNode<MonitorProcess> {
     if (problem.empty()) return;
     status.warnings.emplace_back("latch_file");
     status.warning_sentences.push_back(
-        ascii("a stop would not outlive a reboot, latch_file cannot be written: " + problem + " (set " +
-              std::string(program_of(Role::kMonitor)) + "/latch_file to a file that this user may write)"));
+        ascii("latch_file is not writable: a stop would be lost after a reboot: " + problem + " (set " +
+              std::string(program_of(Role::kMonitor)) + ".latch_file to a file that this user may write)"));
   }
 
   void add(std::uint64_t OperatorInput::*counter) {
@@ -180,7 +180,7 @@ class MonitorNode final : public ProcessNode<MonitorProcess> {
     const std::lock_guard lock(input_mutex_);
     if (!clearance_stream_.falls_silent(now_ns)) return;
     set_clearance(0);
-    ROS_WARN("clearance has fallen silent, the robot stands: start its sender again, or publish inf on clearance");
+    ROS_WARN("no message on clearance: the robot stops. Restart its sender, or publish inf on clearance");
   }
 
   bool trigger(std_srvs::Trigger::Request& /*request*/, std_srvs::Trigger::Response& response) {
@@ -188,7 +188,7 @@ class MonitorNode final : public ProcessNode<MonitorProcess> {
     Permit permit;
     for (const std::int64_t end = monotonic_ns() + kTriggerWait; monotonic_ns() < end; sleep_ns(kResetLook)) {
       if (!seen(permit) || (permit.causes & kCauseEmergencyStopService) == 0) continue;
-      return answer(response, true, "stopped; e_stop_reset releases");
+      return answer(response, true, "stopped; call e_stop_reset to drive again");
     }
     return answer(
         response, false,
@@ -198,7 +198,7 @@ class MonitorNode final : public ProcessNode<MonitorProcess> {
   bool reset(std_srvs::Trigger::Request& /*request*/, std_srvs::Trigger::Response& response) {
     const std::unique_lock one_at_a_time(reset_mutex_, std::try_to_lock);
     // Waiting here would leave no thread to receive e_stop.
-    if (!one_at_a_time) return answer(response, false, "another reset is being answered: ask again");
+    if (!one_at_a_time) return answer(response, false, "another reset is in progress: call again");
     settle_e_stop();
     Permit permit;
     Permit before;
@@ -213,7 +213,7 @@ class MonitorNode final : public ProcessNode<MonitorProcess> {
       const Publishers publishers{.commands = publishers_of(command_topics_), .e_stop = e_stop_publishers()};
       return answer(response, permit.reset_refusal == 0, reset_text(before, permit, publishers, programs()));
     }
-    return answer(response, false, "not handled within 1 s: the monitor sees no sensor frames" + waiting());
+    return answer(response, false, "not handled within 1 s: the safety monitor receives no sensor data" + waiting());
   }
 
   /// Returns "; waiting for …" for each missing node.

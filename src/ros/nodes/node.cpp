@@ -93,15 +93,14 @@ class ConnectionNote {
     next_ns_ = now_ns + kSilence;
     if (evicted != evicted_) {
       ROS_WARN(
-          "file descriptors run out: %llu connections to this node were closed, so that new ones find room; look "
-          "which program makes so many: ss -tnp",
+          "too many open files: %llu connections to this node were closed; check which program opens so many: ss -tnp",
           static_cast<unsigned long long>(evicted - evicted_));
     }
     if (refused != overlong_) {
       ROS_WARN(
-          "%llu connections were closed that announced a header of more than %u or a message of more than %u "
-          "bytes: this node takes none as long; look which program sends them: ss -tnp",
-          static_cast<unsigned long long>(refused - overlong_), kMaxHeader, max_message());
+          "message too large (max: header %u bytes, message %u bytes): %llu connections were closed; check which "
+          "program sends such messages: ss -tnp",
+          kMaxHeader, max_message(), static_cast<unsigned long long>(refused - overlong_));
     }
     evicted_ = evicted;
     overlong_ = refused;
@@ -222,7 +221,7 @@ int run_node(int argc, char** argv, const NodeProgram& program) {
   }
   std::setvbuf(stdout, nullptr, _IOLBF, 0);  // else a log file stays empty until the end
   std::setlocale(LC_CTYPE, "C.UTF-8");       // else rosconsole prints "N·m" as "N??m"; numbers keep the decimal point
-  install_crash_report(name, !program.in_loop      ? "the loop goes on"
+  install_crash_report(name, !program.in_loop      ? "the loop continues"
                              : name == "telemetry" ? "the log with it"
                                                    : "the motors brake without it");
   ignore_file_size_signal();

@@ -88,8 +88,8 @@ class TelemetryNode final : public Node {
     if (process_.recording()) log_path();
     const std::string problem = process_.problem();
     if (problem == reported_) return;
-    if (!problem.empty()) ROS_ERROR("%s. The loop goes on, its rows are counted and lost", problem.c_str());
-    if (problem.empty()) ROS_INFO("the disk takes the log again");
+    if (!problem.empty()) ROS_ERROR("%s. The loop continues; its rows are counted, but lost", problem.c_str());
+    if (problem.empty()) ROS_INFO("the log is written again");
     reported_ = problem;
   }
   std::int64_t tick_ns() const override { return lockstep_ ? kLockstepDrainPeriod : kDrainPeriod; }
@@ -103,7 +103,7 @@ class TelemetryNode final : public Node {
     const TelemetryCounts counts = process_.counts();
     const auto number = [](std::uint64_t value) { return static_cast<unsigned long long>(value); };
     if (path_logged_) {
-      ROS_INFO("%llu rows in %s, %llu dropped, %llu overwritten, %llu not taken by the disk", number(counts.bag_rows),
+      ROS_INFO("%llu rows in %s, %llu dropped, %llu overwritten, %llu not written to the disk", number(counts.bag_rows),
                process_.bag_path().c_str(), number(counts.dropped), number(counts.overwritten),
                number(counts.bag_unwritten));
     }
@@ -157,8 +157,8 @@ class TelemetryNode final : public Node {
     requested_.store(on);
     return answer(response, recordable,
                   !recordable ? "telemetry.record is off: there is no run.bag"
-                  : on        ? "run.bag holds every cycle from now on"
-                              : "run.bag holds what telemetry.record says");
+                  : on        ? "run.bag contains every cycle from now on"
+                              : "run.bag contains what telemetry.record selects");
   }
 
   const Setup& setup_;

@@ -13,7 +13,7 @@ bool may_drive(const SafetyStatus& status) {
   return status.state == SafetyStatus::READY || status.state == SafetyStatus::DRIVE;
 }
 
-/// Returns "stall: a wheel stands although its target is not zero (0.6 rad, limit 0.5 rad, left_wheel_joint)".
+/// Returns "stall: a wheel does not turn although … (0.6 rad, limit 0.5 rad, left_wheel_joint)".
 std::string cause_text(const SafetyStatus& status, std::size_t i) {
   std::string text = status.causes[i] + ": " + status.sentences[i];
   if (!status.details[i].empty()) text += " (" + status.details[i] + ")";
@@ -79,7 +79,7 @@ void StopLog::look_at_start(const SafetyStatus& status, std::vector<ReportLine>&
   awaiting_ = awaiting;
   if (!awaiting || awaiting_since_ < 0 || now - awaiting_since_ < zero_silence_ + kReserve) return;
   awaiting_since_ = -1;
-  lines.push_back({true, formatted("%s: waits for a zero request; stop the sender for %g s or send zero",
+  lines.push_back({true, formatted("%s: waiting for a zero velocity command; stop publishing for %g s, or publish zero",
                                    status.state_name.c_str(), zero_silence_)});
 }
 
@@ -105,13 +105,13 @@ void StopLog::look_at_warnings(const SafetyStatus& status, std::vector<ReportLin
     if (!due(status.warnings[i], true, now)) continue;
     std::string text = "warning: " + status.warnings[i] + ": " + status.warning_sentences[i];
     if (limits_speed(status.warnings[i]) && status.speed_limit < std::numeric_limits<double>::infinity()) {
-      text += "; no faster than " + formatted("%.3g m/s", status.speed_limit);
+      text += "; at most " + formatted("%.3g m/s", status.speed_limit);
     }
     lines.push_back({true, text});
   }
   const bool no_speed = std::ranges::none_of(status.warnings, limits_speed) && status.speed_limit < kNoSpeed;
   if (due("clearance", no_speed, now)) {
-    lines.push_back({true, "the clearance leaves no speed: the robot stands until the way is free"});
+    lines.push_back({true, "blocked: the free distance (clearance) is 0"});
   }
 }
 

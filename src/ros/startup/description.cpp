@@ -37,8 +37,8 @@ void forget_argument() {
 std::string unread_description(const RobotDescription& chosen, const std::string& published, const std::string& name,
                                const std::string& asked_for) {
   if (published.empty() || published == chosen.text) return "";
-  return name + " holds another robot and is not read: " + asked_for + " = " + chosen.source +
-         " goes before it, perhaps left over from an earlier launch: then `rosparam delete " + asked_for + "`";
+  return name + " contains another robot and is not used: " + asked_for + " = " + chosen.source +
+         " has priority over it, perhaps from an earlier launch: then `rosparam delete " + asked_for + "`";
 }
 
 PublishedDescription::PublishedDescription(const MachineModel& robot, const std::string& urdf) {

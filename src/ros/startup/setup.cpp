@@ -81,7 +81,7 @@ std::vector<Overlay> server_overlays(const std::string& node) {
 
 RobotDescription description(const Parameters& parameters, const std::vector<Overlay>& overlays, std::string& unread) {
   const std::string name = ros::names::resolve("robot_description");
-  const std::string published = server_text(name, "that of a URDF");
+  const std::string published = server_text(name, "the text of a URDF");
   std::string asked_for;  // the last overlay is in force
   for (const Overlay& overlay : overlays) {
     if (overlay.path == "robot.urdf") asked_for = overlay.origin;
@@ -101,12 +101,12 @@ void add(std::string& problems, const std::string& problem) {
 
 std::string clock_problem(ClockMode clock, bool use_sim_time) {
   if (clock == ClockMode::kWall && use_sim_time) {
-    return "robot.clock is wall, but /use_sim_time is true, perhaps left over in this roscore: "
+    return "robot.clock is wall, but /use_sim_time is true, perhaps from an earlier run: "
            "run `rosparam set /use_sim_time false`, or set robot.clock to lockstep";
   }
   if (clock == ClockMode::kLockstep && !use_sim_time) {
     return "robot.clock is lockstep, but /use_sim_time is not true: run `rosparam set /use_sim_time true` "
-           "before the nodes are started (sim.launch clock:=lockstep does), or set robot.clock to wall; where an "
+           "before the nodes are started (sim.launch clock:=lockstep does), or set robot.clock to wall; if an "
            "earlier launch left robot/clock on the parameter server: `rosparam delete /robot/clock`";
   }
   return "";

@@ -38,7 +38,8 @@ void CalibrationKeeper::wait() {
     writing_.get();
     failed_ = false;
   } catch (const std::exception& error) {
-    if (!failed_) ROS_WARN("the calibration is not kept: %s; tried again every 30 s and at the end", error.what());
+    if (!failed_)
+      ROS_WARN("the calibration is not saved: %s; the next attempts are every 30 s and at the end", error.what());
     failed_ = true;
     saved_ = {};
   }

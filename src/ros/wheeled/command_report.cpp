@@ -89,7 +89,7 @@ std::vector<ReportLine> CommandReport::update(const CommandFrame& command) {
   if (timed_out) {
     const bool moved = reported_ && !reported_->zero && !stands;
     if (moved && timeout_gap_.over(now_ns)) {
-      lines.push_back({true, formatted("cmd_vel is silent for %g s: ramping down to standstill", timeout_)});
+      lines.push_back({true, formatted("no cmd_vel for %g s: ramping down to standstill", timeout_)});
       timeout_gap_.begin(now_ns);
     }
     reported_.reset();

@@ -20,7 +20,7 @@ TEST(ControlProblems, RefusesTheArticlesGainsAndNamesValueRuleAndRemedy) {
   parameters.pid_kd = 0.5;
   EXPECT_THAT(
       control_problems(parameters, make_test_robot(), 1e-3),
-      AllOf(SizeIs(1), Each(AllOf(HasSubstr("pid_kp 20"), HasSubstr("must be < 1"), HasSubstr("Use at most")))));
+      AllOf(SizeIs(1), Each(AllOf(HasSubstr("pid_kp 20"), HasSubstr("must be < 1"), HasSubstr("Set at most")))));
 }
 
 TEST(ControlProblems, RefusesTheGainsOf1kHzAt100HzAndItsRemedyIsAccepted) {
@@ -30,7 +30,7 @@ TEST(ControlProblems, RefusesTheGainsOf1kHzAt100HzAndItsRemedyIsAccepted) {
   const std::vector<std::string> problems = control_problems(parameters, make_test_robot(), 1e-2);
   ASSERT_THAT(problems, SizeIs(1)) << "equal wheels are one problem";
   const auto advised = [&](const std::string& name) {
-    const std::string advice = problems[0].substr(problems[0].find("Use at most"));
+    const std::string advice = problems[0].substr(problems[0].find("Set at most"));
     return std::stod(advice.substr(advice.find(name) + name.size()));
   };
   parameters.pid_kp = advised("pid_kp ");
@@ -123,10 +123,10 @@ TEST(ControlProblems, LeaveARobotItsOwnLossesHoweverLargeTheyAre) {
 
 TEST(ControlProblems, NameWhatIsSuspiciousOfARobotThatNoGainsFit) {
   DriveTrain robot = make_test_robot();
-  robot.notes.push_back({RobotNote::Kind::kSuspicious, "<robot>", "are lengths in millimetres?"});
+  robot.notes.push_back({RobotNote::Kind::kSuspicious, "<robot>", "check whether lengths are in millimetres"});
   DriveControllerParameters parameters;
   parameters.pid_kp = 20;
-  EXPECT_THAT(control_problems(parameters, robot, 1e-3), Each(HasSubstr("are lengths in millimetres?")));
+  EXPECT_THAT(control_problems(parameters, robot, 1e-3), Each(HasSubstr("check whether lengths are in millimetres")));
 }
 
 // The gains are stable with the heavier wheels of the set, and unstable with the real ones.
@@ -135,7 +135,7 @@ TEST(ControlProblems, RefuseGainsThatOnlyTheRobotOfTheSetBears) {
   parameters.feed_forward.wheel_inertia = 0.03;
   parameters.pid_kp = 20;
   EXPECT_THAT(control_problems(parameters, make_test_robot(), 1e-3),
-              Each(AllOf(HasSubstr("unstable"), HasSubstr("by the description"), HasSubstr("Use at most"))));
+              Each(AllOf(HasSubstr("unstable"), HasSubstr("by the description"), HasSubstr("Set at most"))));
 }
 
 TEST(ControlProblems, RefuseGainsThatLeaveTheWheelsToFeedForward) {

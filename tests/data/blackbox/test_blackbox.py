@@ -43,7 +43,7 @@ def test_what_telemetry_saved_by_itself_is_named_the_newest_last(tmp_path, capsy
 def test_a_folder_that_cannot_be_read_hides_no_message(tmp_path, monkeypatch):
     (tmp_path / "ring").write_bytes(b"x" * 100)
     monkeypatch.setattr(Path, "iterdir", lambda _: (_ for _ in ()).throw(PermissionError(13, "denied")))
-    with pytest.raises(SystemExit, match="ring: is no black box of this version"):
+    with pytest.raises(SystemExit, match="ring: is not a black box of this version"):
         main([str(tmp_path / "ring"), "--out", str(tmp_path / "out")])
 
 
@@ -54,7 +54,7 @@ def test_refusals_name_the_folder(tmp_path):
     with pytest.raises(SystemExit, match=r"ring holds no record that is whole: .*bags that cannot be read: 1 of 1"):
         main([str(tmp_path), "--out", str(tmp_path / "out")])
     (ring / "0.bag").unlink()
-    with pytest.raises(SystemExit, match="ring: is no black box of this version"):
+    with pytest.raises(SystemExit, match="ring: is not a black box of this version"):
         main([str(tmp_path), "--out", str(tmp_path / "out")])
     (tmp_path / "run.bag").touch()
     with pytest.raises(SystemExit, match=r"run\.bag.* exists"):

@@ -261,7 +261,7 @@ def test_a_file_of_any_size_is_put_together(tmp_path, size):
     ("name", "change", "words"),
     [
         ("00001", lambda data: data[:-1], "part 2 of 3: 00001 has 999 of 1000 bytes"),
-        ("00001", lambda data: bytes(len(data)), "part 2 of 3: 00001 has another content than was sent"),
+        ("00001", lambda data: bytes(len(data)), "part 2 of 3: 00001 has different content than was sent"),
         ("00000", None, "part 1 of 3: 00000 is missing"),
         (MANIFEST, lambda data: data[:-5], "manifest.json is cut off or damaged"),
         (MANIFEST, lambda data: data.replace(b'"size": 1000', b'"size": 1e999'), "manifest.json is cut off or damaged"),
@@ -371,7 +371,7 @@ def test_a_damaged_part_is_sent_again(tmp_path, hashes):
     system.far.put = damaged
     system.finish()
     system.verify_far_side()
-    assert "another content" in system.said[0]
+    assert "different content" in system.said[0]
 
 
 def test_a_manifest_that_arrived_damaged_is_sent_again_and_nothing_is_deleted_before(tmp_path):
@@ -478,7 +478,7 @@ def test_a_file_that_is_deleted_before_it_was_sent_is_named(tmp_path):
         ("far_side: /far\nmetered: 3", "metered = 3: must be true or false"),
         ("far_side: /far\nrobot: a/b", "robot = a/b: must be of letters"),
         ("far_side: -v", "begins with -"),
-        ("far_side: x:y\nrclone_config: /none", "rclone_config = /none: cannot be read: No such file"),
+        ("far_side: x:y\nrclone_config: /none", "rclone_config = /none: file not found"),
         ("far_side: /far\nca_file: /none", "ca_file = /none: cannot be read"),
     ],
     ids=str,

@@ -87,7 +87,7 @@ def test_a_name_that_is_none_is_a_gap_and_writes_nothing(tmp_path, monkeypatch, 
     monkeypatch.setattr("robot_control.data.data_return.fetch.require_rclone", lambda: None)
     assert not verify("far:", "", tmp_path / "target/out")
     assert [path.relative_to(tmp_path) for path in tmp_path.rglob("*") if path.is_file()] == [Path("target/out/good")]
-    assert "its path has a part that is no name" in capsys.readouterr().out
+    assert "its path has an invalid part" in capsys.readouterr().out
 
 
 @needs_rclone
@@ -104,7 +104,7 @@ def test_one_folder_that_fails_ends_nothing(tmp_path, local_remote, through, cap
     assert (tmp_path / "out/e").read_bytes() == b"rows"
     said = capsys.readouterr().out
     assert "gap:   a/b: " in said  # a file stands where its folder had to be
-    assert said.endswith("2 files are whole, 3 are not\n")
+    assert said.endswith("2 files are complete, 3 are not\n")
 
 
 @needs_rclone
@@ -128,7 +128,7 @@ def test_a_part_that_is_no_plain_file_is_a_gap(tmp_path, capsys, kind):
         with (far / "00000").open("wb") as file:
             file.truncate(1 << 40)
     assert not verify(str(tmp_path / "far"), "", tmp_path / "out")
-    assert "0 files are whole, 1 are not" in capsys.readouterr().out
+    assert "0 files are complete, 1 are not" in capsys.readouterr().out
 
 
 @needs_rclone

@@ -141,7 +141,7 @@ def test_the_local_quota_deletes_no_file_that_the_far_side_has_lost(tmp_path, lo
     system.sender._settings = system.settings.__class__(**{**vars(system.settings), "local_quota": 1e-9})
     system.step()
     assert (tmp_path / "logs/run.1.bag").read_bytes() == content
-    assert "no more on the far side" in system.said[-1]
+    assert "differs on the far side" in system.said[-1]
     for _ in range(20):
         system.step()
     assert whole(system) == [content]

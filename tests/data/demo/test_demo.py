@@ -90,7 +90,7 @@ def test_drives_of_wheels_on_a_robot_on_legs_are_refused(tmp_path, capsys):
     assert parse(["--robot", "quadbot", "--out", str(tmp_path)]).robot == "quadbot"
     with pytest.raises(SystemExit):
         parse(["--robot", "quadbot", "--drives", "odrive", "--out", str(tmp_path)])
-    assert "--drives move wheels alone, and quadbot stands on legs" in capsys.readouterr().err
+    assert "--drives need wheels, but quadbot stands on legs" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize("out", ["file", "file/below", "/proc/xx"])

@@ -54,7 +54,7 @@ def test_states_and_causes_of_a_stop_are_named(run):
 
 def test_lateness_is_named_before_what_follows_from_it(run):
     run["permit_causes"][6000:] = mask_of("StopCause", "controller_lost", "impact")
-    assert to_table(summary_of(run)).startswith("stopped: the loop was late, because the machine was busy: load ")
+    assert to_table(summary_of(run)).startswith("stopped: the loop was late, because other programs used the CPU: ")
     run["permit_causes"][6000:] = mask_of("StopCause", "impact")
     assert "was late" not in to_table(summary_of(run))
 

@@ -97,7 +97,7 @@ def test_gravity_on_another_axis_names_the_mounting_that_fits(exact, rpy):
     samples = samples_of(exact, mounting=rotation(right.robot["imu"]["orientation"]))
     assert check(samples, right.robot).warnings == []
     said = warnings_of(samples)
-    assert "away from where the IMU's mounting says" in said
+    assert "away from the direction that follows from the IMU's mounting" in said
     named = [float(angle) for angle in said.split("--imu-orientation=")[1].split()[0].split(",")]
     assert (
         Estimator(wheel_radius=RADIUS, wheel_base=WHEEL_BASE, imu_orientation=named).robot["imu"]["orientation"]
@@ -130,7 +130,7 @@ def test_an_accelerometer_without_gravity_or_of_another_scale_is_said(exact):
     assert "shows no gravity" in warnings_of(samples)
     samples = samples_of(exact)
     samples.accel *= 1.3
-    assert "look at its unit and scale" in warnings_of(samples)
+    assert "check its unit and scale" in warnings_of(samples)
 
 
 def test_counts_instead_of_radians_are_refused_with_the_remedy(exact):

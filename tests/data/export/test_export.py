@@ -131,7 +131,7 @@ def test_an_mcap_shows_the_robot_in_the_reader_of_foxglove(run_bag, tmp_path):
 
 def test_what_is_no_log_is_refused_and_nothing_is_written(tmp_path):
     (tmp_path / "text").write_text("no bag")
-    with pytest.raises(SystemExit, match="is no ROS bag"):
+    with pytest.raises(SystemExit, match="is not a ROS bag"):
         main([str(tmp_path / "text"), "--csv", str(tmp_path / "out.csv")])
     assert not (tmp_path / "out.csv").exists()
 

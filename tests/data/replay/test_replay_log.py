@@ -59,9 +59,9 @@ def test_a_picture_that_cannot_be_written_is_refused_before_the_replay(log, caps
     monkeypatch.setattr("robot_control.data.replay.main.replay_log", None)  # it is not reached
     value = "diff_drive_controller.max_linear_speed=0.2"
     for picture, reason in (
-        ("none/what_if.png", "there is no folder"),
-        (".", "it is a folder"),
-        ("what_if.csv", "is no picture"),
+        ("none/what_if.png", " not found; create it first"),
+        (".", "is a folder"),
+        ("what_if.csv", "is not a picture"),
     ):
         code, _, message = replay(capsys, log, "--set", value, "--plot", tmp_path / picture)
         assert code == 2

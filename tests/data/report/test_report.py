@@ -201,16 +201,16 @@ def test_decimation_keeps_every_peak_where_it_is():
 @pytest.mark.parametrize(
     ("text", "said"),
     [
-        ("distanze: {most: 1}", "there is no figure distanze; there are distance"),
+        ("distanze: {most: 1}", "unknown figure distanze; there are distance"),
         ("distance: 3", "distance: 3 is not {most: NUMBER} or {least: NUMBER}"),
         ("distance: {mots: 3}", "distance: {'mots': 3} is not"),
         ("distance: {most: .nan}", "distance.most: nan is no number"),
         ("distance: {most: yes}", "distance.most: True is no number"),
-        ("[1, 2]", "holds no budgets"),
-        ("", "holds no budgets"),
-        ("{}", "holds no budgets"),
-        ("# most: 3", "holds no budgets"),
-        ("0", "holds no budgets"),
+        ("[1, 2]", "contains no budgets"),
+        ("", "contains no budgets"),
+        ("{}", "contains no budgets"),
+        ("# most: 3", "contains no budgets"),
+        ("0", "contains no budgets"),
         ("a: [", "while parsing"),
     ],
 )
@@ -253,7 +253,7 @@ def test_a_ci_that_judges_nothing_is_refused(written, log, tmp_path):
     budgets = tmp_path / "budgets.yaml"
     for name in [name for name in log if name.startswith("truth")]:
         del log[name]
-    for text, said in (("", "holds no budgets"), ("position_error: {most: 0.02}", "nothing was judged")):
+    for text, said in (("", "contains no budgets"), ("position_error: {most: 0.02}", "nothing was judged")):
         budgets.write_text(text)
         with pytest.raises(SystemExit, match=said):
             program.main([written(), "--ci", "--budgets", str(budgets)])

@@ -99,7 +99,7 @@ def test_a_report_without_an_end_is_over_after_ctrl_x(begun):
 
 @pytest.mark.parametrize(
     ("begun", "remedy"),
-    [(b"\x1b]w", "Ctrl-X"), (b"\x1bP\x1b", "Ctrl-X"), (b"\x1b[200~w\x1b]", "start teleop.py again")],
+    [(b"\x1b]w", "Ctrl-X"), (b"\x1bP\x1b", "Ctrl-X"), (b"\x1b[200~w\x1b]", "restart teleop.py")],
 )
 def test_what_takes_the_keys_is_named_with_its_remedy(begun, remedy):
     decoder = Decoder()

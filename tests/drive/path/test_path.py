@@ -152,8 +152,8 @@ def test_a_csv_file(tmp_path):
         ("x,y\n0,0\n1,one\n", "path.csv:3: not a point"),
         ("x,y\n0\n", "path.csv:2: not a point"),
         ("x,y\n0,0,0\n", "path.csv:2: not a point"),
-        ("x,y\n0,0\n1," + "1" * 131073 + "\n", "path.csv: is no CSV: field larger than field limit"),
-        ("x,y" + "y" * 131073, "path.csv: is no CSV: field larger than field limit"),
+        ("x,y\n0,0\n1," + "1" * 131073 + "\n", "path.csv: is not a CSV: field larger than field limit"),
+        ("x,y" + "y" * 131073, "path.csv: is not a CSV: field larger than field limit"),
     ],
 )
 def test_a_csv_file_that_is_none_is_refused_with_its_line(tmp_path, text, words):
@@ -178,8 +178,7 @@ def test_a_file_that_is_not_there_is_named_beside_the_shapes(monkeypatch, tmp_pa
     with pytest.raises(SystemExit) as error:
         main()
     assert error.value.code == (
-        f"drive_path.py: {tmp_path / 'sqare'} cannot be opened or written: No such file or directory; "
-        "the shapes are square, circle, eight"
+        f"drive_path.py: {tmp_path / 'sqare'}: file not found; the shapes are square, circle, eight"
     )
 
 

@@ -8,9 +8,9 @@ from robot_control.drive.send_cmd.release import GONE, NO_MONITOR, TIMEOUT, Phas
 READY, DRIVE, INIT = Status("READY"), Status("DRIVE"), Status("INIT", missing=("state_estimator",))
 STOPPED = Status(
     "STOPPED",
-    sentence="a wheel stands although its target is not zero",
+    sentence="a wheel does not turn although motion is commanded",
     detail="0.6 rad, limit 0.5 rad",
-    remedy="free the wheel, then call e_stop_reset",
+    remedy="check for a blocked wheel, then call e_stop_reset",
     causes=1,
 )
 
@@ -47,10 +47,10 @@ def test_a_stop_ends_the_command_for_good_and_says_why_and_what_to_do(sending, s
     assert sending.phase is Phase.STOPPED
     assert len(lines) == 1
     for words in (
-        f"{state}: a wheel stands although its target is not zero (0.6 rad, limit 0.5 rad)",
+        f"{state}: a wheel does not turn although motion is commanded (0.6 rad, limit 0.5 rad)",
         "has no effect",
         "zeros are sent",
-        "free the wheel, then call e_stop_reset, then start send_cmd.py again",
+        "check for a blocked wheel, then call e_stop_reset, then start send_cmd.py again",
     ):
         assert words in lines[0].text
     assert sending.update(1.5, stop) == [], "once"
@@ -66,13 +66,13 @@ def test_a_release_after_a_stop_does_not_begin_the_command_again(sending) -> Non
 
 
 def test_a_robot_that_was_started_again_does_not_get_the_old_command(sending) -> None:
-    assert "started again" in texts(sending.update(1.0, INIT))
+    assert "restarted" in texts(sending.update(1.0, INIT))
     assert sending.phase is Phase.STOPPED
 
 
 def test_a_command_that_is_requested_during_a_stop_does_not_begin_with_its_reset(release) -> None:
     lines = release.update(0.1, STOPPED)
-    assert "a wheel stands although its target is not zero (0.6 rad, limit 0.5 rad). The command has no" in texts(lines)
+    assert "motion is commanded (0.6 rad, limit 0.5 rad). The command has no" in texts(lines)
     assert release.update(5.0, STOPPED) == []
     assert "start send_cmd.py again" in texts(release.update(6.0, READY))
     assert release.phase is Phase.RELEASED
@@ -91,7 +91,7 @@ def test_a_wait_for_a_zero_of_another_sender_is_said_once_in_one_line(release, t
     waiting = Status("INIT", awaiting_zero=True)
     said = [line for i in range(100) for line in release.update(0.1 * i, waiting)]
     assert [line.text for line in said] == [
-        f"waits for a zero request; stop the other sender{silence} or let it send zero"
+        f"waiting for a zero velocity command; stop the other sender{silence}, or publish zero from it"
     ]
 
 

@@ -42,9 +42,9 @@ def test_of_a_robot_on_legs_it_shows_the_speed_sideways():
 
 
 def test_it_shows_state_causes_and_remedy():
-    cause = Cause("e_stop_topic", "the topic e_stop said true", "publish false", "operator", first=True, active=True)
+    cause = Cause("e_stop_topic", "the topic e_stop received true", "publish false", "operator", first=True)
     text = screen(facts(safety=Safety("STOPPED", "brake", causes=(cause,))))
-    for words in ("STOPPED, permit: brake", "Stopped: the topic e_stop said true", "operator: publish false"):
+    for words in ("STOPPED, permit: brake", "Stopped: the topic e_stop received true", "operator: publish false"):
         assert words in text
 
 
@@ -58,7 +58,7 @@ def test_it_shows_the_age_of_the_command_and_who_else_commands():
 def test_an_idle_robot_needs_a_key_and_nothing_else():
     reports = {**{node: Report() for node in LOOP}, CONTROLLER: Report(values={"command: timed_out": "too old"})}
     text = screen(facts(reports=reports))
-    assert "It may move: hold a key." in text
+    assert "Ready: hold a key." in text
     assert "to do" not in text
 
 

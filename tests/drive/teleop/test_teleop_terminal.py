@@ -179,7 +179,7 @@ def test_ctrl_c_is_a_signal_and_ctrl_z_and_ctrl_s_are_none(started):
 
 def test_without_a_terminal_it_says_so():
     reading, writing = os.pipe()
-    with pytest.raises(NoTerminalError, match="no terminal"):
+    with pytest.raises(NoTerminalError, match="not a terminal"):
         Terminal(reading)
     os.close(reading)
     os.close(writing)

@@ -251,7 +251,7 @@ TEST(BoardCounters, WrapUnnoticed) {
 TEST(BoardLine, IsRefusedIfItCannotCarryTheMessages) {
   EXPECT_NO_THROW(BoardMachine(500, 32, 0, 921600));
   EXPECT_THAT(message_of<DriverError>([] { BoardMachine(500, 32, 0, 115200); }),
-              AllOf(HasSubstr("115200 bit/s"), HasSubstr("at 126 Hz at most")));
+              AllOf(HasSubstr("115200 bit/s"), HasSubstr("at most 126 Hz")));
 }
 
 class MutatedBoard final : public MutatedLine {

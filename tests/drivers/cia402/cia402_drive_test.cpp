@@ -60,7 +60,7 @@ TEST(Cia402Drive, ComparesWhatItReadsWithTheFile) {
 
 TEST(Cia402Drive, SaysWhatIsMissingAndWhatWasRefusedWithTheAbortInWords) {
   const Cia402Pair pair = cia402_pair(5);
-  EXPECT_THAT(words_after(pair, without(kRatedTorque)), HasSubstr("lacks rated torque (6076); state rated_torque"));
+  EXPECT_THAT(words_after(pair, without(kRatedTorque)), HasSubstr("lacks rated torque (6076); set rated_torque"));
   EXPECT_THAT(words_after(pair, without({0x6077, 0})),
               HasSubstr("refused to set TPDO of statusword, position and torque (0x6040041: object cannot be mapped"));
   Cia402Pair fixed = pair;
@@ -135,7 +135,7 @@ TEST(Cia402Drive, RefusesAGearWithoutAFeedConstant) {
     device.objects().add({0x6091, 2}, 1, 4, false);
   };
   EXPECT_THAT(words_after(pair, with_gear),
-              HasSubstr("lacks feed constant (6092) beside its gear (6091); state counts_per_turn"));
+              HasSubstr("lacks feed constant (6092) beside its gear (6091); set counts_per_turn"));
   pair.drive.counts_per_turn = 4096;
   EXPECT_THAT(words_after(pair, with_gear), HasSubstr("running"));
 }

@@ -466,8 +466,8 @@ std::vector<FaultCase> fault_cases() {
       {"UnderVoltage05", odrive05, DeviceFault::kUnderVoltage, "MOTOR_FAILED UNKNOWN_VBUS_VOLTAGE"},
       {"UnderVoltage06", odrive06, DeviceFault::kUnderVoltage, "DC_BUS_UNDER_VOLTAGE"},
       {"UnderVoltageCia402", cia402, DeviceFault::kUnderVoltage, "0x3220 (DC link under-voltage)"},
-      {"NotFinite05", odrive05, DeviceFault::kNotFinite, "sent a number that is not finite"},
-      {"NotFinite06", odrive06, DeviceFault::kNotFinite, "sent a number that is not finite"},
+      {"NotFinite05", odrive05, DeviceFault::kNotFinite, "sent NaN or infinity"},
+      {"NotFinite06", odrive06, DeviceFault::kNotFinite, "sent NaN or infinity"},
   };
 }
 

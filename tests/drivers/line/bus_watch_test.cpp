@@ -58,7 +58,7 @@ TEST_F(BusWatchTest, IsDownAfterTheTimeWithoutAnyFrame) {
   EXPECT_EQ(after(BusWatch::kRecentNs - 1).state, LinkState::kUp);
   EXPECT_EQ(after(1).state, LinkState::kDown);
   EXPECT_EQ(text(),
-            "the bus: no frame was received in the last 1.5 s; look at the cable, its terminators, the power of the "
+            "the bus: no frame was received in the last 1.5 s; check the cable, its terminators, the power of the "
             "drives and the bit rate");
   carry(data_frame(0x123, {}));
   EXPECT_EQ(after(1).state, LinkState::kUp);
@@ -79,7 +79,7 @@ TEST_F(BusWatchTest, ABusThatNeverCarriedAFrameStartsAndIsThenDown) {
 TEST_F(BusWatchTest, SaysThatTheControllerIsBusOff) {
   report(CAN_ERR_BUSOFF, 0);
   EXPECT_EQ(after(1).state, LinkState::kDown);
-  EXPECT_THAT(text(), HasSubstr("bus-off: the controller takes no part until it is restarted"));
+  EXPECT_THAT(text(), HasSubstr("bus-off: the CAN controller is off until it is restarted"));
   EXPECT_THAT(text(), HasSubstr("restart-ms"));
   report(CAN_ERR_RESTARTED, 0);
   after(1);
@@ -91,7 +91,7 @@ TEST_F(BusWatchTest, SaysThatTheControllerIsBusOff) {
 TEST_F(BusWatchTest, SaysThatTheBitRateIsAnotherOne) {
   report(CAN_ERR_PROT, std::uint64_t{CAN_ERR_PROT_STUFF} << 16U);
   EXPECT_EQ(after(1).state, LinkState::kDegraded);
-  EXPECT_THAT(text(), HasSubstr("bit stuffing error: is the bit rate that of the other nodes?"));
+  EXPECT_THAT(text(), HasSubstr("bit stuffing error: check that all nodes have the same bit rate"));
 }
 
 // An error-passive controller does not report the same state again.
@@ -123,15 +123,15 @@ can_frame error(canid_t classes, std::uint64_t data) {
 
 TEST(CanErrors, AFrameReportsAllItsClasses) {
   EXPECT_EQ(can_error_words(error(CAN_ERR_ACK | CAN_ERR_BUSERROR, 0)),
-            "no acknowledgement: no other node is awake at this bit rate, bus error");
+            "no acknowledgement: no other node is active at this bit rate, bus error");
   EXPECT_EQ(can_error_words(error(CAN_ERR_CRTL | CAN_ERR_PROT, std::uint64_t{CAN_ERR_PROT_STUFF} << 16U |
                                                                    std::uint64_t{CAN_ERR_CRTL_TX_PASSIVE} << 8U)),
-            "error passive by transmit errors, bit stuffing error: is the bit rate that of the other nodes?");
+            "error passive by transmit errors, bit stuffing error: check that all nodes have the same bit rate");
 }
 
 TEST(CanErrors, DetailsCountInTheirClassAlone) {
   EXPECT_EQ(can_error_words(error(CAN_ERR_BUSOFF, ~std::uint64_t{0})),
-            "bus-off: the controller takes no part until it is restarted");
+            "bus-off: the CAN controller is off until it is restarted");
   EXPECT_EQ(can_error_words(error(CAN_ERR_CRTL, 0)), "the controller reports errors without a reason");
   EXPECT_EQ(can_error_words({}), "");
 }

@@ -121,7 +121,7 @@ TEST_F(CanFolder, AnEndedPartyFreesItsNameAndAKilledOneToo) {
 TEST_F(CanFolder, TheSeventeenthPartyIsRefused) {
   std::vector<std::unique_ptr<CanBus>> parties;
   for (unsigned i = 3; i < kMaxParties; ++i) parties.push_back(join());
-  EXPECT_THAT(refusal(address_), AllOf(HasSubstr("no name is free"), HasSubstr("at most 16 parties share a folder")));
+  EXPECT_THAT(refusal(address_), AllOf(HasSubstr("no free name"), HasSubstr("at most 16 programs share a folder")));
 }
 
 TEST_F(CanFolder, SendingAllocatesNothing) {
@@ -150,7 +150,7 @@ TEST(CanSocket, ALinkToAFolderIsRefused) {
   std::filesystem::create_directory(folder.path() / "bus");
   std::filesystem::create_symlink("bus", folder.path() / "link");
   EXPECT_EQ(refusal("unix:" + (folder.path() / "bus").string()), "accepted");
-  EXPECT_THAT(refusal("unix:" + (folder.path() / "link").string()), HasSubstr("name a folder of your own"));
+  EXPECT_THAT(refusal("unix:" + (folder.path() / "link").string()), HasSubstr("set a folder of your own"));
 }
 
 TEST(CanSocket, AFolderThatCannotBeMadeIsRefused) {
@@ -168,8 +168,8 @@ TEST(CanSocket, APathThatIsTooLongIsRefused) {
 
 TEST(CanSocket, AnInterfaceThatIsNotThereIsRefusedWithTheRemedy) {
   EXPECT_THAT(refusal("nocan7"), AllOf(HasSubstr("CAN bus nocan7: "), HasSubstr("; ")));
-  EXPECT_THAT(refusal(""), HasSubstr("write can0, or unix:FOLDER"));
-  EXPECT_THAT(refusal("name\x1b[2J_that_is_too_long"), AllOf(HasSubstr("\\x1b"), HasSubstr("no name of an interface")));
+  EXPECT_THAT(refusal(""), HasSubstr("set can0, or unix:FOLDER"));
+  EXPECT_THAT(refusal("name\x1b[2J_that_is_too_long"), AllOf(HasSubstr("\\x1b"), HasSubstr("not the name of an interface")));
 }
 
 TEST(CanSocket, SocketCanCarriesFramesBetweenTwoSockets) {

@@ -100,7 +100,7 @@ TEST_F(RoboclawDriverTest, EveryLossIsAFaultWithItsCauseAndStandsUntilTheReset) 
        {Loss{"line", "cut", "is silent: no device on the line"}, Loss{"line", "stalled", "is silent: no message"},
         Loss{"board", "off", "is silent: no message"}, Loss{"board", "reset", "is silent: no message"},
         Loss{"board", "fault", "reports an error: temperature 1"},
-        Loss{"encoder", "stuck", "stands still though it is driven"}}) {
+        Loss{"encoder", "stuck", "does not turn although it is driven"}}) {
     SCOPED_TRACE(loss.kind);
     inject(loss.component, loss.kind);
     cycles(1500);

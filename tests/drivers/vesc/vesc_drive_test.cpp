@@ -20,7 +20,7 @@ TEST(VescDrive, NamesTheMessageThatIsNotTurnedOn) {
   VescPair pair = vesc_pair(2);
   pair.device.temperature_period = 0;
   EXPECT_THAT(vesc_words_after(pair, {.enabled = true}),
-              HasSubstr("starting; the drive waits for CAN status message 4; turn it on with the maker's tool"));
+              HasSubstr("starting; the drive waits for CAN status message 4; set it with the tool of the maker"));
   pair = vesc_pair(2);
   pair.device.status_period = 0;
   EXPECT_THAT(vesc_words_after(pair, {.enabled = true}), HasSubstr("waits for CAN status message 1"));

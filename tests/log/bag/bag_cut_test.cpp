@@ -61,7 +61,7 @@ TEST(AKilledWriter, HasWrittenNoChunkTwice) {
   const BagOfBytes file(bytes);
   const BagReader bag(file.path());
   EXPECT_EQ(bag.messages(), 100U);
-  EXPECT_THAT(bag.cut(), HasSubstr("field time: the chunk begins before the end of the one before"));
+  EXPECT_THAT(bag.cut(), HasSubstr("field time: the chunk begins before the end of the previous chunk"));
 }
 
 TEST(ABagWithAnEnd, IsRefusedWhereItsMiddleIsMissing) {

@@ -70,7 +70,7 @@ TEST_F(Resource, PackagesInPackagesAndHiddenFoldersAreNotLookedAt) {
   folder_.write("ws/ignored/CATKIN_IGNORE", "");
   folder_.write("ws/ignored/old/package.xml", "<package><name>old</name></package>");
   for (const char* uri : {"package://inner/a.stl", "package://secret/a.stl", "package://old/a.stl"}) {
-    EXPECT_THAT(refusal(uri), HasSubstr("there is no package")) << uri;
+    EXPECT_THAT(refusal(uri), HasSubstr("package not found")) << uri;
   }
 }
 

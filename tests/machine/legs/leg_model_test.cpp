@@ -171,7 +171,7 @@ TEST_F(LegRefusals, AcceptTheHealthyRobotUnderAnyNames) {
 
 TEST_F(LegRefusals, NameTheNumberOfLegs) {
   const std::string two = refusal(body_ + leg("a", 0.19, -0.05) + leg("b", 0.19, 0.05));
-  EXPECT_THAT(two, HasSubstr("2 legs found (to a_calf, b_calf), a quadruped has four"));
+  EXPECT_THAT(two, HasSubstr("2 legs found (to a_calf, b_calf), but a quadruped has four"));
   EXPECT_THAT(refusal(body_ + legs_ + leg("e", 0, 0.05) + leg("f", 0, -0.05)), HasSubstr("6 legs found"));
 }
 
@@ -183,9 +183,9 @@ TEST_F(LegRefusals, NameTwoLegsAtOneCorner) {
 
 TEST_F(LegRefusals, NameAJointWithoutLimits) {
   EXPECT_THAT(refusal(body_ + replaced(legs_, "effort=\"35\"", "effort=\"0\"")),
-              HasSubstr("_calf_joint\">: a joint of a leg without effort limit"));
+              HasSubstr("_calf_joint\">: the leg joint has no effort limit"));
   EXPECT_THAT(refusal(body_ + replaced(legs_, "velocity=\"20\"", "velocity=\"0\"")),
-              HasSubstr("_calf_joint\">: a joint of a leg without velocity limit"));
+              HasSubstr("_calf_joint\">: the leg joint has no velocity limit"));
 }
 
 TEST_F(LegRefusals, NameAnAxisThatIsFarFromThatOfALeg) {
@@ -199,7 +199,7 @@ TEST_F(LegRefusals, NameAnAxisThatIsFarFromThatOfALeg) {
 TEST_F(LegRefusals, NameLinksWithoutInertial) {
   const std::string weightless = without(legs_, inertial("0.5", kSmall));
   EXPECT_THAT(refusal(body_ + weightless),
-              HasSubstr("almost a quadruped: these links have no <inertial>, and count as fixed: a_calf, a_hip, "
+              HasSubstr("almost a quadruped: these links have no <inertial> and count as fixed: a_calf, a_hip, "
                         "a_thigh, b_calf"));
   EXPECT_TRUE(has_legs(read_moving_bodies(robot_of(body_ + weightless))));
   EXPECT_TRUE(
@@ -208,14 +208,15 @@ TEST_F(LegRefusals, NameLinksWithoutInertial) {
 
 TEST_F(LegRefusals, NameWhatKeepsFourLimbsFromBeingLegs) {
   const std::string hips = replaced(legs_, R"(<axis xyz="1 0 0"/>)", R"(<axis xyz="0 0 1"/>)");
-  EXPECT_THAT(refusal(body_ + hips), HasSubstr("almost a quadruped: the hip's axis is z, and a leg turns about x, y"));
+  EXPECT_THAT(refusal(body_ + hips),
+              HasSubstr("almost a quadruped: the hip's axis is z, but at zero angles, the axes of a leg are x, y"));
   EXPECT_TRUE(has_legs(read_moving_bodies(robot_of(body_ + hips))));
 }
 
 TEST_F(LegRefusals, NameABodyWithoutAShape) {
   const std::string hips = without(legs_, collision("<sphere radius=\"0.04\"/>"));
   EXPECT_THAT(refusal(link("trunk", inertial("6")) + hips),
-              HasSubstr("<link name=\"trunk\">: a robot on legs lies on its body, which has no shape"));
+              HasSubstr("<link name=\"trunk\">: a robot on legs lies on its body, but this has no shape"));
 }
 
 TEST_F(LegRefusals, NameARangeThatLooksLikeDegrees) {
@@ -242,7 +243,7 @@ TEST_F(LegRefusals, NameAWheelOnALeg) {
                      .rest = "<limit effort=\"5\" velocity=\"20\"/>",
                      .parent = std::string(name) + "_calf"});
   }
-  EXPECT_THAT(refusal(body_ + legs_ + wheels), HasSubstr("a_wheel_joint\">: it moves on a leg"));
+  EXPECT_THAT(refusal(body_ + legs_ + wheels), HasSubstr("a_wheel_joint\">: it is a fourth moving joint of a leg"));
 }
 
 TEST_F(LegRefusals, NameAnotherJointThatMoves) {
@@ -254,12 +255,13 @@ TEST_F(LegRefusals, NameAnotherJointThatMoves) {
                                           .axis = "<axis xyz=\"0 0 1\"/>",
                                           .rest = "<limit lower=\"-1\" upper=\"1\" effort=\"5\" velocity=\"2\"/>",
                                           .parent = "trunk"});
-  EXPECT_THAT(refusal(body_ + legs_ + arm), HasSubstr("<joint name=\"arm_joint\">: it moves, but belongs to no leg"));
+  EXPECT_THAT(refusal(body_ + legs_ + arm),
+              HasSubstr("<joint name=\"arm_joint\">: it moves, but is not part of a leg"));
 }
 
 TEST_F(LegRefusals, NameAKneeThatCannotBendAsAsked) {
   EXPECT_THAT(refusal(body_ + legs_, {.knee_bend = KneeBend::kForward}),
-              HasSubstr("robot/knee_bend lets this knee point forward, which its range does not allow"));
+              HasSubstr("robot.knee_bend requires this knee to point forward, but its range does not allow this"));
 }
 
 TEST_F(LegRefusals, BendTheKneeToTheSideOnWhichTheThighLetsTheLegStand) {

@@ -85,12 +85,13 @@ TEST_F(CommandInputTest, AClockThatIsAnHourOffIsReportedOnce) {
   EXPECT_EQ(value().count, 0u);
   EXPECT_EQ(reported(),
             "W cmd_vel_stamped of /teleop is 3600 s old by its stamp, more than cmd_vel_timeout (1.25 s): refused; it "
-            "was long under way, or that sender's clock is behind; synchronise it (chrony), or let it send without "
+            "was delayed, or the clock of its sender is behind; synchronise it (chrony), or publish without "
             "a stamp: the age then counts from the arrival\n");
   receive_stamped("/teleop", 0.5, -kHour);
   EXPECT_THAT(reported(), HasSubstr("/teleop is stamped 3600 s in the future")) << "that is another fault";
   receive_stamped("/ahead", 0.5, -kHour);
-  EXPECT_THAT(reported(), HasSubstr("/ahead is stamped 3600 s in the future, more than clocks may differ (0.1 s)"));
+  EXPECT_THAT(reported(),
+              HasSubstr("/ahead is stamped 3600 s in the future, more than the allowed clock difference (0.1 s)"));
 }
 
 TEST_F(CommandInputTest, AClockThatFlickersIsReportedEveryTenSecondsAtMost) {
@@ -166,7 +167,7 @@ TEST_F(CommandInputTest, TwoNodesAreNamedOnceAndOverrideEachOther) {
   EXPECT_EQ(value().count, 200u);
   EXPECT_EQ(value().many_senders, 0u);
   EXPECT_EQ(reported(),
-            "W 2 nodes send commands: /navigation, /teleop; each message overrides the one before (one_sender: true "
+            "W 2 nodes send commands: /navigation, /teleop; each message overrides the previous one (one_sender: true "
             "refuses them)\n");
   pass(2 * kSecond);
   receive("/teleop", 0.5);
@@ -305,7 +306,7 @@ TEST_F(RevokedSenderTest, WhatAStopInterruptedIsRefusedUntilItsSendersOwnZero) {
   EXPECT_EQ(value().count, count);
   EXPECT_EQ(value().revoked, 1u);
   EXPECT_THAT(input_.revoked(), testing::ElementsAre("/teleop"));
-  EXPECT_THAT(reported(), HasSubstr("W motion of /teleop is refused: it was requested before a stop"));
+  EXPECT_THAT(reported(), HasSubstr("W motion of /teleop is refused: it must send zero once after a stop"));
   receive("/pad", 0);
   receive("/teleop", 0.5);
   EXPECT_EQ(value().revoked, 2u) << "the zero of another sender";
@@ -518,7 +519,7 @@ TEST_F(CommandInputTest, NaNNeverReachesTheLoopAndEndsTheCommandOfItsSender) {
   EXPECT_EQ(value().content.twist.linear[0], 0);
   EXPECT_EQ(value().contested, kNotFiniteMessage);
   EXPECT_EQ(value().count, 2u);
-  EXPECT_EQ(reported(), "W cmd_vel_stamped holds NaN or infinity: refused; repair its sender /teleop\n");
+  EXPECT_EQ(reported(), "W cmd_vel_stamped holds NaN or infinity: refused; check its sender /teleop\n");
   receive("/teleop", 0.5);
   EXPECT_EQ(value().content.twist.linear[0], 0.5);
   EXPECT_EQ(value().contested, 0u);
@@ -530,7 +531,7 @@ TEST_F(CommandInputTest, NaNOfAnotherSenderLeavesTheCommandInForce) {
   EXPECT_EQ(value().content.twist.linear[0], 0.5);
   EXPECT_EQ(value().count, 1u);
   EXPECT_EQ(value().not_finite, 1u);
-  EXPECT_THAT(reported(), HasSubstr("refused; repair its sender /broken"));
+  EXPECT_THAT(reported(), HasSubstr("refused; check its sender /broken"));
 }
 
 /// Twists and poses of robots on legs, each over a connection of its own.

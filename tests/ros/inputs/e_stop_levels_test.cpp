@@ -73,7 +73,7 @@ TEST_F(EStopLevelsTest, FromBeforeARestartStayUntilEveryPublisherThatIsThereHasS
   EXPECT_TRUE(levels_.stopped()) << "it ends with a reset request alone";
   levels_.settle({"/gate", "/panel"});
   EXPECT_TRUE(levels_.stopped()) << "/panel may have said true before";
-  EXPECT_THAT(levels_.publishers(), ElementsAre(testing::StartsWith("/panel (has sent nothing")));
+  EXPECT_THAT(levels_.publishers(), ElementsAre(testing::StartsWith("/panel (has published nothing")));
   levels_.receive("/panel", kTrue);
   levels_.settle({"/gate", "/panel"});
   EXPECT_THAT(levels_.publishers(), ElementsAre("/panel"));

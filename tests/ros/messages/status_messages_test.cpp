@@ -110,7 +110,8 @@ TEST_F(SafetyStatusTest, ReportsWarningsBesideTheCauses) {
   permit_.evidence[0] = {.cause = kCauseBatteryLow, .value = 20.9, .limit = 21};
   const SafetyStatus status = message();
   EXPECT_THAT(status.warnings, ElementsAre("battery_low"));
-  EXPECT_THAT(status.warning_sentences, ElementsAre("the battery is low: 20.9 V, limit 21 V (charge it soon)"));
+  EXPECT_THAT(status.warning_sentences,
+              ElementsAre("the battery is low: 20.9 V, limit 21 V (charge the battery soon)"));
   EXPECT_THAT(status.causes, IsEmpty());
 }
 
@@ -208,7 +209,8 @@ TEST_F(SafetyStatusTest, ARemedyNamesTheProgramsOfTheRobot) {
   const Programs programs{.kind = kLeggedKind, .driver = "driver"};
   const SafetyStatus status = safety_status(permit_, robot_, absent_, time_, kPeriod, programs);
   EXPECT_THAT(status.remedies_before_reset,
-              ElementsAre("look whether driver runs and gets its core", "look whether leg_controller runs"));
+              ElementsAre("check that driver runs and gets enough CPU time (scripts/doctor.py)",
+                          "check that leg_controller runs and gets enough CPU time (scripts/doctor.py)"));
 }
 
 }  // namespace robot_control::tests

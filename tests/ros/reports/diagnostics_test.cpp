@@ -102,10 +102,10 @@ TEST_F(StateReport, GivesNoDeviationBeforeThereIsAState) {
 TEST_F(StateReport, WarnsOfSlipInWordsAlsoOfAMoment) {
   state_.wheeled.slip = kSlipLeft | kSlipSpinning;
   EXPECT_THAT(report().message().message, HasSubstr("the left wheels do not roll; a wheel turns faster than the ground "
-                                                    "passes (accelerate less)"));
+                                                    "passes (reduce the acceleration)"));
   EXPECT_EQ(value_of(report(), "slip"), "left spinning");
   EXPECT_EQ(value_of(report(), "slip: spinning"), "a wheel turns faster than the ground passes");
-  EXPECT_EQ(value_of(report(), "slip remedy: spinning"), "accelerate less");
+  EXPECT_EQ(value_of(report(), "slip remedy: spinning"), "reduce the acceleration");
   EXPECT_EQ(value_of(report(), "slip remedy: left"), "(none)");
   state_.wheeled.slip = 0;
   EXPECT_EQ(report(kSlipSideways).message().level, static_cast<int>(diagnostic_msgs::DiagnosticStatus::WARN));
@@ -120,7 +120,7 @@ TEST_F(StateReport, WarnsOfAPoseWhoseWheelsSlip) {
   EXPECT_EQ(report().message().level, static_cast<int>(diagnostic_msgs::DiagnosticStatus::WARN));
   EXPECT_THAT(report().message().message, HasSubstr("wheels or feet contradict the IMU, as in a slip"));
   EXPECT_EQ(value_of(report(), "degraded"), "position");
-  EXPECT_THAT(value_of(report(), "degraded remedy: position"), HasSubstr("at the IMU's mounting"));
+  EXPECT_THAT(value_of(report(), "degraded remedy: position"), HasSubstr("the mounting of the IMU"));
 }
 
 TEST_F(StateReport, ReportsHowWellSlipIsNoticed) {
@@ -170,7 +170,7 @@ TEST(CommandReasons, AreEachAValueInWords) {
   EXPECT_EQ(value_of(report, "reasons"), "timed_out holding");
   EXPECT_EQ(value_of(report, "command: timed_out"), "the last cmd_vel is older than cmd_vel_timeout");
   EXPECT_THAT(value_of(report, "command remedy: timed_out"), HasSubstr("publish on cmd_vel"));
-  EXPECT_EQ(value_of(report, "command: holding"), "standing with zero command: the brake holds the position");
+  EXPECT_EQ(value_of(report, "command: holding"), "the command is zero: the brake holds the position");
   EXPECT_EQ(value_of(report, "command: no_command"), "(none)");
   EXPECT_EQ(value_of(report, "requested_m_s"), "0.5");
 }
@@ -223,7 +223,7 @@ TEST(GateReasons, AreEachAValueInWords) {
   DiagnosticReport report("mujoco_plant", "diffbot");
   report_driver(report, sensors, {}, {}, 1.0);
   EXPECT_EQ(value_of(report, "gate: permit_brake"), "the permit orders the brake");
-  EXPECT_EQ(value_of(report, "gate remedy: permit_brake"), "read the cause in safety_status");
+  EXPECT_EQ(value_of(report, "gate remedy: permit_brake"), "check the cause in safety_status");
 }
 
 TEST(GateReasons, NameTheControllerOfTheRobot) {
@@ -231,7 +231,8 @@ TEST(GateReasons, NameTheControllerOfTheRobot) {
   sensors.gate.reasons = kGateNoCommand;
   DiagnosticReport report("mujoco_plant", "quadbot");
   report_driver(report, sensors, {}, {.kind = kLeggedKind}, 1.0);
-  EXPECT_EQ(value_of(report, "gate remedy: no_command"), "look whether leg_controller runs and gets its core");
+  EXPECT_EQ(value_of(report, "gate remedy: no_command"),
+            "check that leg_controller runs and gets enough CPU time (scripts/doctor.py)");
 }
 
 }  // namespace robot_control::tests

@@ -77,10 +77,10 @@ TEST_F(StopLogTest, SaysOnceThatTheRobotIsReady) {
 
 TEST_F(StopLogTest, SaysStateCauseValueLimitAndRemedyOfAStop) {
   permit_.evidence[0] = {.cause = kCauseStall, .joint = 0, .value = 0.6, .limit = 0.5};
-  EXPECT_EQ(
-      stop(kCauseStall),
-      "W STOPPED: stall: a wheel stands although its target is not zero (0.6 rad, limit 0.5 rad, left_wheel_joint). "
-      "To drive again: free the wheel, or look at its motor and encoder, then call e_stop_reset\n");
+  EXPECT_EQ(stop(kCauseStall),
+            "W STOPPED: stall: a wheel does not turn although motion is commanded (0.6 rad, limit 0.5 rad, "
+            "left_wheel_joint). "
+            "To drive again: check for a blocked wheel, then motor and encoder, then call e_stop_reset\n");
   EXPECT_EQ(report(), "");
 }
 
@@ -98,10 +98,10 @@ TEST_F(StopLogTest, EveryCauseOfTheTableGivesOneLineWithItsRemedyAndTheReset) {
 TEST_F(StopLogTest, SeveralCausesAtOnceAreOneLineWithTheFirstInFront) {
   permit_.first_cause = kCauseStall;
   permit_.causes = kCauseStall | kCauseEmergencyStopService;
-  EXPECT_EQ(
-      enter(SupervisorState::kStopped),
-      "W STOPPED: stall: a wheel stands although its target is not zero; e_stop_service: e_stop_trigger was called. To "
-      "drive again: free the wheel, or look at its motor and encoder, then call e_stop_reset\n");
+  EXPECT_EQ(enter(SupervisorState::kStopped),
+            "W STOPPED: stall: a wheel does not turn although motion is commanded; e_stop_service: e_stop_trigger was "
+            "called. To "
+            "drive again: check for a blocked wheel, then motor and encoder, then call e_stop_reset\n");
 }
 
 TEST_F(StopLogTest, ACauseThatLatchesLaterHasALineOfItsOwn) {
@@ -139,13 +139,15 @@ TEST_F(StopLogTest, SaysOnceThatItWaitsForAZeroRequestWhenSilenceWouldHaveEndedT
     status.cycle = 100 + i;
     if (const std::string text = report(status); !text.empty()) said.push_back(std::to_string(i) + " " + text);
   }
-  EXPECT_THAT(said, ElementsAre("1500 W INIT: waits for a zero request; stop the sender for 1.25 s or send zero\n"));
+  EXPECT_THAT(
+      said,
+      ElementsAre("1500 W INIT: waiting for a zero velocity command; stop publishing for 1.25 s, or publish zero\n"));
   status.awaiting_zero_request = 0;
   report(status);
   status.awaiting_zero_request = 1;
   report(status);
   status.cycle += 2 * kLogSecond;
-  EXPECT_THAT(report(status), HasSubstr("waits for a zero request")) << "another wait";
+  EXPECT_THAT(report(status), HasSubstr("waiting for a zero velocity command")) << "another wait";
 }
 
 TEST_F(StopLogTest, SaysNothingOfAWaitThatSilenceEnds) {
@@ -165,7 +167,7 @@ TEST_F(StopLogTest, AWarningIsSaidWhenItBeginsAndNotEachTimeItFlickers) {
     permit_.warnings = i % 40 == 0 ? std::uint64_t{kCauseImuStuck} : 0;
     said += report();
   }
-  EXPECT_THAT(said, AllOf(StartsWith("W warning: imu_stuck: "), EndsWith("; no faster than 0.3 m/s\n")));
+  EXPECT_THAT(said, AllOf(StartsWith("W warning: imu_stuck: "), EndsWith("; at most 0.3 m/s\n")));
   EXPECT_EQ(std::ranges::count(said, '\n'), 1);
   permit_.head.cycle += 2 * kLogSecond;
   permit_.warnings = 0;
@@ -176,7 +178,7 @@ TEST_F(StopLogTest, AWarningIsSaidWhenItBeginsAndNotEachTimeItFlickers) {
 
 TEST_F(StopLogTest, SaysThatTheWayIsNotFree) {
   permit_.speed_limit = 0;
-  EXPECT_THAT(report(), HasSubstr("clearance leaves no speed"));
+  EXPECT_THAT(report(), HasSubstr("the free distance (clearance) is 0"));
   EXPECT_EQ(report(), "");
 }
 
@@ -187,7 +189,7 @@ TEST_F(StopLogTest, AWarningOfTheMachineDoesNotHideThatTheWayIsNotFree) {
   status.speed_limit = 0;
   const std::string said = report(status);
   EXPECT_THAT(said, HasSubstr("W warning: torque_not_measured: drives measure no torque\n"));
-  EXPECT_THAT(said, HasSubstr("clearance leaves no speed"));
+  EXPECT_THAT(said, HasSubstr("the free distance (clearance) is 0"));
 }
 
 TEST_F(StopLogTest, IsSilentWhileAHealthyRobotDrives) {

@@ -106,7 +106,7 @@ TEST_F(CommandReportTest, GoesByTheLimitsThatHold) {
   other.cmd_vel_timeout = 0.4;
   report().limit(other);
   EXPECT_THAT(receive(0.5, 0.2).at(0).text, HasSubstr("limited to 0.25 m/s, 0.1 rad/s"));
-  EXPECT_THAT(time_out().at(0).text, HasSubstr("silent for 0.4 s"));
+  EXPECT_THAT(time_out().at(0).text, HasSubstr("no cmd_vel for 0.4 s"));
 }
 
 TEST_F(CommandReportTest, SpeaksOfNoLimitWhereNoneWasMet) {
@@ -175,7 +175,8 @@ TEST_F(CommandReportTest, ReportsThatAStopEndedTheEffectAndThatAReleaseRestoredI
   receive(0.5, 0.2);
   std::vector<ReportLine> lines = go_on(kReasonPermitBrake);
   ASSERT_EQ(lines.size(), 1u);
-  EXPECT_THAT(lines[0].text, HasSubstr("has no effect: the permit orders the brake (read the cause in safety_status)"));
+  EXPECT_THAT(lines[0].text,
+              HasSubstr("has no effect: the permit orders the brake (check the cause in safety_status)"));
   lines = go_on(0);
   ASSERT_EQ(lines.size(), 1u);
   EXPECT_THAT(lines[0].text, HasSubstr("left 0.45 m/s, right 0.55 m/s"));

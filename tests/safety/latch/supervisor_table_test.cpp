@@ -98,7 +98,7 @@ TEST(Names, SpeakOfEveryBitThatIsSet) {
   EXPECT_EQ(names_of(kStopCauseNames, kCauseControllerLost | kCauseHeartbeatLost), "controller_lost heartbeat_lost");
   EXPECT_EQ(names_of(kStopCauseNames, 0), "");
   EXPECT_EQ(sentences_of(kResetRefusalNames, kRefusalMoving, {}),
-            "the robot has not come to rest (wait until every joint stands)");
+            "the robot still moves (wait until every joint stands still)");
   EXPECT_EQ(name_of(static_cast<SupervisorState>(99)), "UNKNOWN");
 }
 

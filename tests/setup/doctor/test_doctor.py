@@ -125,10 +125,10 @@ FAULTS = {
         parameters={"cpu_dma_latency": 0},
     ),
     "a machine that is too hot": Planted(
-        "throttling", "cool the machine", {"sys/class/thermal/thermal_zone0/temp": "96000"}
+        "throttling", "cool the computer", {"sys/class/thermal/thermal_zone0/temp": "96000"}
     ),
     "a machine that was throttled for long": Planted(
-        "throttling", "cool the machine", {f"{CPU}/cpu0/thermal_throttle/core_throttle_total_time_ms": "900000"}
+        "throttling", "cool the computer", {f"{CPU}/cpu0/thermal_throttle/core_throttle_total_time_ms": "900000"}
     ),
     "another core is isolated": Planted("isolated_cores", "robot.core: 2", {f"{CPU}/isolated": "2"}),
     "half a core is isolated": on_hardware(
@@ -540,4 +540,4 @@ def test_the_nodes_are_measured_beside_cyclictest_idle_and_under_load():
 
 def test_a_root_that_is_no_folder_is_refused():
     done = run("--root", "/nonexistent")
-    assert "--root /nonexistent is no folder" in done.stderr
+    assert "--root /nonexistent is not a folder" in done.stderr

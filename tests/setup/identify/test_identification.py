@@ -119,7 +119,7 @@ def test_refuses_a_log_in_which_nothing_was_driven_and_says_why(log):
 def test_refuses_a_robot_that_was_asked_for_nothing(log):
     for wheel in drive.BASE.wheels:
         log[f"{wheel.joint}_velocity_command"][:] = 0
-    assert "nothing but zero" in refusal(log)
+    assert "only zero" in refusal(log)
 
 
 def test_refuses_a_drive_that_measures_no_torque(log):

@@ -65,7 +65,7 @@ def test_refuses_the_log_of_another_robot(tmp_path, monkeypatch):
     urdf.write_text(Path(share_file("urdf/diffbot.urdf")).read_text().replace("left_wheel_joint", "port_wheel"))
     other = written(ClosedLoop(urdf=str(urdf)), tmp_path, 0.1, (0.0, 0.0))
     message = refusal(monkeypatch, f"--log={other}", f"--output={tmp_path}/x.yaml")
-    assert "the log is of another robot: it has no joint left_wheel_joint, but port_wheel" in message
+    assert "the log is from another robot: it has no joint left_wheel_joint, but port_wheel" in message
     assert not (tmp_path / "x.yaml").exists()
 
 
@@ -77,7 +77,7 @@ def test_refuses_the_log_of_a_robot_on_legs(tmp_path, monkeypatch):
 
 def test_refuses_a_log_that_is_not_there(tmp_path, monkeypatch):
     message = refusal(monkeypatch, f"--log={tmp_path}/none.bag")
-    assert message == f"identify.py: {tmp_path}/none.bag cannot be opened or written: No such file or directory"
+    assert message == f"identify.py: {tmp_path}/none.bag: file not found"
 
 
 @pytest.mark.parametrize(
@@ -100,7 +100,7 @@ def test_the_log_of_a_demo_is_refused_without_nan_or_a_warning(tmp_path, monkeyp
     loop = ClosedLoop({"mujoco_plant": {"sensor_errors": "data_sheet"}})
     log = written(loop, tmp_path, 10.0, lambda t: (0.5, 0.2) if 1 < t < 9 else (0.0, 0.0))
     message = refusal(monkeypatch, f"--log={log}", f"--output={tmp_path}/x.yaml")
-    assert "the log holds too little of it; drive more" in message or "cannot be determined" in message
+    assert "the log contains too little of it; drive more" in message or "cannot be determined" in message
     assert "nan" not in message
 
 

@@ -49,7 +49,7 @@ def test_a_robot_that_does_not_lie_again_fails_the_verdict(log):
     summary = summarize(upright, LINEAR, ANGULAR, WALK, legged=True)
     assert summary.tracking.passed
     assert not summary.passed
-    assert "FAILED, it does not lie" in " ".join(to_table(summary).split())
+    assert "FAILED, the robot does not lie" in " ".join(to_table(summary).split())
 
 
 def test_the_feet_bear_in_turn_as_they_are_asked_to(log):

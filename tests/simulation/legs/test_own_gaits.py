@@ -22,5 +22,5 @@ def test_it_walks_and_its_log_is_computed_again_bit_for_bit(tmp_path):
     assert walk["truth_linear"].mean() == pytest.approx(0.3, rel=0.03)
     assert set(walk["legged_gait"]) == {4.0}
     assert not walk["permit_causes"].any()
-    with pytest.raises(ValueError, match="'moonwalk'; name one of auto, trot, walking_trot, crawl, amble"):
+    with pytest.raises(ValueError, match="'moonwalk'; set one of auto, trot, walking_trot, crawl, amble"):
         loop.set_gait("moonwalk")

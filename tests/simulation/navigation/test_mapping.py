@@ -80,7 +80,7 @@ def test_a_scan_of_another_place_does_not_change_the_map(sights, grid):
     mapper = mrpt.Mapper(grid, (0.0, 0.0, 0.0))
     elsewhere = list(drive(new_loop("loop", 3), ROUND))[:20]
     mapped(elsewhere, mapper)
-    assert "drive back to where the map is known" in mapper.reason
+    assert "drive back to a mapped area" in mapper.reason
     assert np.array_equal(mapper.map[3] >= 65, grid[3] >= 65)
 
 
@@ -135,7 +135,7 @@ def test_a_robot_in_another_house_is_lost_and_says_why(sights, grid):
     localizer.set_pose(sights[0].truth, KNOWN)
     states = followed(localizer, list(drive(new_loop("loop", 3), ROUND))[:60])
     assert states.index("lost") < 50  # 5 s
-    assert "of what the laser sees is in the map there" in localizer.reason
+    assert "of the scan matches the map there" in localizer.reason
 
 
 def test_a_search_finds_the_place_while_the_robot_drives(sights, grid):

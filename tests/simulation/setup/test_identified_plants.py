@@ -192,5 +192,5 @@ def test_a_weighed_robot_gives_the_wheels_own_inertia():
 
 def test_refuses_a_mass_that_the_wheels_do_not_feel():
     log, settings, _ = excited(DIFFBOT, {"motor_friction": 0.1})
-    with pytest.raises(ValueError, match="Weigh it again"):
+    with pytest.raises(ValueError, match="Check the mass"):
         evaluate(log, settings, 20.0, "test")

@@ -195,7 +195,7 @@ class ConsoleAttackTest(RobotTestCase):
                 await second.send_json(TAKE)
                 await self.until(second, "said", "commands")
                 await second.send_json(DRIVE)
-                await self.until(second, "said", "does not command")
+                await self.until(second, "said", "does not have the command")
                 call = {"type": "call", "number": 1, "name": "reset", "arguments": {"key": "0" * 16}}
                 await first.send_json(call)
                 self.assertFalse((await self.until(first, "answer"))["accepted"])
@@ -264,7 +264,7 @@ class ConsoleAttackTest(RobotTestCase):
 
         self.run_page(play)
         self.robot.release()
-        self.assertIn("an input is dropped", self.console.output)
+        self.assertIn("an input is ignored", self.console.output)
         self.alive()
 
     # connections
@@ -388,7 +388,7 @@ class ConsoleAttackTest(RobotTestCase):
             await self.until(page, "said", "watch does not drive")
             for _ in range(5):
                 await page.send_json(DRIVE)
-            await self.until(page, "said", "does not command")
+            await self.until(page, "said", "does not have the command")
             await page.send_json({"type": "call", "number": 1, "name": "step", "arguments": {"cycles": 1}})
             self.assertIn("needs the role maintain", (await self.until(page, "answer"))["text"])
             self.assertEqual(
@@ -406,5 +406,5 @@ class ConsoleAttackTest(RobotTestCase):
         self.assertEqual(tries, [403] * 5 + [429])
         self.assertEqual(post("login", {"name": "wanda", "password": PASSWORD}), 429)
         wait_for("the journal", lambda: "has logged out" in console.journal)
-        self.assertIn("too many tries", console.journal)
+        self.assertIn("too many attempts", console.journal)
         self.alive(console)

@@ -64,5 +64,5 @@ class ConsoleMasterTest(RobotTestCase):
         code, said, _ = answer(self.console, "/api/e_stop", {}, cookie)
         self.assertEqual((code, said["confirmed"]), (200, False), said)
         self.assertIn("no node receives the topic e_stop", said["text"])
-        self.assertIn("Use the button on the robot", said["text"])
+        self.assertIn("Press the button on the robot", said["text"])
         wait_for("no stop of the robot", lambda: "e_stop_service" not in self.robot.causes)

@@ -111,7 +111,7 @@ class CommandSourcesTest(RobotTestCase):
     def test_teleop_commands_as_key_vel(self) -> None:
         terminal = PseudoTerminal([roslib.packages.find_node("robot_control", "teleop.py")[0]])
         self.addCleanup(terminal.end)
-        wait_for("its screen", lambda: "It may move" in terminal.screen)
+        wait_for("its screen", lambda: "Ready: hold a key" in terminal.screen)
         wait_for("key_vel", lambda: self.commander("key_vel"), every=lambda: terminal.type("w"))
         wait_for(
             "its topic on the screen", lambda: "sent on /key_vel" in terminal.screen, every=lambda: terminal.type("w")

@@ -72,7 +72,7 @@ class CommandsTest(RobotTestCase):
             every=lambda: sleeper.publish(message),
         )
         self.assertIn(f"motion of {rospy.get_name()} is refused", self.log)
-        self.assertIn(f"{rospy.get_name()}: let it send zero", self.why())
+        self.assertIn(f"{rospy.get_name()}: publish zero", self.why())
         sleeper.publish(TwistStamped())
         self.drive_stamped()
 
@@ -91,7 +91,7 @@ class CommandsTest(RobotTestCase):
         self.drive_stamped()
         wait_for("standstill", lambda: abs(self.robot.speed) < STANDING, every=send)
         wait_for("the reason", reported, every=send)
-        self.assertIn("the last message was older by its stamp", self.sender.report.message)
+        self.assertIn("the last message's time stamp is older", self.sender.report.message)
         self.assertGreater(int(self.sender.report.values["commands_stale"]), 0)
         words = "s old by its stamp, more than cmd_vel_timeout (1.25 s)"
         self.assertEqual(self.log.count(words), 1, "one warning for a series")

@@ -68,7 +68,7 @@ class DrivesTest(RobotTestCase):
     def test_ramps_down_when_cmd_vel_falls_silent(self) -> None:
         self.robot.drive_until("0.5 m/s", self.robot.driving)
         wait_for("standstill without any message", lambda: abs(self.robot.speed) < 0.01)
-        wait_for("the warning", lambda: "cmd_vel is silent for 1.25 s" in self.robot.nodes[CONTROLLER].output)
+        wait_for("the warning", lambda: "no cmd_vel for 1.25 s" in self.robot.nodes[CONTROLLER].output)
         self.robot.drive_until("0.5 m/s again, with no reset", self.robot.driving)
 
     def test_latches_e_stop_until_a_reset_that_says_why_not(self) -> None:

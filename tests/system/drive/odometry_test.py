@@ -85,7 +85,9 @@ class OdometryTest(RobotTestCase):
         wait_for("imu/data", lambda: self.imu.count > 0)
         self.inject("gyro", "off")
         try:
-            wait_for("the warning", lambda: "yaw comes from the wheels alone" in self.robot.reports[ESTIMATOR].message)
+            wait_for(
+                "the warning", lambda: "yaw is computed from the wheels only" in self.robot.reports[ESTIMATOR].message
+            )
             count = self.imu.count
             odom = self.robot.odom_count
             wait_for("odometry all the same", lambda: self.robot.odom_count > odom + 20)

@@ -31,7 +31,7 @@ class TeleopTest(RobotTestCase):
         self.robot.await_rest()
         terminal = PseudoTerminal([roslib.packages.find_node("robot_control", "teleop.py")[0], *arguments])
         self.addCleanup(terminal.end)
-        wait_for("its screen", lambda: "It may move" in terminal.screen, every=self.robot.release_after_a_stall)
+        wait_for("its screen", lambda: "Ready: hold a key" in terminal.screen, every=self.robot.release_after_a_stall)
         return terminal
 
     def drive(self) -> None:
@@ -52,7 +52,9 @@ class TeleopTest(RobotTestCase):
         self.drive()
         self.assertIn("DRIVE", self.terminal.screen)
         self.await_rest()
-        wait_for("its words", lambda: "nothing is sent on /cmd_vel_stamped" in " ".join(self.terminal.screen.split()))
+        wait_for(
+            "its words", lambda: "no command is sent on /cmd_vel_stamped" in " ".join(self.terminal.screen.split())
+        )
 
     def test_a_reported_release_stops(self) -> None:
         self.terminal.type("\x1b[?0u")

@@ -154,7 +154,7 @@ class StartTest(unittest.TestCase):
         program = Program(CONTROLLER)
         try:
             sender = rospy.Publisher("cmd_vel", Twist, queue_size=1)
-            complaint = f"a command of {rospy.get_name()} arrived before the loop runs and is dropped"
+            complaint = f"a command of {rospy.get_name()} arrived before the loop runs and is ignored"
             wait_for("a line", lambda: complaint in program.output, every=lambda: sender.publish(Twist()))
             for _ in range(20):
                 sender.publish(Twist())

@@ -63,7 +63,7 @@ class LegsTest(LegsTestCase):
     def test_it_stands_sways_lifts_a_foot_is_stopped_reset_and_lies_down(self) -> None:
         wait_for("the monitor", lambda: self.safety is not None and self.safety.state_name == "READY")
         self.assertEqual(
-            self.set_posture("sitting"), (False, "refused: there is no posture 'sitting'; name standing or lying")
+            self.set_posture("sitting"), (False, "refused: unknown posture 'sitting'; set standing or lying")
         )
         lying = self.height()
         self.stand()
@@ -122,7 +122,7 @@ class LegsTest(LegsTestCase):
         wait_for("standing", lambda: self.legs.posture == "standing", every=lambda: self.cmd_vel.publish(Twist()))
         wait_for(
             "the refusal of a foot",
-            lambda: "there is no foot 'tail'; name one of front_left, front_right" in self.launch.output,
+            lambda: "there is no foot 'tail'; set one of front_left, front_right" in self.launch.output,
             every=lambda: self.foot_target.publish(FootTarget(foot="tail")),
         )
 
@@ -164,7 +164,7 @@ class LegsTest(LegsTestCase):
         self.assertGreater(self.walk_for(1.5, BodyPose(roll=0.05))[0], 0.045, "its own pose does")
         roll, postures = self.walk_for(2.0, BodyPose(roll=math.nan))
         self.assertEqual(postures, {"walking"})
-        repair = f"body_pose holds NaN or infinity: refused; repair its sender {rospy.get_name()}"
+        repair = f"body_pose holds NaN or infinity: refused; check its sender {rospy.get_name()}"
         self.assertIn(repair, self.launch.output)
         self.body_pose.publish(BodyPose())
         self.assertEqual(self.walk_for(1.0)[1], {"walking"})
@@ -213,7 +213,7 @@ class LegsTest(LegsTestCase):
 
         self.stand()
         self.move("front_left_hip_joint", (2, lying))
-        wait_for("a refusal", lambda: "the robot does not lie, it is standing" in self.launch.output)
+        wait_for("a refusal", lambda: "the robot does not lie; it is standing" in self.launch.output)
 
     def test_the_controller_of_wheels_refuses_it_and_names_its_own(self) -> None:
         text = refusal(CONTROLLER, f"_urdf:={QUADBOT}")

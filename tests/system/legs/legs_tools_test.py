@@ -90,7 +90,7 @@ class LegsToolsTest(LegsTestCase):
         self.assertEqual(self.legs.posture, "walking")
         why = Program("why.py", "--once")
         self.assertEqual(why.wait(), 0, why.output)
-        self.assertIn("It walks: ", why.output)
+        self.assertIn("Walking: ", why.output)
         self.assertIn("m/s to the left", why.output)
         sender.end()
         wait_for("standing", lambda: self.legs.posture == "standing")

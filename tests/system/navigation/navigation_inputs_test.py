@@ -110,7 +110,7 @@ class NavigationInputsTest(unittest.TestCase):
         self.assertEqual(self.answer(), "driven")
 
     def test_1_without_a_map_a_goal_is_refused(self) -> None:
-        self.assertIn("no map has come", self.answer())
+        self.assertIn("no map received", self.answer())
 
     def test_2_each_wrong_map_is_refused_and_the_right_one_taken(self) -> None:
         def negative(message: OccupancyGrid) -> None:
@@ -160,7 +160,7 @@ class NavigationInputsTest(unittest.TestCase):
         wrong = {
             "scan is silent": lambda _scan: None,
             "has 0 rays": lambda scan: ranging(scan, []),
-            "tf does not give the place of the laser": foreign,
+            "tf has no transform from the laser": foreign,
             "contradicts the map": lambda _scan: scan_of((-3.0, 5.0, -3.0, 3.0)),
         }
         for reason, change in wrong.items():

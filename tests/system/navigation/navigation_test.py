@@ -100,8 +100,8 @@ class NavigationTest(RobotTestCase):
     @again_after_a_stall
     def test_a_goal_that_cannot_be_is_refused_with_its_reason_and_nothing_moves(self) -> None:
         wrong = {
-            "lies in an obstacle": self.pose(3.0, 2.0),
-            "lies outside the map": self.pose(1e6, 0.0),
+            "is in an obstacle": self.pose(3.0, 2.0),
+            "is outside the map": self.pose(1e6, 0.0),
             "too near to an obstacle": self.pose(0.0, 0.7),
             "not finite": self.pose(math.nan, 0.0),
             "tf does not connect": self.pose(1.0, 0.0, frame="moon"),

@@ -71,7 +71,7 @@ class DescriptorsTest(RobotTestCase):
             self.drive_on()
             self.stop()
         log = self.robot.nodes[MONITOR]
-        wait_for("a line of it", lambda: "file descriptors run out" in log.output)
+        wait_for("a line of it", lambda: "too many open files" in log.output)
 
     def test_nor_do_subscribers_that_never_read(self) -> None:
         target = hostile.find_target(MONITOR)

@@ -134,6 +134,6 @@ class RestartTest(RobotTestCase):
         subprocess.run(another, check=True, capture_output=True)
         refused = robot.call("e_stop_reset")
         self.assertFalse(refused.success)
-        self.assertIn(f"{rospy.get_name()} (has sent nothing since safety_monitor was restarted)", refused.message)
+        self.assertIn(f"{rospy.get_name()} (has published nothing since safety_monitor was restarted)", refused.message)
         robot.send_e_stop(False)
         self.expect_latched("e_stop_topic")

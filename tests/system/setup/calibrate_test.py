@@ -99,5 +99,5 @@ class CalibrateTest(RobotTestCase):
 
     def test_asks_first_and_does_nothing_without_an_answer(self) -> None:
         words = self.refused("--truth")
-        self.assertIn("It drives by itself and sees nothing", words)
+        self.assertIn("The robot drives by itself and does not detect obstacles", words)
         self.assertIn("there is no terminal", words)

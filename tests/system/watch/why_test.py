@@ -58,7 +58,7 @@ class WhyTest(RobotTestCase):
             uri = f"http://127.0.0.1:{free.getsockname()[1]}"
         code, words = answer(ROS_MASTER_URI=uri)
         self.assertEqual(code, 1)
-        self.assertTrue(words.startswith(f"There is no ROS master at {uri}."), words)
+        self.assertTrue(words.startswith(f"No ROS master answers at {uri}."), words)
         self.assertIn("roslaunch robot_control sim.launch", words)
 
     def test_where_no_robot_is_it_says_where_one_is(self) -> None:
@@ -71,7 +71,7 @@ class WhyTest(RobotTestCase):
         self.robot.drive_until("0.5 m/s", self.robot.driving)
         sender = Program("send_cmd.py", "--seconds", str(LIMIT))
         try:
-            code, words = self.ask_until("It moves: ", named="/send_cmd")
+            code, words = self.ask_until("Moving: ", named="/send_cmd")
             self.assertEqual(code, 0, words)
             for node in LOOP:
                 self.assertIn(node, words)
@@ -84,8 +84,8 @@ class WhyTest(RobotTestCase):
         code, words = answer()
         self.assertEqual(code, 1)
         self.assertTrue(words.startswith("Stopped: "), words)
-        self.assertIn("the topic e_stop said true", words)
-        self.assertIn("operator: let the node that published true publish false", words)
+        self.assertIn("the topic e_stop received true", words)
+        self.assertIn("operator: publish false from the same node", words)
         self.assertIn("$ rosservice call /e_stop_reset", words)
         self.robot.send_e_stop(False)
         self.robot.release()
@@ -94,7 +94,7 @@ class WhyTest(RobotTestCase):
         self.robot.await_rest()
         program = Program("why.py")
         try:
-            wait_for("its first answer", lambda: "It may move" in program.output, every=lambda: self.request(0, 0))
+            wait_for("its first answer", lambda: "Ready: " in program.output, every=lambda: self.request(0, 0))
             self.robot.send_e_stop(True)
             wait_for("its second answer", lambda: "\nStopped: " in program.output)
             wait_for("the gate's word", lambda: "gate       brake" in program.output)

@@ -215,7 +215,7 @@ def test_one_page_commands_and_another_moves_nothing(page):
     with pytest.raises(RefusedError, match=r"anna .* commands"):
         other.authority.take(other.page, other.now, force=True)
     other.press()
-    with pytest.raises(RefusedError, match="does not command"):
+    with pytest.raises(RefusedError, match="does not have the command"):
         other.send()
     assert not moves(page.run(0.5))
 

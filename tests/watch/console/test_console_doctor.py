@@ -38,7 +38,7 @@ def test_one_examination_runs_at_a_time(monkeypatch):
     first = threading.Thread(target=given_up, args=(one,))
     first.start()
     assert began.wait(10.0)
-    with pytest.raises(RunsError, match="is being examined"):
+    with pytest.raises(RunsError, match="already runs"):
         one.result()
     first.join()
     assert hook.calls == 1

@@ -19,5 +19,5 @@ def test_a_name_that_is_no_text_is_listed_and_found_by_its_own_id(tmp_path, name
 
 
 def test_what_is_not_in_the_list_is_not_found(tmp_path):
-    with pytest.raises(RunsError, match="there is no such run"):
+    with pytest.raises(RunsError, match="run not found"):
         Runs(tmp_path).file("../run.bag")

@@ -55,7 +55,7 @@ def test_the_controller_of_another_kind_is_the_one_that_is_missed():
 def test_a_stop_of_a_busy_machine_is_the_first_problem():
     late = SafetyStatus(state_name="STOPPED", first_cause="monitor_late", causes=["monitor_late"])
     status = status_of(replace(reports(mujoco_plant=report(DiagnosticStatus.WARN, "late")), safety=late, busy=True))
-    assert status.problems[0].startswith("the loop was late, because the machine was busy: load ")
+    assert status.problems[0].startswith("the loop was late, because other programs used the CPU: load ")
     assert status.problems[1] == "mujoco_plant: late"
 
 

@@ -12,7 +12,7 @@ from robot_control.watch.why.screen import Layout, render
 
 E_STOP = Cause(
     "e_stop_topic",
-    "the topic e_stop said true",
+    "the topic e_stop received true",
     "publish false on e_stop",
     "operator",
     first=True,
@@ -21,7 +21,7 @@ E_STOP = Cause(
 FAST = Cause(
     "wheel_speed",
     "a wheel is faster than allowed",
-    "look at load, slope, encoder and motor of that wheel",
+    "check load, slope, encoder and motor of that wheel",
     "technician",
     "17.3 rad/s, limit 15 rad/s, left_wheel_joint",
 )
@@ -29,9 +29,9 @@ PAUSED = {"driver_state": "paused"}
 ZERO = {"requested_m_s": "0", "requested_rad_s": "0"}
 NO_COMMAND = ("nothing was received on cmd_vel in this run", "publish on cmd_vel")
 TIMED_OUT = ("the last cmd_vel is older than cmd_vel_timeout", "publish more often")
-STALE = ("the last cmd_vel_stamped was older than cmd_vel_timeout", "synchronise the sender's clock")
-MANY = ("more than one node sends commands, which one_sender forbids", "stop all but one")
-REVOKED = ("a sender goes on requesting motion that was requested before a stop", "let it send a zero")
+STALE = ("the last cmd_vel_stamped was older than cmd_vel_timeout", "check the sender's clock")
+MANY = ("more than one node sends commands (one_sender: true)", "stop all senders but one")
+REVOKED = ("a node must send zero velocity once before its commands are accepted again", "let it send a zero")
 
 
 @pytest.fixture
@@ -53,10 +53,10 @@ def driving() -> Facts:
 
 
 def test_text_of_other_programs_is_shown_without_control_characters(driving: Facts) -> None:
-    hostile = replace(driving, senders=("/a\x1b[2J\nIt moves.",), safety=Safety("DRIVE\x9b", "drive", held=12.0))
+    hostile = replace(driving, senders=("/a\x1b[2J\nMoving.",), safety=Safety("DRIVE\x9b", "drive", held=12.0))
     lines = render(hostile)
     assert all(line.isprintable() for line in lines)
-    assert "It moves." not in lines[1:]
+    assert "Moving." not in lines[1:]
 
 
 def test_a_real_time_thread_that_blocked_is_named(driving: Facts) -> None:
@@ -101,7 +101,8 @@ def test_a_robot_that_waits_for_a_zero_request_says_so_and_names_the_sender(driv
     waiting = replace(driving, safety=safety, measured=(0.0, 0.0), command_timeout=timeout)
     answer = judge(waiting)
     assert answer.verdict is Verdict.STOPPED
-    assert answer.headline.endswith(f"waits for a zero request; stop the sender{silence} or send zero.")
+    assert answer.headline.startswith("Not ready: waiting for a zero velocity command.")
+    assert answer.headline.endswith(f" Stop publishing on cmd_vel or cmd_vel_stamped{silence}, or publish zero.")
     assert "/send_cmd" in answer.actions[0][1]
     assert judge(replace(waiting, senders=())).actions == ()
 
@@ -115,7 +116,7 @@ def test_a_latched_stop_or_a_missing_node_goes_before_the_wait_for_a_zero(drivin
 def test_a_moving_robot_moves(driving):
     answer = judge(driving)
     assert answer.verdict is Verdict.MOVING
-    assert answer.headline == "It moves: 0.50 m/s, 0.20 rad/s."
+    assert answer.headline == "Moving: 0.50 m/s, 0.20 rad/s."
     assert not answer.actions
 
 
@@ -132,7 +133,7 @@ def test_what_the_driver_suspects_is_named_while_the_robot_is_to_move(driving):
 def test_without_a_master_it_says_what_to_start():
     answer = judge(Facts(master="http://127.0.0.1:11311", master_answers=False))
     assert answer.verdict is Verdict.STOPPED
-    assert answer.headline == "There is no ROS master at http://127.0.0.1:11311."
+    assert answer.headline == "No ROS master answers at http://127.0.0.1:11311."
     assert answer.commands == ("roslaunch robot_control sim.launch",)
 
 
@@ -145,8 +146,15 @@ def test_a_master_alone_is_no_robot():
 def test_a_robot_that_was_refused_is_named_with_the_reason():
     refused = "robot.urdf: <robot>: 2 legs found.\n  /robot/rate = 500 overrides robot.rate"
     answer = judge(Facts(master="http://127.0.0.1:11311", refused=refused))
-    assert answer.headline.endswith("because it was refused: robot.urdf: <robot>: 2 legs found.")
+    assert answer.headline.endswith("Its start was refused: robot.urdf: <robot>: 2 legs found.")
     assert answer.actions == (("integrator", "/robot/rate = 500 overrides robot.rate"),)
+    three = (
+        "robot.urdf: <robot>: it is not clear which wheels drive.\nFound: there is only one.\nFix: Add the other one."
+    )
+    assert judge(replace(Facts(master=""), refused=three)).actions == (
+        ("", "Found: there is only one."),
+        ("integrator", "Fix: Add the other one."),
+    )
 
 
 def test_it_names_the_namespace_in_which_a_robot_runs():
@@ -175,7 +183,7 @@ def test_before_every_node_was_seen_it_names_the_missing_ones(driving):
     waiting = without(driving, DRIVER)
     waiting = replace(waiting, safety=replace(waiting.safety, state="INIT", permit="brake"))
     answer = judge(waiting)
-    assert answer.headline == "Not ready: the monitor waits: mujoco_plant."
+    assert answer.headline == "Not ready: the safety monitor waits for: mujoco_plant."
     assert answer.commands == ("rosrun robot_control mujoco_plant",)
     assert "mujoco_plant MISSING" in text(waiting)
 
@@ -194,7 +202,7 @@ def test_the_actor_stands_before_the_action(driving):
     answer = judge(stopped(saying(driving, CONTROLLER, **ZERO), E_STOP, FAST))
     assert answer.actions == (
         ("operator", "publish false on e_stop"),
-        ("technician", "look at load, slope, encoder and motor of that wheel"),
+        ("technician", "check load, slope, encoder and motor of that wheel"),
         ("operator", "then call e_stop_reset"),
     )
     assert answer.commands == ("rostopic pub -1 /e_stop std_msgs/Bool false", "rosservice call /e_stop_reset")
@@ -202,19 +210,20 @@ def test_the_actor_stands_before_the_action(driving):
 
 def test_a_node_that_still_requests_motion_is_named_before_the_reset(driving):
     actions = judge(stopped(driving, E_STOP)).actions
-    assert actions[-2] == ("operator", "stop /send_cmd: while a motion is requested, a reset is refused")
+    assert actions[-2] == ("operator", "stop /send_cmd: a reset is refused while motion is requested")
     assert actions[-1] == ("operator", "then call e_stop_reset")
 
 
-LATE = Cause("estimator_lost", "the estimator published no state", "look", "integrator", "7 cycles", first=True)
+LATE = Cause("estimator_lost", "no state from the estimator", "look", "integrator", "7 cycles", first=True)
 
 
 def test_a_stop_of_a_busy_machine_names_lateness_load_and_remedy_first(driving):
     answer = judge(replace(stopped(driving, FAST, LATE), busy=True, load="load 40 on 2 cores"))
     assert answer.headline == (
-        "Stopped: the loop was late, because the machine was busy: estimator_lost (7 cycles), load 40 on 2 cores."
+        "Stopped: the loop was late, because other programs used the CPU: "
+        "estimator_lost (7 cycles), load 40 on 2 cores."
     )
-    assert "end other programs" in answer.actions[0][1]
+    assert "stop other programs" in answer.actions[0][1]
 
 
 def test_simulated_time_that_slipped_shows_lateness_as_the_load_does(driving):
@@ -233,7 +242,7 @@ def test_a_ramp_is_reported_as_stopping(driving):
 
 
 def test_a_lost_node_is_started_first(driving):
-    cause = Cause("controller_lost", "the controller published no command", "look whether it runs")
+    cause = Cause("controller_lost", "no command from the controller", "check that it runs")
     facts = stopped(without(driving, CONTROLLER), cause)
     facts = replace(facts, safety=replace(facts.safety, missing=(CONTROLLER,)))
     assert judge(facts).commands[0] == "rosrun robot_control diff_drive_controller"
@@ -267,18 +276,18 @@ def legged(driving) -> Facts:
 
 def test_a_clearance_of_zero_stops_a_robot_on_legs_that_would_move(legged):
     near = replace(legged, safety=Safety("DRIVE", "drive", speed_limit=0.0))
-    assert judge(near).headline == "It stands; nothing stands against motion, and it follows /poser."
+    assert judge(near).headline == "Ready: standing; the robot follows /poser."
     held = saying(near, "leg_controller", command__permit_slow="the safety monitor limits the speed")
-    assert judge(held).headline == "The path is not free: clearance leaves it no speed."
-    assert "not faster than 0 m/s, by clearance" in text(held)
+    assert judge(held).headline == "Blocked: the free distance (clearance) is 0."
+    assert "at most 0 m/s, by clearance" in text(held)
     slow = replace(held, safety=Safety("DRIVE", "drive", speed_limit=0.1))
-    assert judge(slow).headline.endswith("it follows /poser; the safety monitor limits the speed.")
+    assert judge(slow).headline.endswith("the robot follows /poser; the safety monitor limits the speed.")
 
 
 def test_a_robot_on_legs_that_stands_has_no_speeds(legged):
-    assert judge(legged).headline == "It stands; nothing stands against motion, and it follows /poser."
+    assert judge(legged).headline == "Ready: standing; the robot follows /poser."
     idle = saying(legged, "leg_controller", senders="", command__timed_out="the last body_pose is too old")
-    assert judge(idle).headline == "It stands; nothing stands against motion, and no motion is requested."
+    assert judge(idle).headline == "Ready: standing; no motion is requested."
     assert judge(idle).commands == ()
     for facts in (legged, idle):
         assert not re.search("m/s|cmd_vel|rim", text(facts))
@@ -287,11 +296,11 @@ def test_a_robot_on_legs_that_stands_has_no_speeds(legged):
 def test_a_robot_that_lies_has_to_stand_up(legged):
     lying = saying(legged, "leg_controller", posture="lying", command__holding="the brake holds the position")
     answer = judge(lying)
-    assert (answer.verdict, answer.headline) == (Verdict.IDLE, "It may move, but it lies.")
+    assert (answer.verdict, answer.headline) == (Verdict.IDLE, "Ready: the robot lies.")
     assert answer.commands == ("rosservice call /set_posture standing",)
     said = ("a pose is requested, and the robot does not stand", "call set_posture with 'standing'")
     answer = judge(saying(lying, "leg_controller", command__not_standing=said))
-    assert answer.headline == f"It may move, but {said[0]}."
+    assert answer.headline == f"Ready: {said[0]}."
     assert answer.actions == (("operator", said[1]),)
     assert answer.commands == ("rosservice call /set_posture standing",)
 
@@ -299,23 +308,23 @@ def test_a_robot_that_lies_has_to_stand_up(legged):
 def test_a_change_of_posture_is_motion(legged):
     rising = saying(legged, "leg_controller", posture="rising", command__not_standing="it does not stand")
     assert judge(rising).verdict is Verdict.MOVING
-    assert judge(rising).headline == "It moves: it stands up."
+    assert judge(rising).headline == "Moving: standing up."
 
 
 def test_a_sender_of_poses_is_stopped_before_the_reset(legged):
     answer = judge(stopped(legged, E_STOP))
-    assert ("operator", "stop /poser: while a motion is requested, a reset is refused") in answer.actions
+    assert ("operator", "stop /poser: a reset is refused while motion is requested") in answer.actions
     waiting = judge(replace(legged, safety=Safety("INIT", "brake", awaiting_zero=True)))
     topics = "cmd_vel or cmd_vel_stamped or body_pose or foot_target or joint_trajectory"
-    assert waiting.actions == (("operator", f"publishing on {topics}: /poser"),)
+    assert waiting.actions == (("operator", f"check the senders on {topics}: /poser"),)
 
 
 def test_a_walk_is_motion_with_its_speeds_and_what_limits_them(legged):
     walking = saying(legged, "leg_controller", posture="walking", gait="trot")
     walking = replace(walking, limited=(0.5, 0.2, 0.1), measured=(0.49, 0.2, 0.1))
     assert judge(walking).verdict is Verdict.MOVING
-    assert judge(walking).headline == "It walks: 0.49 m/s, 0.10 m/s to the left, 0.20 rad/s."
-    said = ("the legs do not carry the body faster", "request less speed")
+    assert judge(walking).headline == "Walking: 0.49 m/s, 0.10 m/s to the left, 0.20 rad/s."
+    said = ("the joint speed limits or the reach of the legs limit the speed", "reduce the requested speed")
     limited = judge(saying(walking, "leg_controller", command__leg_speed=said))
     assert limited.headline.endswith(f"0.20 rad/s; {said[0]}.")
     assert limited.actions == (("operator", said[1]),)
@@ -326,9 +335,9 @@ def test_a_walk_that_ended_because_its_sender_is_silent_says_so(legged):
     said = ("the last cmd_vel or body_pose is older than request_timeout", "publish more often")
     silent = saying(legged, "leg_controller", senders="", posture="walking", command__timed_out=said)
     ending = judge(replace(silent, limited=(0.0, 0.0, 0.0)))
-    assert ending.headline == f"It walks in place until its feet are on their places, and then stands; {said[0]}."
+    assert ending.headline == f"Walking in place until its feet are in position, then standing; {said[0]}."
     stands = judge(saying(silent, "leg_controller", posture="standing"))
-    assert stands.headline == "It stands; nothing stands against motion, and no motion is requested."
+    assert stands.headline == "Ready: standing; no motion is requested."
     assert stands.actions == (("operator", said[1]),)
 
 
@@ -349,7 +358,7 @@ def test_no_sender_is_no_fault(driving):
     facts = saying(driving, CONTROLLER, command__no_command=NO_COMMAND)
     answer = judge(replace(facts, senders=(), limited=(0.0, 0.0), measured=(0.0, 0.0)))
     assert answer.verdict is Verdict.IDLE
-    assert answer.headline == f"It may move, but no velocity command is being received: {NO_COMMAND[0]}."
+    assert answer.headline == f"Ready: no velocity command is received: {NO_COMMAND[0]}."
     assert answer.commands == ("rosrun robot_control send_cmd.py",)
 
 
@@ -357,7 +366,7 @@ def test_a_silent_sender_is_named(driving):
     facts = saying(driving, CONTROLLER, command__timed_out=TIMED_OUT)
     answer = judge(replace(facts, measured=(0.0, 0.0)))
     assert "older than cmd_vel_timeout" in answer.headline
-    assert answer.actions == (("operator", "look at /send_cmd: publish more often"),)
+    assert answer.actions == (("operator", "publish more often (sender: /send_cmd)"),)
 
 
 def test_many_senders_are_named_where_one_sender_forbids_them(driving):
@@ -365,7 +374,7 @@ def test_many_senders_are_named_where_one_sender_forbids_them(driving):
     answer = judge(replace(facts, measured=(0.0, 0.0)))
     assert answer.verdict is Verdict.STOPPED
     assert answer.headline == f"Commands are refused: {MANY[0]}."
-    assert answer.actions == (("operator", "stop all but one of /teleop, /navigation"),)
+    assert answer.actions == (("operator", "stop all senders but one of /teleop, /navigation"),)
     assert "(2 senders: all are refused)" in text(facts)
 
 
@@ -392,7 +401,7 @@ def test_a_sender_with_a_wrong_clock_is_reported(driving):
     answer = judge(replace(facts, measured=(0.0, 0.0)))
     assert answer.verdict is Verdict.IDLE
     assert "the last cmd_vel_stamped was older" in answer.headline
-    assert answer.actions == (("operator", f"look at /send_cmd: {STALE[1]}"),)
+    assert answer.actions == (("operator", f"{STALE[1]} (sender: /send_cmd)"),)
 
 
 def test_one_stale_message_does_not_hide_that_it_moves(driving):
@@ -402,14 +411,14 @@ def test_one_stale_message_does_not_hide_that_it_moves(driving):
 
 
 def test_zero_on_cmd_vel_is_reported(driving):
-    facts = saying(driving, CONTROLLER, command__holding="standing with zero command: the brake holds the position")
+    facts = saying(driving, CONTROLLER, command__holding="the command is zero: the brake holds the position")
     answer = judge(replace(facts, limited=(0.0, 0.0), measured=(0.0, 0.0)))
-    assert answer.headline == "It may move, but the command is to stand: cmd_vel is zero."
+    assert answer.headline == "Ready: standstill is commanded; cmd_vel is zero."
 
 
 def test_several_senders_are_all_named(driving):
     lines = " ".join(text(replace(driving, senders=("/send_cmd", "/teleop"))).split())
-    assert "published by /send_cmd, /teleop (2 senders: each message overrides the one before)" in lines
+    assert "published by /send_cmd, /teleop (2 senders: each message overrides the previous one)" in lines
 
 
 def test_a_gate_that_brakes_by_itself_is_reported(driving):
@@ -417,10 +426,10 @@ def test_a_gate_that_brakes_by_itself_is_reported(driving):
         driving,
         DRIVER,
         gate_verdict="brake",
-        gate__no_command=("there is no command of the last 4 cycles", "look whether diff_drive_controller runs"),
+        gate__no_command=("there is no command from the last 4 cycles", "look whether diff_drive_controller runs"),
     )
     answer = judge(facts)
-    assert answer.headline == "The gate brakes: there is no command of the last 4 cycles."
+    assert answer.headline == "The driver brakes: there is no command from the last 4 cycles."
     assert answer.actions == (("integrator", "look whether diff_drive_controller runs"),)
 
 
@@ -437,22 +446,22 @@ def test_a_controller_without_state_is_reported(driving):
 
 
 def test_commanded_to_move_and_standing_is_not_called_moving(driving):
-    assert "has not begun to" in judge(replace(driving, measured=(0.0, 0.0))).headline
+    assert "does not move yet" in judge(replace(driving, measured=(0.0, 0.0))).headline
 
 
 def test_warnings_and_the_speed_limit_they_bring_are_shown(driving):
-    warning = "the battery is low: 20.9 V, limit 21 V (charge it soon)"
+    warning = "the battery is low: 20.9 V, limit 21 V (charge the battery soon)"
     facts = replace(driving, safety=replace(driving.safety, warnings=(warning,), speed_limit=0.3))
-    assert "no faster than 0.3 m/s" in judge(facts).headline
+    assert "at most 0.3 m/s" in judge(facts).headline
     assert warning in text(facts)
-    assert "no rim faster than 0.3 m/s" in text(facts)
+    assert "at most 0.3 m/s at each rim" in text(facts)
 
 
 def test_without_a_free_path_clearance_is_reported_and_not_a_zero_on_cmd_vel(driving):
-    facts = saying(driving, CONTROLLER, command__holding="standing with zero command")
+    facts = saying(driving, CONTROLLER, command__holding="the command is zero")
     facts = replace(facts, safety=replace(facts.safety, speed_limit=0.0), limited=(0.0, 0.0), measured=(0.0, 0.0))
     assert judge(facts).verdict is Verdict.STOPPED
-    assert judge(facts).headline == "The path is not free: clearance leaves it no speed."
+    assert judge(facts).headline == "Blocked: the free distance (clearance) is 0."
     assert judge(facts).commands == ("rostopic pub -1 /clearance std_msgs/Float64 inf",)
     assert "/lidar does" in text(replace(facts, clearance_senders=("/lidar",)))
 
@@ -460,12 +469,12 @@ def test_without_a_free_path_clearance_is_reported_and_not_a_zero_on_cmd_vel(dri
 @pytest.mark.parametrize(
     ("goal", "headline", "verdict"),
     [
-        ("waiting", "The goal waits: scan is silent for 3.0 s.", Verdict.STOPPED),
-        ("failed", "The goal is given up: scan is silent for 3.0 s.", Verdict.IDLE),
+        ("waiting", "The goal waits: no scan for 3.0 s.", Verdict.STOPPED),
+        ("failed", "The goal failed: no scan for 3.0 s.", Verdict.IDLE),
     ],
 )
 def test_a_goal_that_waits_or_was_given_up_is_reported_with_its_reason(driving, goal, headline, verdict):
-    report = Report("scan is silent for 3.0 s", {"goal": goal})
+    report = Report("no scan for 3.0 s", {"goal": goal})
     answer = judge(replace(driving, reports={**driving.reports, "navigate": report}, limited=(0.0, 0.0)))
     assert (answer.headline, answer.verdict) == (headline, verdict)
     assert judge(replace(driving, reports={**driving.reports, "navigate": report})).verdict is Verdict.MOVING
@@ -473,15 +482,13 @@ def test_a_goal_that_waits_or_was_given_up_is_reported_with_its_reason(driving, 
 
 def test_without_a_warning_a_limit_is_that_of_clearance(driving):
     facts = replace(driving, safety=replace(driving.safety, speed_limit=0.288))
-    assert "no rim faster than 0.288 m/s, by clearance" in text(facts)
+    assert "at most 0.288 m/s at each rim, by clearance" in text(facts)
 
 
 def test_a_refused_reset_says_why(driving):
     facts = stopped(driving, E_STOP)
-    facts = replace(
-        facts, safety=replace(facts.safety, refusal=("a motion is still being requested (stop the sender)",))
-    )
-    assert "refused: a motion is still being requested" in text(facts)
+    facts = replace(facts, safety=replace(facts.safety, refusal=("motion is still requested (stop the sender)",)))
+    assert "refused: motion is still requested" in text(facts)
 
 
 def test_a_master_that_died_is_reported_while_the_robot_drives_on(driving):
@@ -502,12 +509,12 @@ def test_slip_is_shown_with_the_wheel_and_lost_sensors_by_what_is_left(driving):
         ESTIMATOR,
         flags="valid slip no_gyro",
         slip__left="the left wheels do not roll",
-        slip__spinning=("a wheel turns faster than the ground passes", "accelerate less"),
-        estimate__no_gyro=("yaw comes from the wheels alone", "look at the IMU"),
+        slip__spinning=("a wheel turns faster than the ground passes", "reduce the acceleration"),
+        estimate__no_gyro=("yaw is computed from the wheels only", "check the IMU"),
     )
     shown = text(facts)
     assert "the left wheels do not roll; a wheel turns faster than the ground passes" in " ".join(shown.split())
-    assert "yaw comes from the wheels alone" in shown
+    assert "yaw is computed from the wheels only" in shown
     assert "disagree" not in shown
 
 
@@ -553,7 +560,7 @@ def test_the_command_sources_and_who_commands_are_shown(driving):
 def test_a_lock_is_what_stands_against_motion(driving):
     answer = judge(saying(driving, CONTROLLER, sources="key_vel: locked by pause, cmd_vel: silent"))
     assert answer.verdict is Verdict.STOPPED
-    assert answer.headline == "The commands are locked by pause: the result is zero."
+    assert answer.headline == "Blocked: the commands are locked by pause; the result is zero."
 
 
 def test_a_lock_that_lets_the_commander_pass_stands_against_nothing(driving):
@@ -564,6 +571,6 @@ def test_a_lock_that_lets_the_commander_pass_stands_against_nothing(driving):
 def test_a_machine_that_is_starting_is_named_with_what_it_waits_for():
     words = "left (node 0): starting; the drive waits for a first frame. right (node 1): starting; the drive waits"
     reports = {"driver": Report("", {"driver_state": "starting", "suspicious": words})}
-    answer = judge(Facts("uri", safety=Safety("INIT", "brake", missing=("the machine is starting",)), reports=reports))
-    assert answer.headline == "Not ready: the machine is starting."
+    answer = judge(Facts("uri", safety=Safety("INIT", "brake", missing=("the hardware is starting",)), reports=reports))
+    assert answer.headline == "Not ready: the hardware is starting."
     assert [text.split(";")[0] for _, text in answer.actions] == ["left (node 0): starting", "right (node 1): starting"]

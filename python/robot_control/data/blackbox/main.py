@@ -24,7 +24,7 @@ def main(arguments: list[str] | None = None) -> None:
     try:
         ring = ring_of(given)
         if bag.exists():
-            raise FileExistsError(f"{bag} exists; name another folder: --out OUT")
+            raise FileExistsError(f"{bag} exists; set another folder: --out OUT")
         rows, _, missing = save_black_box(utf8(ring), utf8(bag))
     except (OSError, ValueError, RuntimeError) as error:
         sys.exit(f"blackbox.py: {fit_for_message(in_words(error))}{_beside(given)}")

@@ -45,7 +45,7 @@ def verify(source: str, rclone_config: str, out: Path | None) -> bool:
         except (GapError, RemoteError, OSError) as error:
             gaps += 1
             print(escaped(f"gap:   {folder or '.'}: {error}"))
-    print(f"{len(folders) - gaps} files are whole, {gaps} are not")
+    print(f"{len(folders) - gaps} files are complete, {gaps} are not")
     return gaps == 0
 
 
@@ -55,7 +55,7 @@ def _names(path: str) -> list[str]:
     with suppress(UnicodeEncodeError):  # half of a surrogate pair, as JSON may have it
         if not {"", ".", ".."} & set(names) and b"\0" not in os.fsencode(path):
             return names
-    raise GapError("its path has a part that is no name")
+    raise GapError("its path has an invalid part")
 
 
 def _one(copy: Path, out: Path | None) -> str:
@@ -77,7 +77,7 @@ def _content(path: Path) -> bytes:
     with open(file, "rb") as opened:  # noqa: PTH123 (of a descriptor)
         status = os.fstat(file)
         if not stat.S_ISREG(status.st_mode) or status.st_size > MAX_FILE:
-            raise GapError(f"{path.name} is no file of at most {MAX_FILE} bytes")
+            raise GapError(f"{path.name} is not a file of at most {MAX_FILE} bytes")
         return opened.read(MAX_FILE + 1)
 
 

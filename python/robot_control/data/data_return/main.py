@@ -58,12 +58,12 @@ def _parser() -> argparse.ArgumentParser:
         prog="data_return.py",
         description="Brings finished runs, incidents and reports to a remote of rclone's, in parts that are verified "
         "there, and puts them together on the other side.",
-        epilog="run and status take --config FILE, which is laid over the installed config/data_return.yaml",
+        epilog="run and status take --config FILE, which is overrides the installed config/data_return.yaml",
     )
     commands = parser.add_subparsers(dest="command", required=True)
     for name, text in (("run", "the node on the robot: sends"), ("status", "what waits and what has returned")):
         command = commands.add_parser(name, help=text, description=text)
-        meaning = "YAML file, laid over the installed config/data_return.yaml"
+        meaning = "YAML file, overrides the installed config/data_return.yaml"
         command.add_argument("--config", type=given_path, help=meaning)
     for name, text in (
         ("verify", "checks every part that robots have sent; exit code 1: there is a gap"),

@@ -49,11 +49,11 @@ def opened(path: Path, key: str) -> Iterator[int]:
     try:
         file = os.open(path, os.O_RDONLY | os.O_NOFOLLOW | os.O_NONBLOCK)
     except FileNotFoundError:
-        raise ChangedError("it has another name by now") from None
+        raise ChangedError("it now has another name") from None
     try:
         before = os.fstat(file)
         if identity(before) != key:
-            raise ChangedError("another file has its name by now")
+            raise ChangedError("another file now has its name")
         yield file
         after = os.fstat(file)
         if identity(after) != key or (after.st_nlink and after.st_ctime_ns != before.st_ctime_ns):  # or was deleted
@@ -66,7 +66,7 @@ def remove(path: Path, known: os.stat_result) -> None:
     """Deletes the file of this status, which is open. It first gets a name that nothing else uses.
 
     Raises:
-        ChangedError: another file has its name by now, and stays, or it was touched.
+        ChangedError: another file now has its name, and stays, or it was touched.
         OSError: it cannot be deleted.
     """
     if (now := path.lstat()).st_ctime_ns != known.st_ctime_ns or identity(now) != identity(known):
@@ -80,7 +80,7 @@ def remove(path: Path, known: os.stat_result) -> None:
     with suppress(OSError):  # otherwise it keeps the other name
         os.link(aside, path, follow_symlinks=False)
         aside.unlink()
-    raise ChangedError("another file has its name by now")
+    raise ChangedError("another file now has its name")
 
 
 def renamed(path: Path, new: Path) -> bool:
@@ -184,7 +184,7 @@ def _unpacked(data: bytes, part: Part, longest: int) -> bytes:
     if len(data) != part.size:
         raise GapError(f"{part.name} has {len(data)} of {part.size} bytes")
     if digest_of(data) != part.sha256:
-        raise GapError(f"{part.name} has another content than was sent")
+        raise GapError(f"{part.name} has different content than was sent")
     try:
         raw = zlib.decompressobj(wbits=31).decompress(data, longest + 1) if part.name.endswith(".gz") else data
     except zlib.error as error:

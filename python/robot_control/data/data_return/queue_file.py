@@ -46,7 +46,7 @@ class QueueFile:
         try:
             self.entries = {each.key: each for each in map(_entry, read_kept(self.path) or ())}
         except (ValueError, KeyError, TypeError, AttributeError) as error:
-            self.damage = f"{self.path} is no queue of data_return.py ({printable(str(error))})"
+            self.damage = f"{self.path} is not a queue of data_return.py ({printable(str(error))})"
 
     def lock(self) -> None:
         """Holds the folder until the program ends; a damaged queue is put aside there.
@@ -60,7 +60,7 @@ class QueueFile:
         try:
             fcntl.flock(self._lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except BlockingIOError:
-            raise QueueError(f"another data_return.py uses {self.folder}; end it, or set queue_folder") from None
+            raise QueueError(f"another data_return.py uses {self.folder}; stop it, or set queue_folder") from None
         if self.damage:
             put_aside(self.path)
 

@@ -33,16 +33,19 @@ PLACE = "robot_control_place"
 
 REASONS = (
     (r"didn't find section in config", "this remote is not in rclone's configuration: rclone config shows all"),
-    (r"directory not found", "there is no such folder"),
+    (r"directory not found", "folder not found"),
     (r"certificate has expired", "its certificate has expired: renew it there"),
     (r"x509|certificate", "its certificate is not trusted: set ca_file"),
-    (r"knownhosts|host key", "its host key is not the known one: known_hosts_file of rclone's configuration"),
+    (r"knownhosts|host key", "its host key is unknown: check known_hosts_file of rclone's configuration"),
     (
         r"unable to authenticate|\b401\b|unauthorized|invalid ?credentials|SignatureDoesNotMatch|InvalidAccessKeyId",
         "it refuses user or password: rclone config",
     ),
-    (r"no space left|\b507\b|insufficient storage|quota|\b405\b|SSH_FX_FAILURE", "it cannot write; is its disk full?"),
-    (r"permission denied|\b403\b|forbidden|read-?only", "this user may not write there"),
+    (
+        r"no space left|\b507\b|insufficient storage|quota|\b405\b|SSH_FX_FAILURE",
+        "it cannot write; check its disk space",
+    ),
+    (r"permission denied|\b403\b|forbidden|read-?only", "no permission to write there"),
     (
         r"connection re|no such host|i/o timeout|unreachable|no route|deadline exceeded|broken pipe|connection lost|"
         r"\bEOF\b|couldn't connect|handshake|\b50[234]\b|server misbehaving|closed network",
@@ -133,7 +136,7 @@ class Remote:
         return self._rclone("cat", "--count", str(size + 1), f"{PLACE}:{name}", size=size)
 
     def remove(self, name: str) -> None:
-        """A file that has another content than was sent."""
+        """A file that has different content than was sent."""
         self._rclone("deletefile", f"{PLACE}:{name}")
 
     def used(self) -> int:

@@ -107,7 +107,7 @@ class Sender:
                 del self._queue.entries[entry.key]
             else:
                 entry.returned = False
-                self._say(f"{printable(entry.path)} is no more on the far side as it is here; it is sent again")
+                self._say(f"{printable(entry.path)} differs on the far side; it is sent again")
         self._queue.save()
 
     def _send(self, entry: Entry) -> None:
@@ -171,7 +171,7 @@ class Sender:
                 self._remote.remove(name)
         self._queue.save()
         if bad := set(numbers) - entry.parts.keys():
-            raise RemoteError(f"{entry.target}: {len(bad)} parts arrived with another content")
+            raise RemoteError(f"{entry.target}: {len(bad)} parts arrived with different content")
 
     def _put(self, target: str, files: dict[str, bytes]) -> None:
         stage = self._queue.folder / "parts"
@@ -196,7 +196,7 @@ class Sender:
         name = f"{entry.target}/{parts.MANIFEST}"
         if self._remote.read(name, len(content)) != content:
             self._remote.remove(name)
-            raise RemoteError(f"{name}: arrived with another content")
+            raise RemoteError(f"{name}: arrived with different content")
         entry.returned, entry.parts = True, {}
         self._queue.save()
 

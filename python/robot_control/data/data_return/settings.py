@@ -79,7 +79,7 @@ def read_settings(*paths: Path) -> Settings:
 
 def _together(settings: Settings) -> Iterator[str]:
     if not settings.far_side:
-        yield "far_side is empty: name a remote of rclone's configuration and a folder there, as in factory:robots"
+        yield "far_side is empty: set a remote of rclone's configuration and a folder there, as in factory:robots"
     elif settings.far_side.startswith("-"):
         yield f"far_side = {redacted(settings.far_side)}: begins with -"
     if not ROBOT.fullmatch(settings.name):
@@ -90,7 +90,7 @@ def _together(settings: Settings) -> Iterator[str]:
     if 0 < settings.bandwidth < 0.01:
         yield f"bandwidth = {settings.bandwidth:g}: must be 0 (no limit) or at least 0.01 MB/s"
     if ":" in settings.far_side.partition("/")[0] and settings.far_side[0] != ":":
-        path, remedy = given_path(settings.rclone_config), "; make it with rclone config"
+        path, remedy = given_path(settings.rclone_config), "; create it with rclone config"
         yield from problems_of("rclone_config", path, secret=True, remedy=remedy)
     if settings.ca_file:
         yield from problems_of("ca_file", given_path(settings.ca_file), secret=False)

@@ -17,20 +17,22 @@ def parse(arguments: Sequence[str] | None = None) -> argparse.Namespace:
     parser.add_argument("--out", type=_folder, default="demo_out", help="folder (default ./demo_out)")
     meaning = "on wheels or on legs (default %(default)s)"
     parser.add_argument("--robot", choices=("diffbot", LEGGED_ROBOT), default="diffbot", help=meaning)
-    parser.add_argument("--drives", choices=tuple(DRIVES), help="the motors stand behind such simulated drives")
-    meaning = "what the drives take (default torque, or what --drives takes alone)"
+    parser.add_argument("--drives", choices=tuple(DRIVES), help="simulated drives of the motors")
+    meaning = "what the drives take (default torque, or the only one of --drives)"
     parser.add_argument("--wheel-command", choices=("torque", "velocity"), help=meaning)
-    meaning = "lockstep: exact on any machine; wall: in real time, which a busy machine disturbs (default %(default)s)"
+    meaning = (
+        "lockstep: exact on any machine; wall: in real time, which other programs may disturb (default %(default)s)"
+    )
     parser.add_argument("--clock", choices=("lockstep", "wall"), default="lockstep", help=meaning)
     given = parser.parse_args(arguments)
     if given.drives and given.robot == LEGGED_ROBOT:
-        parser.error(f"--drives move wheels alone, and {LEGGED_ROBOT} stands on legs: leave one of both out")
+        parser.error(f"--drives need wheels, but {LEGGED_ROBOT} has legs: remove one of the two")
     if given.wheel_command and given.robot == LEGGED_ROBOT:
-        parser.error(f"--wheel-command is of wheels, and {LEGGED_ROBOT} stands on legs: leave one of both out")
+        parser.error(f"--wheel-command needs wheels, but {LEGGED_ROBOT} has legs: remove one of the two")
     commands = DRIVES[given.drives].wheel_commands if given.drives else ("torque", "velocity")
     given.wheel_command = given.wheel_command or commands[0]
     if given.wheel_command not in commands:
-        parser.error(f"the board of --drives {given.drives} takes {commands[0]} alone: leave --wheel-command out")
+        parser.error(f"the board of --drives {given.drives} takes {commands[0]} only: remove --wheel-command")
     return given
 
 

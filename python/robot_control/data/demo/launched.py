@@ -71,7 +71,7 @@ def see_alive(*parts: Child) -> None:
     """Raises when one of them has ended."""
     for child in parts:
         if not child.running:
-            raise DemoError(f"a part of the loop has died:\n{tail(child.output)}")
+            raise DemoError(f"a part of the loop has ended:\n{tail(child.output)}")
 
 
 def progress(row: Row | None, seconds: float) -> str:

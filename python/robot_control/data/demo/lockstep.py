@@ -64,5 +64,5 @@ def drive(seconds: float, out: Path, robot: str, drives: Path | None, parameters
             wait = max(0.5, 5 * (time.monotonic() - begun))  # the longer the log, the longer it takes to read it
     row = last_row(log)
     if row is None or row["cycle"] < cycles - 1:
-        raise DemoError(f"a part of the loop has died:\n{tail(out / 'launch.log')}")
+        raise DemoError(f"a part of the loop has ended:\n{tail(out / 'launch.log')}")
     return asked

@@ -132,7 +132,7 @@ def _draw_feet(axes: Axes, log: Log, feet: list[Footfalls]) -> None:
     time = log["time"]
     for row, foot in enumerate(reversed(feet)):
         for asked, true, color, half, name in (
-            (True, foot.asked, COMMANDED, 0.42, "asked to bear"),
+            (True, foot.asked, COMMANDED, 0.42, "commanded stance"),
             (False, foot.bears, TRUE, 0.22, "bears"),
         ):
             spans = [(time[begin], time[end - 1] - time[begin]) for begin, end in intervals(true)]

@@ -196,7 +196,7 @@ def _safety_line(safety_: Safety) -> str:
 def _posture_lines(summary: RunSummary) -> list[str]:
     if not summary.postures:
         return []
-    verdict = "" if summary.lies else ": FAILED, it does not lie"
+    verdict = "" if summary.lies else ": FAILED, the robot does not lie"
     return textwrap.wrap(f"{'posture':<34}{' → '.join(summary.postures)}{verdict}", WIDTH, subsequent_indent=" " * 34)
 
 

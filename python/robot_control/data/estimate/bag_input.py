@@ -68,9 +68,9 @@ class _Reader:
         # REP 145: imu/data is imu/data_raw with an orientation.
         found = [name for name in found if name.removesuffix("data") + "data_raw" not in raw or name in raw]
         if len(found) > 1:
-            raise InputError(f"{self._path} has several IMU topics: say --imu with one of {listed(found)}, or none")
+            raise InputError(f"{self._path} has several IMU topics: set --imu to one of {listed(found)}, or none")
         if not found:
-            self.notes.append(f"no topic of {IMU}; the wheels are all there is")
+            self.notes.append(f"no topic of {IMU}; only the wheels are used")
             return None
         self.notes.append(f"IMU: {found[0]}")
         return found[0]
@@ -90,7 +90,7 @@ class _Reader:
             if len(candidates) > 1:
                 others = f"; none of {listed(states)} holds the wheels' positions" if states else ""
                 raise InputError(
-                    f"{self._path} has several topics of {type_of}: say --wheels with one of "
+                    f"{self._path} has several topics of {type_of}: set --wheels to one of "
                     f"{listed(candidates)}{others if type_of == ODOMETRY else ''}"
                 )
             if candidates:
@@ -107,7 +107,7 @@ class _Reader:
         names = self._names_of(topic, robot, joints)
         if names is None:
             self._refuse_joints([topic], robot, joints)
-            raise InputError(f"{self._path}: {topic} holds no message")
+            raise InputError(f"{self._path}: {topic} contains no message")
         stamps: dict[str, list[int]] = {side: [] for side in names}
         rows: dict[str, list[list[float]]] = {side: [] for side in names}
         for message, stamp in self._messages(topic):
@@ -167,7 +167,7 @@ class _Reader:
 
     def _stream(self, topic: str, stamps: list[int], rows: list[list[float]], width: int) -> Stream:
         if not rows:
-            raise InputError(f"{self._path}: {topic} holds no message that can be used")
+            raise InputError(f"{self._path}: {topic} contains no usable message")
         values: FloatArray = np.array(rows, dtype=np.float64).reshape(-1, width)
         stream, back, same = Stream(np.array(stamps, dtype=np.int64), values).ordered()
         if back:

@@ -54,9 +54,9 @@ def _lines(path: Path, file: TextIO) -> Iterator[str]:
     while line := file.readline(MAX_LINE + 1):
         number += 1
         if len(line) > MAX_LINE:
-            raise InputError(f"{path}, line {number}: longer than {MAX_LINE} characters; is it a CSV?")
+            raise InputError(f"{path}, line {number}: longer than {MAX_LINE} characters; check that it is a CSV")
         if "\0" in line:
-            raise InputError(f"{path}, line {number}: holds a NUL character; is it a CSV?")
+            raise InputError(f"{path}, line {number}: contains a NUL character; check that it is a CSV")
         yield line
 
 
@@ -90,7 +90,7 @@ def _columns_of(table: _Table, form: CsvForm) -> dict[str, str]:
     missing += [columns[name] for name in ("time", "left", "right") if columns[name] not in table.header]
     if missing:
         what = f"{table.path}: no column {', '.join(dict.fromkeys(missing))}; its header is {listed(table.header)}"
-        raise InputError(f"{what}. Say which ones are meant: --columns time=…,left=…,right=…,gyro_z=…")
+        raise InputError(f"{what}. Set them: --columns time=…,left=…,right=…,gyro_z=…")
     found = {name: column for name, column in columns.items() if column in table.header}
     for group, needed in ((GYRO, ("gyro_z",)), (ACCEL, ACCEL)):
         present = [name for name in group if name in found]
@@ -150,7 +150,7 @@ class _Table:
                 continue
             yield line, row
         if short is not None:
-            self.notes.append(f"line {short[0]}, the last one, was cut short and is left out")
+            self.notes.append(f"line {short[0]}, the last one, is incomplete and ignored")
 
     def _cells(self) -> Iterator[tuple[int, list[str]]]:
         """Number and cells of each line. A quotation mark that is not closed would make one cell of all lines below."""
@@ -166,7 +166,7 @@ class _Table:
                 return
         except csv.Error:
             pass
-        raise InputError(f"{self.path}, line {line}: a quotation mark is opened and not closed in this line")
+        raise InputError(f"{self.path}, line {line}: a quotation mark is not closed in this line")
 
     def _stamp(self, line: int, cell: str, unit_ns: int) -> int:
         try:
@@ -177,7 +177,7 @@ class _Table:
             why = f"{self.path}, line {line}: the time is {cell.strip()!r}; every row needs a finite number"
             raise InputError(why) from None
         if abs(stamp) >= 2**62:  # so that a difference of two is a number of 64 bits
-            why = f"{self.path}, line {line}: the time is {cell.strip()}, beyond 146 years; look at --time-unit"
+            why = f"{self.path}, line {line}: the time is {cell.strip()}, beyond 146 years; check --time-unit"
             raise InputError(why)
         return round(stamp)
 
@@ -185,5 +185,5 @@ class _Table:
         try:
             return float(cell) if cell.strip() else math.nan
         except ValueError:
-            what = f"{self.path}, line {line}, column {name}: {cell.strip()!r} is no number"
+            what = f"{self.path}, line {line}, column {name}: {cell.strip()!r} is not a number"
             raise InputError(f"{what}; leave the cell of an absent sample empty") from None

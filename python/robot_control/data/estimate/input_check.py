@@ -50,7 +50,7 @@ def check_angles(samples: Samples) -> None:
     known = [table[~np.isnan(table)] for table in (samples.left, samples.right)]
     if all(table.size and np.all(table == np.round(table)) and np.unique(table).size >= COUNTS for table in known):
         what = "left and right are whole numbers: counts of an encoder, not radians"
-        raise InputError(f"{what}. Say how many make a turn of the wheel, gear included: --counts-per-turn N")
+        raise InputError(f"{what}. Set the counts per turn of the wheel, including the gear: --counts-per-turn N")
 
 
 def check(samples: Samples, robot: Robot) -> Findings:
@@ -62,7 +62,7 @@ def check(samples: Samples, robot: Robot) -> Findings:
     _check_time(samples)
     for side, angles in (("left", samples.left), ("right", samples.right)):
         if not samples.own_log and not np.isfinite(angles).any():
-            raise InputError(f"the {side} wheel has not one angle in this recording: look at its column or its joint")
+            raise InputError(f"the {side} wheel has no angle in this recording: check its column or its joint")
     streams = streams_of(samples, robot)
     findings = Findings()
     gravity = mounting.gravity_of(streams)
@@ -87,7 +87,7 @@ def _check_time(samples: Samples) -> None:
         if not MIN_APART <= apart <= MAX_APART:
             raise InputError(
                 f"half of a sensor's samples are less than {apart:.3g} s apart; expected is {MIN_APART:g} to "
-                f"{MAX_APART:g} s: look at the unit of the times (of a CSV: --time-unit, s unless given)"
+                f"{MAX_APART:g} s. Check the unit of the times (of a CSV: --time-unit, default s)"
             )
 
 
@@ -96,18 +96,18 @@ def _check_gravity(streams: Streams, gravity: FloatArray, findings: Findings) ->
     size = float(np.linalg.norm(gravity))
     if size < NO_GRAVITY:
         found = f"the accelerometer shows no gravity ({size:.2g} m/s²): whatever took it out also took out the tilt"
-        findings.warnings.append(f"{found}. Leave the accelerometer out, or record it as it is measured")
+        findings.warnings.append(f"{found}. Leave out the accelerometer, or record it unfiltered")
         return False
     if IN_G[0] < size < IN_G[1]:
-        raise InputError(f"the accelerometer is in g: at rest it shows {size:.3g}. Say --accel-unit g")
+        raise InputError(f"the accelerometer is in g: at rest it shows {size:.3g}. Set --accel-unit g")
     if abs(size / mounting.GRAVITY - 1) > SCALE:
         what = f"the accelerometer shows {size:.4g} m/s² at rest instead of {mounting.GRAVITY:.4g}"
-        findings.warnings.append(f"{what}: look at its unit and scale")
+        findings.warnings.append(f"{what}: check its unit and scale")
     tilt = mounting.tilt_of(gravity, streams.base_from_imu)
     candidates = mounting.fitting(streams, gravity)
     plain = [each for each in candidates if not each.mirrored]
     if tilt > mounting.OBLIQUE:
-        what = f"gravity is {math.degrees(tilt):.0f}° away from where the IMU's mounting says that it is"
+        what = f"gravity is {math.degrees(tilt):.0f}° away from the direction that follows from the IMU's mounting"
         if not plain:
             findings.warnings.append(f"{what}, and on none of its axes: measure how it is mounted (--imu-orientation)")
         elif plain[0].agreement < mounting.AGREES:
@@ -136,8 +136,8 @@ def _check_rest(streams: Streams, findings: Findings) -> None:
     rests = streams.rests()
     if not rests:
         findings.warnings.append(
-            "the robot never rests in this recording: the gyro's bias and a difference of the wheels' radii look "
-            "the same. Record a second of rest, best at the beginning"
+            "the robot never rests in this recording: the gyro's bias and a difference of the wheels' radii "
+            "have the same effect. Record a second of rest, best at the beginning"
         )
         return
     begin, end = rests[0]
@@ -152,7 +152,7 @@ def _check_rest(streams: Streams, findings: Findings) -> None:
     for axis, rate in zip("xyz", bias.tolist(), strict=True):
         if abs(rate) > MAX_BIAS:
             findings.warnings.append(
-                f"the gyro's {axis} axis shows {math.degrees(rate):.1f} °/s at rest: is it broken, or in another unit?"
+                f"the gyro's {axis} axis shows {math.degrees(rate):.1f} °/s at rest: check it and its unit"
             )
 
 
@@ -162,12 +162,12 @@ def _check_turning(streams: Streams, turning: TurnFit, findings: Findings) -> No
     ratio = turning.wheel_base / streams.wheel_base
     in_degrees = abs(ratio) * 180 / math.pi
     if DEGREES_INSTEAD[0] < in_degrees < DEGREES_INSTEAD[1]:
-        raise InputError("the gyro is in °/s: it turns 57 times as fast as the wheels. Say --gyro-unit deg/s")
+        raise InputError("the gyro is in °/s: it turns 57 times as fast as the wheels. Set --gyro-unit deg/s")
     if ratio < 0:
-        frame = "its frame is left-handed or hangs upside down (change its signs, or --imu-orientation)"
+        frame = "its frame is left-handed or is mounted upside down (change its signs, or --imu-orientation)"
         findings.warnings.append(f"the gyro turns against the wheels: {frame}, or left and right wheels are exchanged")
     elif not BASES[0] < ratio < BASES[1]:
         what = f"by the gyro the effective wheel base is {turning.wheel_base:.3f} m, not {streams.wheel_base:.3f} m"
-        findings.warnings.append(f"{what}: give that one, or look at radius, counts per turn and the gyro's unit")
+        findings.warnings.append(f"{what}: set it, or check radius, counts per turn and the gyro's unit")
     if turning.offset_deviation < OFFSET_DEVIATION and abs(turning.offset) > max(OFFSET, 3 * turning.offset_deviation):
         findings.offset = turning.offset

@@ -88,12 +88,10 @@ def estimate(options: argparse.Namespace) -> str:
     samples = _checked(options, samples, estimator.robot)
     counts = None if samples.own_log or options.encoder_counts is not None else counts_per_turn(samples)
     if counts is not None and options.params is None:
-        samples.notes.append(f"the wheel angles come in steps of 1/{counts:.4g} turn; --encoder-counts says otherwise")
+        samples.notes.append(f"the wheel angles come in steps of 1/{counts:.4g} turn, but --encoder-counts differs")
         estimator = _estimator(options, counts)
     elif counts is not None:
-        samples.notes.append(
-            f"the wheel angles come in steps of 1/{counts:.4g} turn: look at encoder_noise in --params"
-        )
+        samples.notes.append(f"the wheel angles come in steps of 1/{counts:.4g} turn: check encoder_noise in --params")
 
     summary, trust = Summary(), Trust()
     with NewFiles() as files:
@@ -149,8 +147,7 @@ def _check_robot(options: argparse.Namespace, samples: Samples) -> None:
         given = bool({"urdf", "wheel_radius", "wheel_base", "wheel_separation"} & set(blocks.get("robot") or {}))
     if not given:
         raise InputError(
-            "the robot is not given, without which a turn of a wheel is no distance: say --wheel-radius and "
-            "--wheel-base, or --urdf FILE, or --params with a block robot:"
+            "the robot is unknown: set --wheel-radius and --wheel-base, or --urdf FILE, or --params with a block robot:"
         )
 
 
@@ -243,8 +240,8 @@ def _joints(given: dict[str, str] | None) -> tuple[str, str] | None:
 def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(
         prog="estimate.py",
-        description="Estimates where a robot was from a recording of its wheels and its IMU, with the node's own "
-        "law; prints a summary, and writes what is asked for.",
+        description="Estimates the path of a robot from a recording of its wheels and its IMU, with the algorithm of "
+        "the node. Prints a summary, and writes the chosen outputs.",
         epilog=EPILOG,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
@@ -279,7 +276,7 @@ def _parser() -> argparse.ArgumentParser:
 
     add = parser.add_argument_group("a bag").add_argument
     add("--wheels", metavar="TOPIC", help="of sensor_msgs/JointState or nav_msgs/Odometry")
-    add("--imu", metavar="TOPIC", help="of sensor_msgs/Imu; none: wheels alone")
+    add("--imu", metavar="TOPIC", help="of sensor_msgs/Imu; none: wheels only")
     add("--joints", type=_pairs, metavar="left=NAME,right=NAME", help="else those of the robot")
     part = "what wheel odometry is read by; else its pose, where it moves"
     add("--odometry", choices=("pose", "twist"), help=part)
@@ -290,14 +287,14 @@ def _finite(text: str) -> float:
     with contextlib.suppress(ValueError):
         if math.isfinite(value := float(text)):
             return value
-    raise argparse.ArgumentTypeError(f"{text} is no number")
+    raise argparse.ArgumentTypeError(f"{text} is not a number")
 
 
 def _numbers(text: str) -> list[float]:
     try:
         return [float(part) for part in text.split(",")]
     except ValueError:
-        raise argparse.ArgumentTypeError(f"{text} is no list of numbers, such as 0.05,0,0.06") from None
+        raise argparse.ArgumentTypeError(f"{text} is not a list of numbers, such as 0.05,0,0.06") from None
 
 
 def _pairs(text: str) -> dict[str, str]:

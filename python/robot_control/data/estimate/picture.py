@@ -163,7 +163,7 @@ def _draw_bias(axes: Axes, time: FloatArray, rows: Estimate) -> None:
     axes.set_title("Gyro bias [°/s], IMU axes, ± 2 σ")
     if (rows["flags"] & FLAGS["no_gyro"] != 0).all():
         axes.set(yticks=[], ylim=(0, 1))
-        axes.text(0.5, 0.5, "no gyro in the recording: yaw comes from the wheels alone", ha="center", va="center",
+        axes.text(0.5, 0.5, "no gyro in the recording: yaw is computed from the wheels only", ha="center", va="center",
                   color="#666666", transform=axes.transAxes)  # fmt: skip
         return
     spread = 2 * float(np.median(rows["gyro_bias_deviation"])) * DEGREES + 0.02  # the first band would hide all else

@@ -52,7 +52,7 @@ class Summary:
         end = f"x {last['x']:.3f} ± {x:.3f} m, y {last['y']:.3f} ± {y:.3f} m"
         yield "end pose", f"{end}, yaw {last['yaw'] / DEGREE:.2f} ± {yaw / DEGREE:.2f}°"
         wheels = f"x {last['wheel_x']:.3f} m, y {last['wheel_y']:.3f} m"
-        yield "by wheels alone", f"{wheels}, yaw {last['wheel_yaw'] / DEGREE:.2f}°"
+        yield "by wheels only", f"{wheels}, yaw {last['wheel_yaw'] / DEGREE:.2f}°"
         bias = zip(last["gyro_bias"] / DEGREE, last["gyro_bias_deviation"] / DEGREE, strict=True)
         yield "gyro bias", f"{', '.join(f'{b:.3f} ± {s:.3f}' for b, s in bias)} °/s about x, y, z"
         ratio, deviation = float(last["radius_ratio"]), float(last["radius_ratio_deviation"])

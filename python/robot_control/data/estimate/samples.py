@@ -91,7 +91,7 @@ class Samples:
         longest = int(np.argmax(steps))
         if steps[longest] < max(GAP, 10 * float(np.median(steps))):
             return None
-        return f"no sample for {steps[longest]:.3g} s after {self.seconds[longest]:.3f} s; the estimate runs on blind"
+        return f"no sample for {steps[longest]:.3g} s after {self.seconds[longest]:.3f} s; the estimate continues"
 
 
 @dataclass(frozen=True)

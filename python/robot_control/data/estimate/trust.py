@@ -48,10 +48,10 @@ class Trust:
             found.append(f"not to be trusted: the last yaw is known to ± {math.degrees(self._yaw_deviation):.0f}°")
         if self._distance > 0 and self._slipped > MAX_SLIP * self._distance:
             what = f"not to be trusted: slip on {100 * self._slipped / self._distance:.0f} % of the distance is rare"
-            found.append(f"{what}; look at clocks, units and mounting, and at what shakes the IMU")
+            found.append(f"{what}; check clocks, units, mounting and vibration of the IMU")
         if self._restarts:
             when = ", ".join(f"{time:.3f} s" for time in self._restarts[:3])
-            found.append(f"an encoder began again after {when}: the travel meanwhile is lost")
+            found.append(f"an encoder restarted after {when}: the travel meanwhile is lost")
         rates = samples.rates()
         for sensor, seconds in self._without.items():
             if sensor in rates and self._duration > 0 and seconds > UNUSED * self._duration:

@@ -26,10 +26,10 @@ def main(arguments: list[str] | None = None) -> None:
     parser = _parser()
     options = parser.parse_args(arguments)
     if (options.csv, options.mcap, options.topics) == (None, None, None):
-        parser.error("nothing is to be written: name an output with --csv, --mcap or --topics")
+        parser.error("no output: set --csv, --mcap or --topics")
     try:
         if not is_bag(options.input):
-            raise LogError(f"{options.input} is no ROS bag")
+            raise LogError(f"{options.input} is not a ROS bag")
         check_outputs([options.csv, options.mcap, options.topics], [options.input])
         cuts = []
         with NewFiles() as files:

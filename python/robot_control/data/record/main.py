@@ -56,5 +56,5 @@ def main() -> None:
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
-        raise SystemExit(f"record.py: {in_words(error)}; name another folder") from None
+        raise SystemExit(f"record.py: {in_words(error)}; set another folder") from None
     os.execv(command[0], command)

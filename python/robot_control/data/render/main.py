@@ -99,10 +99,10 @@ def arguments(given: list[str] | None) -> argparse.Namespace:
         "… and, where ffmpeg is installed, render.mp4. Needs no display.",
     )
     parser.add_argument("run", type=given_path, help="run.bag of the telemetry (telemetry:=true) or of scripts/demo")
-    parser.add_argument("--urdf", type=given_path, help="of the run; left out: that of the parameter file")
+    parser.add_argument("--urdf", type=given_path, help="of the run; default: from the parameter file")
     parser.add_argument("--params", type=given_path, metavar="YAML", help="parameter file of the run")
     parser.add_argument("--scene", help="of the run, as for sim.launch: flat, slope_5deg, bumps …, or an MJCF file")
-    parser.add_argument("--out", type=given_path, help="folder for the pictures (default: that of the run)")
+    parser.add_argument("--out", type=given_path, help="folder for the pictures (default: from the run)")
     parser.add_argument("--pictures", type=int, default=4, help="how many PNGs (default %(default)s)")
     parser.add_argument("--no-video", action="store_true", help="no MP4, also where ffmpeg is installed")
     parser.add_argument("--size", type=size_of, default=(960, 540), metavar="WxH", help="pixels (default 960x540)")

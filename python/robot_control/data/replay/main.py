@@ -15,7 +15,7 @@ from robot_control.ui.picture_file import check_picture
 
 LAWS = ("gate", "estimator", "controller", "monitor")
 VARIED = (f"{ESTIMATOR}.", f"{MONITOR}.")
-WITHOUT_EFFECT = "the controller reads it at its start alone, or it belongs to no law that is varied"
+WITHOUT_EFFECT = "the controller reads it only at its start, or no varied law has it"
 MAX_LINES = 20
 EXACT, NOT_COMPARED, REFUSED, DIFFERENT = 0, 1, 2, 3
 
@@ -55,16 +55,16 @@ def parse(arguments: Sequence[str] | None) -> argparse.Namespace:
     """The command line."""
     parser = argparse.ArgumentParser(
         prog="replay.py",
-        description="Runs the laws of a log again, from its rows alone, and compares every bit of what they gave. "
+        description="Computes the laws of a log again from its rows, and compares the results bit by bit. "
         "Exit code 0: all is the same; 1: nothing differs, but not every row could be compared; 2: the log cannot be "
         "replayed; 3: something differs.",
     )
     parser.add_argument("log", type=given_path, metavar="LOG", help="run.bag")
-    parser.add_argument("--law", choices=LAWS, help="of this law alone")
+    parser.add_argument("--law", choices=LAWS, help="of this law only")
     what_if = parser.add_argument_group("what if", "the laws with other parameters beside, on the recorded inputs")
     metavar = "NODE.PARAMETER=VALUE"
     what_if.add_argument("--set", action="append", default=[], type=_assignment, metavar=metavar, help="repeatable")
-    what_if.add_argument("--params", type=given_path, metavar="FILE", help="YAML, laid over the parameters of the log")
+    what_if.add_argument("--params", type=given_path, metavar="FILE", help="YAML, overrides the parameters of the log")
     meaning = "picture of both; default: %(default)s"
     what_if.add_argument("--plot", type=given_path, default=Path("replay.png"), help=meaning)
     return parser.parse_args(arguments)
@@ -138,7 +138,7 @@ def text_of(report: Mapping[str, Any], setup: RecordedSetup, law: str | None) ->
     lines += _listed("differs", [*report["header"], *_of(report["differences"], law)])
     lines += _listed("not compared", _of(report["gaps"], law))
     if not any(report["laws"][name]["compared"] for name in chosen(law)):
-        lines.append("nothing was compared: there is no snapshot of a law in this log")
+        lines.append("nothing was compared: this log contains no snapshot of a law")
     return escaped_lines(lines)
 
 

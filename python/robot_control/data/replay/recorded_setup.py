@@ -40,7 +40,7 @@ def recorded_setup(log: Path, folder: Path) -> RecordedSetup:
         RuntimeError: it is no log, or a damaged one.
     """
     if not is_bag(log):
-        raise LogError(f"{log} is no ROS bag")
+        raise LogError(f"{log} is not a ROS bag")
     header = read_run_header(utf8(log))
     parameters, urdf = folder / "parameters.yaml", folder / "robot.urdf"
     parameters.write_text(header["parameters"])

@@ -71,7 +71,7 @@ def read_budgets(path: Path, known: Mapping[str, Figure]) -> Budgets:
     except (yaml.YAMLError, UnicodeDecodeError) as error:
         raise BudgetError(f"{path}: {error}") from None
     if not isinstance(tree, dict) or not tree:
-        raise BudgetError(f"{path}: holds no budgets; a line is NAME: {{most: NUMBER}} or {{least: NUMBER}}")
+        raise BudgetError(f"{path}: contains no budgets; a line is NAME: {{most: NUMBER}} or {{least: NUMBER}}")
     problems = [problem for name, bounds in tree.items() for problem in _problems(str(name), bounds, known)]
     if problems:
         raise BudgetError(f"{path}: " + "; ".join(problems))
@@ -80,11 +80,11 @@ def read_budgets(path: Path, known: Mapping[str, Figure]) -> Budgets:
 
 def _problems(name: str, bounds: Any, known: Mapping[str, Figure]) -> list[str]:  # noqa: ANN401 (of YAML)
     if name not in known:
-        return [f"there is no figure {printable(name)}; there are {', '.join(known)}"]
+        return [f"unknown figure {printable(name)}; there are {', '.join(known)}"]
     if not isinstance(bounds, dict) or not bounds or not set(bounds) <= set(BOUNDS):
         return [f"{name}: {printable(str(bounds))} is not {{most: NUMBER}} or {{least: NUMBER}}"]
     return [
-        f"{name}.{bound}: {printable(str(value))} is no number"
+        f"{name}.{bound}: {printable(str(value))} is not a number"
         for bound, value in bounds.items()
         if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value)
     ]

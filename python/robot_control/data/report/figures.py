@@ -124,7 +124,12 @@ def _position_error(drive: Drive) -> Iterator[Figure]:
     error, deviation = position_error(drive)
     distance = _largest(drive.column("estimate_distance"))
     share = _largest(error) / distance if distance > 1 else NAN
-    yield Figure("position_error", "share", "largest distance between true and estimated position, of the way", share)
+    yield Figure(
+        "position_error",
+        "share",
+        "largest distance between true and estimated position, as a share of the distance",
+        share,
+    )
     known = ~np.isnan(error) & (deviation > 0)
     ratio = float(np.mean(error[known] > 2.45 * deviation[known])) if known.any() else NAN  # χ², 2 axes, 95 %
     meaning = "of the time: true position outside the 95 % ellipse's mean radius"
@@ -164,7 +169,7 @@ def _torque(drive: Drive) -> Iterator[Figure]:
 
 
 def _walking(drive: Drive) -> Iterator[Figure]:
-    meaning = "mechanical work of all joints per weight and way while a robot on legs walks"
+    meaning = "mechanical work of all joints per weight and distance while a robot on legs walks"
     yield Figure("cost_of_transport", "", meaning, cost_of_transport(drive) if drive.kind.legged else NAN)
 
 

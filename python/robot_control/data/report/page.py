@@ -68,12 +68,12 @@ def _sections(drives: list[Drive], found: list[Incident]) -> Iterable[Section]:
     if len(drives) == 1:
         yield (
             "States and reasons",
-            "What the safety monitor permitted, what the gate let through, and why a command was not executed as sent.",
+            "Permits of the safety monitor, commands that the gate passed, and why a command was not executed as sent.",
             drawn(time_lines(axis, drives[0])),
         )
         yield (
             "Feet",
-            "When each foot bore: as it was asked to, or not; and when it was asked to bear and did not.",
+            "When each foot was in stance, as commanded or not.",
             drawn(foot_lines(axis, drives[0])),
         )
     yield (
@@ -94,7 +94,7 @@ def _sections(drives: list[Drive], found: list[Incident]) -> Iterable[Section]:
     )
     yield (
         "Position",
-        "An honest estimate's true error stays below 2 σ most of the time.",
+        "The true error of a consistent estimate is below 2 σ most of the time.",
         drawn(time_plots.position_plot(axis, drives)),
     )
     if len(drives) == 1:
@@ -106,7 +106,7 @@ def _sections(drives: list[Drive], found: list[Incident]) -> Iterable[Section]:
         )
     yield (
         "Latency",
-        "Of each cycle; only runs in wall-clock time have it.",
+        "For each cycle; only runs in wall-clock time have it.",
         drawn(time_plots.latency_plot(axis, drives)) + histograms(drives),
     )
 

@@ -13,7 +13,7 @@ GRAVITY = 9.81
 WALKING = number_of("LegPhase", "walking")
 SHORTEST = 1.0
 """m; a shorter way costs nothing that could be judged"""
-BEARS, UNASKED, MISSING = "bears", "bears, and was not asked to", "was asked to bear, and does not"
+BEARS, UNASKED, MISSING = "bears", "in stance, but not commanded", "commanded stance, but not in stance"
 Stretch = tuple[str, int, int, str]
 """foot, first row of the log, the row behind the last one, what it did"""
 

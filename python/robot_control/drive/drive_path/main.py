@@ -33,7 +33,7 @@ def received(name: str) -> Path:
     """The next message on that topic, or its last one if it is latched. Raises PathError."""
     message: Path | None = next_message(name, Path, PATIENCE, MAX_LONG_BYTES)
     if message is None:
-        raise PathError(f"nothing came on {rospy.resolve_name(name)} within {PATIENCE:g} s")
+        raise PathError(f"nothing received on {rospy.resolve_name(name)} within {PATIENCE:g} s")
     return message
 
 
@@ -75,7 +75,7 @@ def drive(points: list[Waypoint] | None, given: argparse.Namespace, signals: Sig
     topic.send(Command())
     rospy.loginfo(run.describe())
     if follower.state is State.DONE:
-        rospy.loginfo(f"done; at most {1000 * follower.worst_cross_track_error:.0f} mm aside by odometry")
+        rospy.loginfo(f"done; at most {1000 * follower.worst_cross_track_error:.0f} mm off the path by odometry")
         return ""
     return follower.reason or "interrupted"
 
@@ -84,7 +84,7 @@ def arguments(given: list[str]) -> argparse.Namespace:
     """The command line, without the program's name; ends the program on a wrong one."""
     parser = argparse.ArgumentParser(
         prog="drive_path.py",
-        description="Drives the robot along a path, from where it stands. Commands go to path_vel where the robot "
+        description="Drives the robot along a path, from its present pose. Commands go to path_vel where the robot "
         "has a list of command sources, else to cmd_vel_stamped. Services: drive_path/pause, drive_path/resume.",
         epilog="Exit code 0: the end of the path was reached; else 1, with the reason.",
     )

@@ -92,7 +92,7 @@ class Server:
 
     def _stop(self) -> None:
         if drive := self._services.drive:
-            drive.follower.fail("an input surprised follow_path, whose log names it. Start the path again")
+            drive.follower.fail("invalid input, named in the log of follow_path. Start the path again")
         self._topic.send(Command())
 
     def _going_on(self) -> bool:
@@ -100,7 +100,7 @@ class Server:
 
     def _execute(self, goal: messages.FollowPathGoal) -> None:
         self._idle.clear()
-        result = messages.FollowPathResult(reason="the goal surprised follow_path, whose log names it")
+        result = messages.FollowPathResult(reason="invalid goal, named in the log of follow_path")
         with boundary.crossing(NAME):
             try:
                 result.reason = self._drive(goal, result)

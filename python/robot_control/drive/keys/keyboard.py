@@ -124,9 +124,9 @@ class Decoder:
     def unfinished(self) -> str:
         """Description of a sequence that has no end yet and takes all keys but stops; empty if there is none."""
         if self._pasting:
-            return "a paste has begun, and no key drives before its end; if that is lost, start teleop.py again"
+            return "a paste has started, and no key drives before its end; if the end is lost, restart teleop.py"
         if Part.STRING in {self._part, self._before_escape}:
-            return "this terminal has begun a report (Alt-] does, too), and no key drives before its end: press Ctrl-X"
+            return "this terminal has started a report (also by Alt-]), and no key drives before its end: press Ctrl-X"
         return ""
 
     def _counts(self, key: Key) -> bool:

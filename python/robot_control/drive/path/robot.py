@@ -81,7 +81,7 @@ class Robot:
         `waited`: the path was not driven since the last look.
         """
         why = self.watch.revoked(requested, waited=waited and not self._attended)
-        return why and f"{why}: what was requested before does not begin, or go on, by itself. Start the path again"
+        return why and f"{why}: an earlier path does not start or continue by itself. Start the path again"
 
     def against_driving(self, now: float) -> str:
         """Why a path that is driven has to end; empty if it goes on."""

@@ -19,7 +19,7 @@ from robot_control.robot.pose import pose_of
 from robot_control.robot.ros_node import serve
 from robot_control.robot.view import SILENCES
 
-PAUSED = "paused; goes on after ~resume"
+PAUSED = "paused; call ~resume to continue"
 POLL_PERIOD = 0.005
 """s between two looks for a new odometry message"""
 MAX_SHOWN = 2000
@@ -73,7 +73,7 @@ class Drive:
     def _step(self, odometry: Odometry) -> None:
         if self._robot.masked_by and self.follower.state is not State.PAUSED:
             self.pause(f"{SOURCE} is {self._robot.masked_by}")
-            rospy.logwarn(f"paused: {self.paused_by}; goes on after ~resume")
+            rospy.logwarn(f"paused: {self.paused_by}; call ~resume to continue")
         with self._lock:
             measured = Motion(odometry.twist.twist.linear.x, odometry.twist.twist.angular.z)
             try:

@@ -175,7 +175,7 @@ def read_csv_text(path: str, lines: Iterable[str]) -> list[Waypoint]:
     try:
         return _points_of(path, csv.DictReader(lines))
     except csv.Error as error:
-        raise PathError(f"{path}: is no CSV: {error}") from None
+        raise PathError(f"{path}: is not a CSV: {error}") from None
 
 
 def _points_of(path: str, rows: "csv.DictReader[str]") -> list[Waypoint]:

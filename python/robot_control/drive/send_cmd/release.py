@@ -125,7 +125,7 @@ class Release:
         self._provisional = True
         self.phase = Phase.SENDING
         what = f"no safety_status within {NO_MONITOR:g} s: {MONITOR} does not run, and without it the robot brakes"
-        yield Line(f"{what}; sending the command all the same")
+        yield Line(f"{what}; the command is still sent")
 
     def _wait(self, now: float, status: Status, age: float) -> Iterator[Line]:
         gone = now - self._gone_since > GONE or age > NO_MONITOR
@@ -145,7 +145,7 @@ class Release:
             return f"safety_status is silent: waits with zeros for {MONITOR}"
         if status.awaiting_zero:
             silence = silent_long_enough(self.command_timeout)
-            return f"waits for a zero request; stop the other sender{silence} or let it send zero"
+            return f"waiting for a zero velocity command; stop the other sender{silence}, or publish zero from it"
         return f"waits with zeros: {MONITOR} waits: {', '.join(status.missing) or 'the first cycles'}"
 
     def _drive(self, now: float, status: Status, age: float) -> Iterator[Line]:

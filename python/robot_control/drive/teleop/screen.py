@@ -62,7 +62,7 @@ def render(facts: Facts, view: View, height: int = HEIGHT) -> list[str]:
 
 def _headline(facts: Facts) -> str:
     answer = judge(facts)
-    return "It may move: hold a key." if answer.verdict is Verdict.IDLE else answer.headline
+    return "Ready: hold a key." if answer.verdict is Verdict.IDLE else answer.headline
 
 
 def _speeds(label: str, speeds: Command | None, note: str = "", *, legged: bool = False) -> str:
@@ -96,7 +96,7 @@ def _rows(facts: Facts, view: View) -> Iterator[tuple[str, str]]:
 
 def _command(facts: Facts, view: View) -> str:
     if view.requested is None or view.sent_age is None:
-        own = f"nothing is sent on {view.topic} now"
+        own = f"no command is sent on {view.topic} now"
     else:
         own = f"sent on {view.topic}, {1000 * view.sent_age:.0f} ms ago"
     others = [name for name in facts.commanders() if name != view.own_name]

@@ -70,7 +70,7 @@ class Terminal:
             refuse_without_sequences(os.environ.get("TERM", ""))
             self._descriptor = os.open(os.ttyname(descriptor), os.O_RDWR | os.O_NONBLOCK | os.O_NOCTTY | os.O_CLOEXEC)
         except (OSError, termios.error) as error:
-            why = "the standard input is no terminal; start it in one (not in a launch file)"
+            why = "the standard input is not a terminal; start it in one (not in a launch file)"
             raise NoTerminalError(why) from error
         self._unwritten = b""
         self._printed = tempfile.TemporaryFile()  # noqa: SIM115 (as long as this object)

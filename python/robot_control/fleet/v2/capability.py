@@ -66,7 +66,7 @@ class Capabilities:
         if not self.map_id:
             raise _refused("the position of the robot is not initialized: send initPosition")
         if order.zone_set:
-            raise _refused("the robot knows no zones", parameter="zoneSetId")
+            raise _refused("the robot has no zones", parameter="zoneSetId")
         points = 0.0
         nodes = [last or order.nodes[0], *order.nodes[1:]]
         for node in nodes:
@@ -86,7 +86,7 @@ class Capabilities:
                 way = way_of(edge, begin.place, end.place)
                 points += len(way.points) + way.length / JUMP
             if points > MAX_POINTS:
-                why = f"edge {edge.id}: the way has more than {MAX_POINTS} points, one each {STEP:g} to {JUMP:g} m"
+                why = f"edge {edge.id}: the path has more than {MAX_POINTS} points, one each {STEP:g} to {JUMP:g} m"
                 raise _refused(why, edgeId=edge.id, parameter="trajectory")
             for action in edge.actions:
                 self.refuse_action(action, EDGE)

@@ -99,7 +99,7 @@ def way_of(edge: Edge, begin: Place, end: Place) -> Way:
         if field in raw:
             raise refused(field, "cannot be followed by this robot")
     if raw.get("minHeight", 0.0) > 0:
-        raise refused("minHeight", "needs a load handling device, and the robot has none")
+        raise refused("minHeight", "needs a load handling device, but the robot has none")
     for field in ("maxSpeed", "maxRotationSpeed"):
         if raw.get(field, SLOWEST) < SLOWEST:
             raise refused(field, f"must be at least {SLOWEST:g}")
@@ -115,7 +115,7 @@ def way_of(edge: Edge, begin: Place, end: Place) -> Way:
     way = Way(_apart(points), 1, raw.get("maxSpeed", 0.0), raw.get("maxRotationSpeed", 0.0))
     if way.length < SHORTEST:
         if raw.get("orientationType") == "GLOBAL":
-            raise refused("orientation", f"needs an edge of {SHORTEST:g} m: give theta to its last node")
+            raise refused("orientation", f"needs an edge of {SHORTEST:g} m: set theta of its last node")
         return Way(way.points[-1:], 1, way.speed, way.turn_speed)
     if raw.get("rotationAllowed") is False and _sharpest(way) > CORNER:
         raise refused("rotationAllowed", "is false, and the trajectory has a corner")
@@ -138,7 +138,7 @@ def _sign(way: Way, raw: Message, refused: Callable[[str, str], RefusedError]) -
         return 1
     if all(abs(turned(offset - math.pi)) <= SAME_HEADING for offset in offsets):
         return -1
-    raise refused("orientation", "is neither along the edge nor against it: a differential drive cannot")
+    raise refused("orientation", "is not along the edge: a differential drive cannot drive sideways")
 
 
 @dataclass(frozen=True)

@@ -89,7 +89,7 @@ def decoded(payload: bytes, topic: str, manufacturer: str, serial_number: str) -
     check(message, topic)
     for name, own in (("manufacturer", manufacturer), ("serialNumber", serial_number)):
         if message[name] != own:
-            raise _malformed(name, "is that of another robot")
+            raise _malformed(name, "belongs to another robot")
     if message["version"].split(".")[0] != "2":
         raise _malformed("version", "must be 2.0.0 or 2.1.0")
     if not is_time(message["timestamp"]):
@@ -143,20 +143,20 @@ def _read(payload: bytes) -> Message:
     except RecursionError:
         raise _malformed("", TOO_LARGE) from None
     except ValueError as error:
-        raise _malformed("", f"is no JSON of UTF-8: {str(error)[:80]}") from None
+        raise _malformed("", f"is not JSON in UTF-8: {str(error)[:80]}") from None
     if not isinstance(message, dict):
         raise _malformed("", "must be an object")
     return message
 
 
 def _no_constant(name: str) -> float:
-    raise ValueError(f"{name} is no number")
+    raise ValueError(f"{name} is not a number")
 
 
 def _unique(pairs: list[tuple[str, Any]]) -> Message:
     result = dict(pairs)
     if len(result) < len(pairs):
-        raise ValueError("an object has a name twice")
+        raise ValueError("an object contains a name twice")
     return result
 
 

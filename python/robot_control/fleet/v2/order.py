@@ -157,7 +157,7 @@ def _broken_releases(elements: list[Node | Edge]) -> Iterator[tuple[str, str]]:
         yield "the first node must be released", "nodes[0].released"
     for before, after in pairwise(elements):
         if after.released and not before.released:
-            yield "nothing released follows what is not", f"sequenceId {after.sequence}"
+            yield "a released part must not follow an unreleased one", f"sequenceId {after.sequence}"
     for before, after in pairwise(elements):
         if isinstance(before, Edge) and before.released and not after.released:
             yield "an edge is released only with both its nodes", f"sequenceId {before.sequence}"

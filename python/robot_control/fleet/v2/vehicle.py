@@ -129,7 +129,7 @@ class Vehicle:
     def _check_start(self, order: Order, node: Node, near: Near) -> None:
         if not self._stands_on(node) and not near(node):
             kind = "orderUpdateError" if order.id == self.order_id else "orderError"
-            why = f"the robot does not stand on node {node.id}"
+            why = f"the robot is not at node {node.id}"
             raise _refused(order, kind, why, "START_NODE_OUT_OF_RANGE", nodeId=node.id)
 
     def _stands_on(self, node: Node) -> bool:
@@ -199,7 +199,7 @@ class Vehicle:
             return None
         instant = [state for state in self.actions if state.sequence < 0]
         going_on = [state for state in instant if not state.over]
-        why = f"{MAX_INSTANT} instant actions are not over"
+        why = f"{MAX_INSTANT} instant actions have not ended"
         if len(going_on) >= MAX_INSTANT:
             if action.kind not in IMMEDIATE:
                 raise RefusedError("orderError", why, actionId=action.id)
@@ -224,7 +224,7 @@ class Vehicle:
         """Begins cancelOrder (6.6.3); the running actions of the order, which have to be ended."""
         if not self.executing:
             state.end(FAILED, "there is no order")
-            why = "there is no order that could be cancelled"
+            why = "no order can be cancelled"
             self.refuse(Error("noOrderToCancel", why, (("actionId", state.action.id),)))
             return []
         state.status = RUNNING

@@ -39,7 +39,7 @@ def senders_in_words(facts: Facts) -> str:
     if len(senders) == 1 or facts.sources():
         return ", ".join(senders)
     refused = "many_senders" in facts.reasons(facts.controller, "command")
-    consequence = "all are refused" if refused else "each message overrides the one before"
+    consequence = "all are refused" if refused else "each message overrides the previous one"
     return f"{', '.join(senders)} ({len(senders)} senders: {consequence})"
 
 
@@ -60,13 +60,13 @@ def _to_start(facts: Facts, headline: str, *nodes: str) -> Answer:
 def _no_nodes(facts: Facts) -> Answer | None:
     safety = facts.received()
     if safety is None and not facts.master_answers:
-        to_do = (("", "start it with the robot, or set ROS_MASTER_URI to where it runs"),)
-        return Answer(Verdict.STOPPED, f"There is no ROS master at {facts.master}.", to_do, (_launch(facts),))
+        to_do = (("", "start it with the robot, or set ROS_MASTER_URI to its address"),)
+        return Answer(Verdict.STOPPED, f"No ROS master answers at {facts.master}.", to_do, (_launch(facts),))
     absent = missing_nodes(facts)
     if safety is None and len(absent) == len(facts.loop) and facts.refused:
         why, *more = facts.refused.splitlines()
-        actions = tuple(("integrator", line.strip()) for line in more)
-        return Answer(Verdict.STOPPED, f"No node of the robot runs, because it was refused: {why}", actions)
+        actions = tuple(("" if line.startswith("Found: ") else "integrator", line.strip()) for line in more)
+        return Answer(Verdict.STOPPED, f"No node of the robot runs. Its start was refused: {why}", actions)
     if safety is None and len(absent) == len(facts.loop):
         where = "" if facts.namespace == "/" else f" in {facts.namespace}"
         commands = [_launch(facts)]
@@ -76,8 +76,8 @@ def _no_nodes(facts: Facts) -> Answer | None:
         return Answer(Verdict.STOPPED, f"No node of the robot runs{where}.", actions, tuple(commands))
     if safety is None:
         monitor = facts.kind.monitor
-        state = "hangs" if monitor in facts.registered and facts.there(monitor) else "does not run"
-        return _to_start(facts, f"{monitor} {state}: without its permit the gate brakes.", monitor)
+        state = "does not respond" if monitor in facts.registered and facts.there(monitor) else "does not run"
+        return _to_start(facts, f"{monitor} {state}: without its permit, the robot brakes.", monitor)
     return None
 
 
@@ -85,7 +85,7 @@ def _paused(facts: Facts) -> Answer | None:
     if facts.value(facts.driver, "driver_state") != "paused":
         return None
     commands = (f"rosservice call {facts.path(facts.driver)}/set_pause false",)
-    return Answer(Verdict.STOPPED, "The simulation is paused.", (("", "let it run"),), commands)
+    return Answer(Verdict.STOPPED, "The simulation is paused.", (("", "resume the simulation"),), commands)
 
 
 def _starting(facts: Facts) -> Answer | None:
@@ -94,7 +94,7 @@ def _starting(facts: Facts) -> Answer | None:
         return None
     suspicious = facts.value(facts.driver, "suspicious")
     actions = tuple(("technician", line) for line in suspicious.split(". ") if line)
-    return Answer(Verdict.STOPPED, "Not ready: the machine is starting.", actions)
+    return Answer(Verdict.STOPPED, "Not ready: the hardware is starting.", actions)
 
 
 def _stopped(facts: Facts) -> Answer | None:
@@ -104,12 +104,15 @@ def _stopped(facts: Facts) -> Answer | None:
     absent = missing_nodes(facts)
     if safety.awaiting_zero and not safety.causes and not absent:
         senders, silence = facts.commanders(), silent_long_enough(facts.command_timeout)
-        headline = f"Not ready: it waits for a zero request; stop the sender{silence} or send zero."
-        actions = (("operator", f"publishing on {facts.kind.requests}: {senders_in_words(facts)}"),) if senders else ()
+        stop = f"Stop publishing on {facts.kind.requests}{silence}, or publish zero."
+        headline = f"Not ready: waiting for a zero velocity command. {stop}"
+        actions = (
+            (("operator", f"check the senders on {facts.kind.requests}: {senders_in_words(facts)}"),) if senders else ()
+        )
         return Answer(Verdict.STOPPED, headline, actions)
     if safety.state == "INIT" or not safety.causes:
         awaited = ", ".join(safety.missing) or "the first cycles"
-        return _to_start(facts, f"Not ready: the monitor waits: {awaited}.", *absent)
+        return _to_start(facts, f"Not ready: the safety monitor waits for: {awaited}.", *absent)
     causes = sorted(safety.causes, key=lambda cause: not cause.first)
     doing = "Stopping" if safety.state == "STOPPING" else "Stopped"
     measured = f" ({causes[0].detail})" if causes[0].detail else ""
@@ -132,7 +135,7 @@ def _actions(facts: Facts, causes: list[Cause], absent: tuple[str, ...]) -> Iter
             yield cause.actor, cause.remedy
     requested = _requested(facts)
     if requested and facts.commanders():
-        yield "operator", f"stop {', '.join(facts.commanders())}: while a motion is requested, a reset is refused"
+        yield "operator", f"stop {', '.join(facts.commanders())}: a reset is refused while motion is requested"
     yield "operator", "then call e_stop_reset" if named or absent or requested else "call e_stop_reset"
 
 
@@ -152,7 +155,7 @@ def _gate(facts: Facts) -> Answer | None:
         return None
     return Answer(
         Verdict.STOPPED,
-        f"The gate brakes: {next(iter(reasons.values()))}.",
+        f"The driver brakes: {next(iter(reasons.values()))}.",
         tuple(("integrator", text) for name, text in facts.remedies(facts.driver, "gate").items() if name in reasons),
     )
 
@@ -163,9 +166,9 @@ def _navigation(facts: Facts) -> Answer | None:
     if state not in {"waiting", "failed"} or _motion_commanded(facts):
         return None
     waiting = state == "waiting"
-    verdict, what = (Verdict.STOPPED, "waits") if waiting else (Verdict.IDLE, "is given up")
-    then = "; the robot then drives on" if waiting else ", and send the goal again"
-    headline = f"The goal {what}: {facts.reports[NAVIGATE].message}."
+    verdict, what = (Verdict.STOPPED, "The goal waits") if waiting else (Verdict.IDLE, "The goal failed")
+    then = "; the robot then continues" if waiting else ", and send the goal again"
+    headline = f"{what}: {facts.reports[NAVIGATE].message}."
     return Answer(verdict, headline, (("operator", f"remove this cause{then}"),))
 
 
@@ -174,10 +177,10 @@ def _no_path(facts: Facts) -> Answer | None:
         return None
     if facts.kind.legged and "permit_slow" not in facts.reasons(facts.controller, "command"):
         return None  # it stands in the pose that is requested
-    remedy = "clear the path, and publish it on clearance in metres"
+    remedy = "remove the obstacle, and publish the free distance on clearance, in metres"
     if facts.clearance_senders:
         remedy += f": {', '.join(facts.clearance_senders)} {'does' if len(facts.clearance_senders) == 1 else 'do'}"
-    headline = "The path is not free: clearance leaves it no speed."
+    headline = "Blocked: the free distance (clearance) is 0."
     commands = () if facts.clearance_senders else (f"rostopic pub -1 {facts.path('clearance')} std_msgs/Float64 inf",)
     return Answer(Verdict.STOPPED, headline, (("operator", remedy),), commands)
 
@@ -186,8 +189,8 @@ def _locked(facts: Facts) -> Answer | None:
     locked = [state for state in facts.sources().values() if state.startswith("locked by ")]
     if not locked or "commands" in facts.sources().values():
         return None
-    actions = (("operator", "publish false on the topic of this lock, and go on publishing it where it has a timeout"),)
-    return Answer(Verdict.STOPPED, f"The commands are {locked[0]}: the result is zero.", actions)
+    actions = (("operator", "publish false on the topic of this lock; if it has a timeout, publish it repeatedly"),)
+    return Answer(Verdict.STOPPED, f"Blocked: the commands are {locked[0]}; the result is zero.", actions)
 
 
 def _controller(facts: Facts) -> Answer | None:
@@ -218,20 +221,20 @@ def _without_motion(facts: Facts) -> Answer | None:
             continue
         text = reasons[name]
         if name == "timed_out" and facts.value(facts.controller, "requested_m_s"):
-            text += " and so is taken for zero"
+            text += " and therefore counts as zero"
         remedy = remedies.get(name, "")
         if facts.senders:
-            remedy = f"look at {', '.join(facts.senders)}: {remedy}"
-        headline = f"It may move, but no velocity command is being received: {text}."
+            remedy += f" (sender: {', '.join(facts.senders)})"
+        headline = f"Ready: no velocity command is received: {text}."
         commands = () if facts.senders else (_run(facts, "send_cmd.py"),)
         return Answer(Verdict.IDLE, headline, (("operator", remedy),), commands)
     if "holding" in reasons and not _motion_commanded(facts):
         return Answer(
             Verdict.IDLE,
-            "It may move, but no command source sends."
+            "Ready: no command source sends."
             if facts.sources() and "commands" not in facts.sources().values()
-            else "It may move, but the command is to stand: cmd_vel is zero.",
-            (("operator", f"publishing on {facts.kind.requests}: {senders_in_words(facts)}"),),
+            else "Ready: standstill is commanded; cmd_vel is zero.",
+            (("operator", f"check the senders on {facts.kind.requests}: {senders_in_words(facts)}"),),
         )
     return None
 
@@ -252,15 +255,15 @@ def _motion_commanded(facts: Facts) -> bool:
 
 
 def _moving(facts: Facts) -> Answer:
-    slow = f", no faster than {facts.speed_limit:.2g} m/s" if facts.speed_limit < float("inf") else ""
+    slow = f", at most {facts.speed_limit:.2g} m/s" if facts.speed_limit < float("inf") else ""
     suspicious = facts.value(facts.driver, "suspicious")
     if suspicious and _motion_commanded(facts):
-        actions = (("integrator", "look at what touches the ground, and at the <collision> shapes of the links named"),)
+        actions = (("integrator", "check what touches the ground, and the <collision> shapes of the links named"),)
         commands = ("rosrun robot_control inspect_robot.py FILE",)
-        return Answer(Verdict.MOVING, f"It may not move as commanded: {suspicious}.", actions, commands)
+        return Answer(Verdict.MOVING, f"Moving, perhaps not as commanded: {suspicious}.", actions, commands)
     if facts.measured is not None and max(map(abs, facts.measured)) > MOVING:
-        return Answer(Verdict.MOVING, f"It moves: {speeds(facts.measured)}{slow}.")
+        return Answer(Verdict.MOVING, f"Moving: {speeds(facts.measured)}{slow}.")
     if _motion_commanded(facts) and facts.limited is not None:
-        headline = f"It is commanded to move ({speeds(facts.limited)}) and has not begun to{slow}."
-        return Answer(Verdict.MOVING, headline, (("", "if it stays so: look at ground, motors and torque limits"),))
-    return Answer(Verdict.IDLE, f"It may move{slow}; nothing stands against it, and no motion is requested.")
+        headline = f"Starting: motion is commanded ({speeds(facts.limited)}), but the robot does not move yet{slow}."
+        return Answer(Verdict.MOVING, headline, (("", "if this persists: check ground, motors and torque limits"),))
+    return Answer(Verdict.IDLE, f"Ready{slow}: no motion is requested.")

@@ -7,8 +7,10 @@ BY_LATENESS = frozenset(
     {"driver_lost", "controller_lost", "estimator_lost", "monitor_late", "command_stale", "gate_refuses"}
 )
 """causes of a stop that a loop without its processor time has; a process that died has them, too"""
-SENTENCE = "the loop was late, because the machine was busy"
-REMEDY = "end other programs, or grant real-time privileges (scripts/privileges); in simulation clock:=lockstep"
+SENTENCE = "the loop was late, because other programs used the CPU"
+REMEDY = (
+    "stop other programs, or set real-time privileges (scripts/privileges install); in simulation use clock:=lockstep"
+)
 ACTOR = "integrator"
 
 

@@ -56,9 +56,9 @@ def parse_options(arguments: Sequence[str]) -> argparse.Namespace:
     """Reads the command line (without the program's name); ends the program on a wrong one."""
     parser = argparse.ArgumentParser(
         prog="calibrate.py",
-        description="Measures what wheels and IMU cannot know of themselves: drives a distance and a UMBmark square, "
-        "asks what the tape says, and writes wheel radius, wheel base and the ratio of the radii as parameters.",
-        epilog="--distance 0 or --side 0 leaves that part out.",
+        description="Drives a distance and a UMBmark square, and reads the distances measured by tape. Writes wheel "
+        "radius, wheel base and the ratio of the radii as parameters.",
+        epilog="--distance 0 or --side 0 skips that part.",
     )
     add = parser.add_argument
     add("--distance", type=not_negative, default=3.0, help="m of a straight drive (default %(default)s)")
@@ -67,15 +67,19 @@ def parse_options(arguments: Sequence[str]) -> argparse.Namespace:
     add("--runs", type=number_of_sends, default=5, help="squares each way (default %(default)s)")
     add("--speed", type=positive, default=0.3, help="m/s at most (default %(default)s)")
     add("--turn-speed", type=positive, default=0.6, help="rad/s at most (default %(default)s)")
-    add("--manual", action="store_true", help="another sender drives the robot, or a person pushes it: nothing is sent")
+    add(
+        "--manual",
+        action="store_true",
+        help="another sender drives the robot, or a person pushes it: no command is sent",
+    )
     add("--truth", action="store_true", help="simulation: ground_truth/odom is the tape")
-    add("--yes", action="store_true", help="asks for no permission: the path is free")
+    add("--yes", action="store_true", help="does not ask whether the path is free")
     add("--measured", type=positive, nargs="+", default=[], metavar="M", help="answers for the straight drives, m")
     add("--returned", type=place, nargs="+", default=[], metavar="X,Y", help="answers for the squares, m")
     add("--out", type=given_path, default=Path("calibrated.yaml"), help="(default %(default)s)")
     given = parser.parse_args(list(arguments))
     if given.distance == 0 and given.side == 0:
-        parser.error("--distance 0 and --side 0 leave nothing to do")
+        parser.error("--distance 0 and --side 0: nothing to do")
     for name in ("distance", "side"):
         if 0 < getattr(given, name) < 0.5:
             parser.error(f"--{name}: below 0.5 m a tape's {1000 * law.TAPE:g} mm are more than the wheels' errors")
@@ -90,7 +94,7 @@ def margin(length: float) -> float:
 def space(options: argparse.Namespace) -> str:
     """The space that must be free, as text."""
     if options.manual:
-        return "Another sender or a person moves the robot; nothing is sent."
+        return "Another sender or a person moves the robot; no command is sent."
     needs = []
     if options.distance > 0:
         beside = margin(options.distance)
@@ -101,15 +105,15 @@ def space(options: argparse.Namespace) -> str:
             f"from {beside:g} m behind it to {options.side + beside:g} m ahead, and {options.side + beside:g} m to "
             "either side, for squares to the right and to the left"
         )
-    return "It drives by itself and sees nothing. It needs " + ", then ".join(needs) + "."
+    return "The robot drives by itself and does not detect obstacles. It needs " + ", then ".join(needs) + "."
 
 
 def implausible_distance(measured: float, by_wheels: float) -> str:
     """Why the tape cannot have measured that; empty if it can."""
     if abs(measured - by_wheels) <= WRONG * by_wheels:
         return ""
-    what = f"{measured:g} m where the wheels say {by_wheels:.3f} m"
-    return f"{what}: more than {WRONG:.0%} off. Is it in metres, and between the two marks?"
+    what = f"{measured:g} m, but the wheels measured {by_wheels:.3f} m"
+    return f"{what}: more than {WRONG:.0%} off. Check that it is in metres, between the two marks"
 
 
 def implausible_return(returned: tuple[float, float], side: float) -> str:
@@ -117,7 +121,7 @@ def implausible_return(returned: tuple[float, float], side: float) -> str:
     if math.hypot(*returned) <= FAR * side:
         return ""
     what = f"{math.hypot(*returned):.2f} m from the start after a square of {side:g} m"
-    return f"{what}: more than {FAR:.0%} of a side. Is it in metres, x ahead and y to the left of the first mark?"
+    return f"{what}: more than {FAR:.0%} of a side. Check: metres, x ahead and y to the left of the first mark"
 
 
 def wheels_of(robot: Mapping[str, Any]) -> law.Wheels:
@@ -144,8 +148,8 @@ def evaluate(
     ):
         if not low <= value <= high:
             raise law.NotCalibratedError(
-                f"the {name} would be {value:.4f} times its nominal value, beyond {low:g} … {high:g}: look at the "
-                "measurements (m; x ahead, y left) and at the description (rosrun robot_control inspect_robot.py)"
+                f"the {name} would be {value:.4f} times its nominal value, beyond {low:g} … {high:g}. Check the "
+                "measurements (m; x forward, y left) and the URDF (rosrun robot_control inspect_robot.py)"
             )
     rows = [("", "nominal", "measured", "factor")]
     radius = _radius(robot)
@@ -223,7 +227,7 @@ def _warnings(
 ) -> list[str]:
     said = []
     if squares and not straights:
-        said.append("no straight drive: the common radius stays nominal, and the wheel base is right for it alone")
+        said.append("no straight drive: the common radius stays nominal, and the wheel base is valid only for it")
     if straights and not squares:
         said.append(
             "no squares: ratio of the radii and wheel base stay nominal; the estimator learns them from its gyro"

@@ -147,7 +147,7 @@ def fit(straights: Sequence[Straight], squares: Sequence[Square], wheels: Wheels
 
     found = least_squares(residual, np.ones(np.count_nonzero(free)), bounds=(1 - FARTHEST, 1 + FARTHEST))
     if not found.success or found.active_mask.any():
-        why = "no wheels explain these numbers: look at units (m), signs (x ahead, y left) and directions"
+        why = "these numbers are not consistent: check units (m), signs (x forward, y left) and directions"
         raise NotCalibratedError(why)
     deviations = np.zeros(3)
     deviations[free] = _deviations(found.jac, found.fun)

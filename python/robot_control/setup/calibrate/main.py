@@ -98,7 +98,7 @@ class Wizard:
         path, truth = self._driven(drive, f"straight drive {number + 1} of {self.options.repeats}")
         by_wheels = float(np.linalg.norm(law.replay(path, self.wheels, law.Truth())[-1, :2]))
         objection = partial(evaluation.implausible_distance, by_wheels=by_wheels)
-        question = f"m between the two marks, by tape (the wheels say {by_wheels:.3f}):"
+        question = f"m between the two marks, by tape (the wheels measured {by_wheels:.3f}):"
         return law.Straight(path, self._answer(math.hypot(*truth), self.lengths, question, float, objection))
 
     def _answer(
@@ -140,7 +140,7 @@ class Wizard:
         if hops.sum() < MIN_DISTANCE:
             raise RefusedError(f"{title}: the wheels have not turned")
         if hops.max() > MAX_HOP:
-            why = f"{title}: wheel_odom jumped by {hops.max():.2f} m: was the odometry or the robot reset?"
+            why = f"{title}: wheel_odom jumped by {hops.max():.2f} m: check whether the odometry or the robot was reset"
             raise RefusedError(why)
         if begin is None:
             return path, (0.0, 0.0)
@@ -197,16 +197,16 @@ class Wizard:
     def _permission(self, question: str) -> None:
         if not self.options.yes:
             if not self.questions.yes(question):
-                raise RefusedError("as you say. Nothing is written")
+                raise RefusedError("as you say. No file is written")
             self.robot.requested = time.monotonic()
         reason = "" if self.options.manual else hindrance(self.robot.observe(self.senders))
         if reason:
-            raise RefusedError(f"{reason}. Nothing is written")
+            raise RefusedError(f"{reason}. No file is written")
 
     @staticmethod
     def _refuse(reason: str) -> None:
         if reason:
-            raise RefusedError(f"{reason}. Nothing is written")
+            raise RefusedError(f"{reason}. No file is written")
 
 
 @one_message("calibrate.py", *REFUSALS)

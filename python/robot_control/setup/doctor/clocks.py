@@ -20,7 +20,7 @@ def source(system: System) -> Finding:
     if current in SLOW:
         offered = (system.text(name.replace("current", "available")) or "").split()
         better = next((each for each in offered if each not in SLOW), "")
-        remedy = f"use {better}" if better else "see why in the kernel's log: dmesg | grep -i clocksource"
+        remedy = f"use {better}" if better else "check the log of the kernel: dmesg | grep -i clocksource"
         value = f"{current}: a reading takes microseconds"
         return warning(value, remedy, *([f"echo {better} | sudo tee /{name}"] if better else []))
     return ok(current)

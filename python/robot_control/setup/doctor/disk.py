@@ -86,7 +86,7 @@ def shared_memory(system: System) -> Finding:
     free = _free(system, "/dev/shm")
     value = f"{size / 1e6:.0f} MB of robots" + ("" if free is None else f", {free / 1e6:.0f} MB free")
     if free is not None and free < SHARED_NEEDED:
-        remedy = "remove what is left, or enlarge it (docker run --shm-size=256m)"
+        remedy = "remove old files, or enlarge it (docker run --shm-size=256m)"
         return fault(value, remedy, "sudo mount -o remount,size=256m /dev/shm")
     if size > SHARED_LEFT and not running:
         return warning(f"{value}, and no node runs", "remove what is left behind", "rm /dev/shm/robot_control.*")

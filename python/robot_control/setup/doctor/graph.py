@@ -93,7 +93,7 @@ def master(system: System) -> Finding:
         remedy = "end what listens there: ss -tlnp, or restart roscore"
         return fault(f"{value}, although something listens there", remedy)
     if remote_host(system):
-        return fault(value, f"start roscore on {found[0]}, or correct ROS_MASTER_URI; a firewall may stand between")
+        return fault(value, f"start roscore on {found[0]}, or correct ROS_MASTER_URI; a firewall may block it")
     return note(value, "start the robot, which also starts a master", "roslaunch robot_control sim.launch")
 
 
@@ -118,7 +118,7 @@ def simulated_time(known: Graph) -> Finding:
     simulated = known.parameters.get("use_sim_time", False)
     lockstep = _block(known, "robot").get("clock") == "lockstep"
     if simulated and not known.published.get("/clock"):
-        value = "/use_sim_time is true, and no node publishes /clock: time stands still"
+        value = "/use_sim_time is true, and no node publishes /clock: the simulated time is stopped"
         remedy = "remove it, unless a simulation in lockstep is about to start"
         return fault(value, remedy, "rosparam set /use_sim_time false", "rosparam delete /robot/clock")
     if lockstep and not simulated:
@@ -192,7 +192,7 @@ def other_master(system: System) -> Finding:
         return ok("no node of a robot runs here")
     ports = {uri.rsplit(":", 1)[-1] for uri in masters}
     if str(found[1]) not in ports:
-        value = f"the robot runs at {', '.join(masters)}, this terminal asks port {found[1]}"
+        value = f"the robot runs at {', '.join(masters)}, this terminal uses port {found[1]}"
         command = f"export ROS_MASTER_URI={shlex.quote(masters[0])}"
         return warning(value, "use the robot's master in this terminal", command)
     return ok(", ".join(masters))

@@ -51,7 +51,7 @@ def steering(system: System) -> Finding:
         )
     total = sum(counts[core] for counts, _ in devices.values() if core < len(counts))
     rate = total / system.uptime if system.uptime else 0.0
-    value = f"{rate:.0f}/s from devices on core {core} since the start of the machine"
+    value = f"{rate:.0f}/s from devices on core {core} since the start of the computer"
     if rate > MAX_RATE:
         return warning(value, "steer them to other cores, or set robot.core to another one (docs/realtime.md)")
     return ok(value)

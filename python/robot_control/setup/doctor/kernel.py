@@ -99,7 +99,7 @@ def pressure(system: System) -> Finding:
 CHECKS = (
     Check("preemption", "the kernel decides how soon a woken thread runs", preemption),
     Check("rt_throttling", "the kernel stops all real-time threads beyond this share of a core", throttling),
-    Check("rt_group_budget", "a control group may forbid SCHED_FIFO in spite of every privilege", group_budget),
+    Check("rt_group_budget", "a control group may forbid SCHED_FIFO despite every privilege", group_budget),
     Check("timers", "the driver sleeps until its next cycle", timers),
     Check("cpu_pressure", "threads without real-time priority wait for a processor", pressure),
 )

@@ -99,7 +99,7 @@ def main() -> int:
     """Entry point of scripts/doctor.py."""
     given = parse(sys.argv[1:])
     if not Path(given.root).is_dir():
-        sys.exit(f"doctor.py: --root {given.root} is no folder")
+        sys.exit(f"doctor.py: --root {given.root} is not a folder")
     system = System(Path(given.root).absolute(), _robot_block(given.params))
     rows = examine(system) + ([] if given.measure is None else _measured(system, given.measure))
     print(as_json(rows) if given.json else "\n".join(commands(rows) if given.fix else lines(rows)))

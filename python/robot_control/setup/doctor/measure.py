@@ -71,7 +71,7 @@ def measure(system: System, pairs: int) -> list[Row]:
     """The findings, idle and under load."""
     require_programs()
     rows = []
-    for load, why in (("idle", "what the machine can do at best"), ("load", "what other programs cost")):
+    for load, why in (("idle", "the best that this computer can do"), ("load", "what other programs cost")):
         measured = []
         for number in range(pairs):
             print(f"doctor.py: {load}, pair {number + 1} of {pairs}", file=sys.stderr)
@@ -91,13 +91,13 @@ def judge(pairs: Sequence[Pair], period: float) -> Finding:
     what = f"p99 {own:.0f} µs, cyclictest {reference:.0f} µs, ratio {median(ratios):.2f}"
     value = f"{what} ({lowest:.2f} … {highest:.2f}, {len(pairs)} pairs of {SECONDS} s)"
     if reference > MAX_SHARE * period:
-        return warning(value, "the machine itself is late: see the other findings; docs/realtime.md has the steps")
+        return warning(value, "the computer itself is late: see the other findings; docs/realtime.md has the steps")
     if lowest > MAX_RATIO and len(pairs) < MIN_PAIRS:
         return note(value, f"measure {MIN_PAIRS} pairs or more, which can judge the nodes")
     if lowest > MAX_RATIO:
         return warning(
             value,
-            "the nodes are later than the machine: see realtime_priority and memory_lock above, and docs/realtime.md",
+            "the nodes are later than the computer: see realtime_priority and memory_lock above, and docs/realtime.md",
         )
     if own > MAX_SHARE * period:
         return note(value, "lower robot.rate, or follow docs/realtime.md")

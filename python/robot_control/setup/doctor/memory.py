@@ -91,7 +91,7 @@ def free_memory(system: System) -> Finding:
         free = min(free, limit - used)
     value = f"{free / 1e6:.0f} MB free"
     if free < MIN_MEMORY:
-        return warning(value, "end other programs, or raise the memory limit of the container")
+        return warning(value, "stop other programs, or set a larger memory limit of the container")
     return ok(value)
 
 

@@ -9,7 +9,7 @@ NO_DEVICE = "remove robot.cpu_dma_latency from your parameters"
 DEEP_STATE = 50
 """µs, exit latency of an idle state that a 1 kHz loop notices"""
 THROTTLED_SHARE = 0.01
-"""Share of the time since the start of the machine"""
+"""Share of the time since the start of the computer"""
 
 
 def _core(system: System) -> int:
@@ -100,7 +100,7 @@ def writable(system: System, name: str) -> bool:
 
 
 def throttled(system: System) -> Finding:
-    """The heat limit of the loop's core since the start of the machine, and the temperature now."""
+    """The heat limit of the loop's core since the start of the computer, and the temperature now."""
     hot = []
     for zone in system.names("sys/class/thermal/thermal_zone*"):
         temperature = system.number(f"{zone}/temp")
@@ -113,13 +113,13 @@ def throttled(system: System) -> Finding:
             hot.append(f"{system.text(f'{zone}/type')} {temperature / 1000:.0f} °C")
     count = system.number(f"{CPU}/cpu{_core(system)}/thermal_throttle/core_throttle_count")
     spent = system.number(f"{CPU}/cpu{_core(system)}/thermal_throttle/core_throttle_total_time_ms")
-    remedy = "cool the machine: clean the fan, lower the load, or limit the frequency yourself"
+    remedy = "cool the computer: clean the fan, lower the load, or limit the frequency yourself"
     if hot:
         return warning(f"too hot now: {', '.join(hot)}", remedy)
     count = system.seen(count, f"{CPU}/cpu{_core(system)}/thermal_throttle")
     if count and spent and system.uptime and spent / 1000 > THROTTLED_SHARE * system.uptime:
-        return warning(f"throttled {count} times, {spent / 1000:.0f} s since the start of the machine", remedy)
-    return ok(f"throttled {count} times since the start of the machine")
+        return warning(f"throttled {count} times, {spent / 1000:.0f} s since the start of the computer", remedy)
+    return ok(f"throttled {count} times since the start of the computer")
 
 
 def isolation(system: System) -> Finding:
@@ -140,12 +140,12 @@ def siblings(system: System) -> Finding:
     listed = system.seen(shown, f"{CPU}/cpu{_core(system)}/topology")
     others = cores_of(listed) - {_core(system)}
     if not others:
-        return ok("the loop's core is no half of another")
+        return ok("the loop's core has no SMT sibling")
     isolated = cores_of(system.text(f"{CPU}/isolated"))
     value = f"core {_core(system)} shares its units with {', '.join(map(str, sorted(others)))}"
     if _core(system) in isolated and not others <= isolated:
         command = f"echo off | sudo tee /{CPU}/smt/control"
-        return warning(f"{value}, which is not isolated", "isolate it, too, or switch SMT off", command)
+        return warning(f"{value}, which is not isolated", "also isolate it, or switch SMT off", command)
     return note(value, "keep it free of work, or switch SMT off") if not system.kind else ok(value)
 
 
@@ -160,7 +160,7 @@ def quota(system: System) -> Finding:
     ]
     if stopped and int(stopped[0].split()[1]) > 0:
         value = f"{limit.replace(' ', ' of ')} µs, stopped {stopped[0].split()[1]} times"
-        return warning(value, "raise the quota (docker run --cpus), or grant SCHED_FIFO, which has no quota")
+        return warning(value, "set a larger quota (docker run --cpus), or grant SCHED_FIFO, which has no quota")
     return ok(f"{limit.replace(' ', ' of ')} µs, never spent")
 
 
@@ -168,7 +168,7 @@ CHECKS = (
     Check("core", "the chain is pinned to one core, where a wake-up costs 6 instead of 31 µs", granted),
     Check("governor", "at a lower frequency every step takes longer", governor),
     Check("idle_states", "a sleeping core needs this time before the woken thread runs", idle_states),
-    Check("throttling", "a hot core lowers its frequency whatever the governor says", throttled),
+    Check("throttling", "a hot core lowers its frequency with any governor", throttled),
     Check("isolated_cores", "the scheduler puts ordinary threads on every other core", isolation),
     Check("smt_siblings", "the other half of the core slows each step down", siblings),
     Check("cpu_quota", "a spent quota stops the nodes for up to a period of 100 ms", quota),

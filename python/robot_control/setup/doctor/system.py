@@ -119,7 +119,7 @@ class System:
         """The core on which the loop runs; None: any."""
         core = self.robot.get("core", 0)
         if isinstance(core, bool) or not isinstance(core, int):
-            raise ValueError(f"robot.core is {core!r}, no number of a core: the nodes refuse it")
+            raise ValueError(f"robot.core is {core!r}, not the number of a core: the nodes refuse it")
         return core if core >= 0 else None
 
     def status(self, key: str) -> str:
@@ -148,7 +148,7 @@ class System:
 
     @cached_property
     def uptime(self) -> float | None:
-        """s since the start of the machine."""
+        """s since the start of the computer."""
         found = re.match(r"[\d.]+", self.text("proc/uptime") or "")
         return float(found[0]) if found else None
 

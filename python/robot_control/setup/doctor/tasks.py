@@ -1,4 +1,4 @@
-"""Threads and processor times from /proc: two samples, or one since the start of the machine."""
+"""Threads and processor times from /proc: two samples, or one since the start of the computer."""
 
 import functools
 import time

@@ -63,10 +63,10 @@ def host_name(system: System) -> Finding:
         return ok("not used: ROS_IP is set")
     announced = system.seen(announced or None, "proc/sys/kernel/hostname")
     if not re.fullmatch(r"[A-Za-z0-9._:-]+", announced):
-        value = f"{announced!r} is no name of a host"
+        value = f"{announced!r} is not the name of a host"
         if system.environment.get("ROS_HOSTNAME"):
             return fault(value, "unset ROS_HOSTNAME", "unset ROS_HOSTNAME")
-        return fault(value, "rename the machine, or set ROS_IP", "sudo hostnamectl set-hostname robot")
+        return fault(value, "rename the computer, or set ROS_IP", "sudo hostnamectl set-hostname robot")
     if _resolves(system, announced):
         return ok(announced)
     # Launch files of this package use the loopback, unless the network is configured.
@@ -92,14 +92,14 @@ def ros_ip(system: System) -> Finding:
         return ok("not set")
     own = system.seen(_own_addresses(system) or None, "proc/net/fib_trie")
     if given.startswith("127.") and not remote_host(system):
-        return ok(f"{given}: this machine alone")
+        return ok(f"{given}: this computer only")
     if given.startswith("127."):
         value = f"{given}, and the master is on {remote_host(system)}: no other machine can connect"
         remedy = "set ROS_IP to an address of this machine"
         return fault(value, remedy, *(f"export ROS_IP={each}" for each in sorted(own) if not each.startswith("127.")))
     if given not in own:
         remedy = f"set it to one of {', '.join(sorted(own))}, or unset it"
-        return fault(f"{given} is no address of this machine", remedy, "unset ROS_IP")
+        return fault(f"{given} is not an address of this computer", remedy, "unset ROS_IP")
     return ok(given)
 
 
@@ -130,9 +130,9 @@ def workspace(_: System) -> Finding:
 CHECKS = (
     Check("package", "rosrun and roslaunch find programs by this path", package),
     Check("build", "most programs of the package need its compiled part", workspace),
-    Check("python", "ROS is installed for Debian's Python alone", python),
-    Check("ros_python", "the programs speak to nodes through it", ros_python),
+    Check("python", "ROS is installed only for Debian's Python", python),
+    Check("ros_python", "the programs connect to nodes through it", ros_python),
     Check("host_name", "other nodes connect to the name that a node announces", host_name),
     Check("ros_ip", "other nodes connect to the address that a node announces", ros_ip),
-    Check("master_address", "every node asks this master for the others", master_address),
+    Check("master_address", "every node finds the others through this master", master_address),
 )

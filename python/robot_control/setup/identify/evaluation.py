@@ -35,11 +35,11 @@ def parse_options(arguments: list[str]) -> argparse.Namespace:
     parser.add_argument("--output", type=given_path, default=Path("identified.yaml"), help="(default %(default)s)")
     parser.add_argument("--log", type=given_path, help="run.bag to fit; nothing is driven")
     parser.add_argument("--params", type=given_path, help="parameter file of the log; default: the installed one")
-    parser.add_argument("--urdf", type=given_path, help="robot of the log; default: that of the parameters")
+    parser.add_argument("--urdf", type=given_path, help="robot of the log; default: from the parameters")
     given = parser.parse_args(arguments)
     for name in ("params", "urdf"):
         if getattr(given, name) is not None and given.log is None:
-            parser.error(f"--{name} belongs to --log: a running robot says itself what it is")
+            parser.error(f"--{name} needs --log: a running robot reports this itself")
     return given
 
 

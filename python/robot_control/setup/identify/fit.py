@@ -111,8 +111,8 @@ def _seconds(parts: Sequence[law.Regression], period: float) -> float:
 def _refuse_short(signals: Sequence[law.Signals], base: law.Base, period: float, width: int) -> None:
     seconds = _seconds([law.regression(one, base, period, width, 0) for one in signals], period)
     if seconds < MIN_SECONDS:
-        what = f"the wheels turn for {seconds:.1f} s in which nothing interferes, of {MIN_SECONDS:g} s needed"
-        raise UnfitError(f"{what}: drive longer and faster, give it more space")
+        what = f"the wheels turn for {seconds:.1f} s without disturbance, of {MIN_SECONDS:g} s needed"
+        raise UnfitError(f"{what}: drive longer and faster, with more space")
 
 
 def _effort_lag(log: Log, stretches: Sequence[slice], base: law.Base) -> int:
@@ -209,25 +209,25 @@ def _fit_side(base: law.Base, side: int, parts: Sequence[law.Regression], period
     left_over = float(np.sqrt(np.mean(solution.residual**2)))
     if left_over > LEFT_OVER * effort:
         raise UnfitError(
-            f"{named}: torque and motion do not fit: {left_over:.3g} N·m of {effort:.3g} N·m RMS are left over, "
-            f"{LEFT_OVER:.0%} are allowed; drive on even ground that carries, with nothing in the way, and slower"
+            f"{named}: torque and motion do not fit: {left_over:.3g} N·m of {effort:.3g} N·m RMS remain, "
+            f"allowed are {LEFT_OVER:.0%}. Drive slower, on even and firm ground, without obstacles"
         )
     for name, remedy in (("straight", "ramps forwards and back"), ("turning", "turns on the spot, both ways")):
         inertia = found[name]
         if not np.isfinite(inertia.value) or not np.isfinite(inertia.error):
             what = f"{named}: the inertia {name} cannot be determined from this log"
-            raise UnfitError(f"{what}: it holds no {remedy}. identify.py without --log drives them")
+            raise UnfitError(f"{what}: it contains no {remedy}. identify.py without --log drives them")
         if not inertia.error < INERTIA_ERROR * abs(inertia.value):
             raise UnfitError(
                 f"{named}: the inertia {name} is {inertia:.3g} kg·m², its standard error must be below "
-                f"{INERTIA_ERROR:.0%}: the log holds too little of it; drive more {remedy}, faster or longer"
+                f"{INERTIA_ERROR:.0%}. The log contains too little of it; drive more {remedy}, faster or longer"
             )
         if inertia.value <= 0:
             both = found["straight"].value <= 0 and found["turning"].value <= 0
             cause = (
-                "torque and motion contradict each other; look whether the joint's effort has the sign of its motion"
+                "torque and motion contradict each other; check that the joint's effort has the sign of its motion"
                 if both
-                else f"the log holds too little of it; drive more {remedy}, faster or longer"
+                else f"the log contains too little of it; drive more {remedy}, faster or longer"
             )
             raise UnfitError(f"{named}: the inertia {name} comes out as {inertia:.3g} kg·m², must be > 0: {cause}")
     friction = max(found["damping"].error * fastest, found["friction"].error)
@@ -237,7 +237,7 @@ def _fit_side(base: law.Base, side: int, parts: Sequence[law.Regression], period
     if not friction < max(FRICTION_ERROR * effort, 1e-9):
         raise UnfitError(
             f"{named}: the friction is known to {friction:.2g} N·m, {FRICTION_ERROR:.0%} of the RMS torque "
-            f"{effort:.2g} N·m are needed: drive at several speeds, both ways, longer"
+            f"{effort:.2g} N·m are needed. Drive at several speeds, both ways, longer"
         )
     names = ("straight", "turning", "damping", "friction", "scrub")
     return SideFit(joints, **{name: found[name] for name in names}, residual=left_over, effort=effort)

@@ -45,9 +45,7 @@ def main() -> None:
 
 
 def _fit(log: dict[str, FloatArray], settings: Settings, options: argparse.Namespace, source: str) -> None:
-    restart = (
-        f"start {CONTROLLER} again, then rosservice call e_stop_reset: a restart beside the running robot is a stop"
-    )
+    restart = f"start {CONTROLLER} again, then rosservice call e_stop_reset: a restart while the robot runs is a stop"
     evaluate(log, settings, options.mass, source).deliver(options.output, restart)
 
 
@@ -63,13 +61,13 @@ def _drive(settings: Settings, options: argparse.Namespace, signals: Signals) ->
     observed = robot.observe(senders)
     reason = hindrance(observed)
     if reason:
-        raise RefusedError(f"{reason}. Nothing was driven")
+        raise RefusedError(f"{reason}. The robot was not driven")
     running = None
     if telemetry:
         await_all(lambda: any(name in robot.logs for name in telemetry), signals)
         running = next((robot.logs[name] for name in telemetry if name in robot.logs), None)
         if running is None:
-            raise RefusedError(f"{telemetry[0]} runs, but does not say where it writes; end it. Nothing was driven")
+            raise RefusedError(f"{telemetry[0]} runs, but does not report its file; stop it. The robot was not driven")
     with recording(running, settings.path, signals.going_on) as log:
         print(
             f"driving {excitation.seconds:.0f} s: up to {excitation.linear:.2f} m/s, {excitation.reach:.2f} m ahead "
@@ -102,7 +100,7 @@ def _follow(robot: RunningRobot, excitation: Excitation, signals: Signals) -> No
                     interruption(observed, start, excitation.reach, unanswered) if signals.going_on() else "interrupted"
                 )
                 if reason:
-                    raise RefusedError(f"{reason}. A zero was sent, nothing is written")
+                    raise RefusedError(f"{reason}. A zero was sent, no file is written")
                 robot.send(move.linear, move.angular)
                 time.sleep(min(PERIOD, begin + move.seconds - now))
                 last, now = now, time.monotonic()

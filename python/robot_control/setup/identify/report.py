@@ -60,12 +60,12 @@ def warnings(found: Identification, proposal: Proposal) -> list[str]:
     said = []
     delay = round(found.delay.value)
     if proposal.margins_before.delay < delay + RESERVE:
-        what = f"the gains so far bear {proposal.margins_before.delay} cycles of delay, {delay} were measured"
-        said.append(f"{what}: wheels that lose grip may fall into a limit cycle")
+        what = f"the present gains tolerate {proposal.margins_before.delay} cycles of delay, {delay} were measured"
+        said.append(f"{what}: wheels that lose friction may oscillate")
     if not proposal.derived_bear:
         said.append("the gains are slower than those derived from the robot, for the delay's sake")
     if not proposal.weighed:
-        said.append("a wheel's own inertia cannot be seen on the ground: give --mass KG of a robot that was weighed")
+        said.append("a wheel's own inertia cannot be seen on the ground: set --mass KG of the weighed robot")
     left, right = found.sides
     for name in ("straight", "turning", "friction"):
         one, other = getattr(left, name), getattr(right, name)
@@ -73,7 +73,7 @@ def warnings(found: Identification, proposal: Proposal) -> list[str]:
         mean = abs(one.value + other.value) / 2
         if unlike > UNLIKE * mean and unlike > 3 * (one.error + other.error):
             what = f"{name}: left {_measured(one)}, right {_measured(other)}"
-            said.append(f"{what}: the sides are unlike, and one value is proposed for both. Look at gears, tyres, load")
+            said.append(f"{what}: the sides differ, but one value is proposed for both. Check gears, tyres and load")
     return said
 
 

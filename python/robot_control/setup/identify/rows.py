@@ -31,8 +31,8 @@ def fit_rows(log: Log, joints: Sequence[str]) -> tuple[list[slice], float]:
     """
     missing = [joint for joint in joints if f"{joint}_effort_command" not in log]
     if missing:
-        what = f"the log is of another robot: it has no joint {', '.join(missing)}, but {', '.join(joint_names(log))}"
-        raise UnfitError(f"{what}; give it the parameters it was driven with")
+        what = f"the log is from another robot: it has no joint {', '.join(missing)}, but {', '.join(joint_names(log))}"
+        raise UnfitError(f"{what}; set the parameters of this log")
     cycle, time = log["cycle"], log["time"]
     if len(cycle) < 2:
         raise UnfitError("the log has no two cycles: drive first")
@@ -40,26 +40,26 @@ def fit_rows(log: Log, joints: Sequence[str]) -> tuple[list[slice], float]:
 
     driven = _driven(log, joints)
     if not driven.any():
-        raise UnfitError(f"no cycle of the log was driven: {_why_not(log)}")
+        raise UnfitError(f"the robot did not drive in this log: {_why_not(log)}")
     moving = driven & _any_wheel_planned(log, joints)
     if not moving.any():
-        raise UnfitError("the wheels were asked for nothing but zero: drive ramps and turns, or let this tool do it")
+        raise UnfitError("only zero was requested: drive ramps and turns, or use this tool")
     for joint in joints:
         effort = log[f"{joint}_effort"][moving]
         if np.ptp(effort) == 0:
             what = f"{joint}: its measured effort is {effort[0]:g} N·m throughout: the driver does not measure it"
-            raise UnfitError(f"{what}; let it report at least the commanded effort")
+            raise UnfitError(f"{what}; set it to report at least the commanded effort")
     clamped = driven & (_bits(log, "gate_reasons", CLAMPED) | _bits(log, "command_reasons", SATURATED))
     _refuse(
         clamped & moving,
         moving,
         CLAMPED_SHARE,
         "torque or speed of a wheel was at its limit",
-        "lower --max-speed, max_linear_acceleration and max_angular_acceleration; where the wheels buzz, drive with "
-        "half of pid_kp and a quarter of pid_ki: gains that are too high for a late torque do that",
+        "reduce --max-speed, max_linear_acceleration and max_angular_acceleration; if the wheels oscillate, drive with "
+        "half of pid_kp and a quarter of pid_ki",
     )
     slipping = _bits(log, "estimate_flags", SLIP)
-    remedy = "drive on ground that carries, lower max_linear_acceleration and max_angular_acceleration"
+    remedy = "drive on firm ground, and reduce max_linear_acceleration and max_angular_acceleration"
     _refuse(slipping & moving, moving, SLIP_SHARE, "the wheels slipped", remedy)
     return _stretches(driven & ~clamped & ~slipping, cycle), period
 
@@ -90,10 +90,12 @@ def _refuse(bad: BoolArray, considered: BoolArray, share: float, what: str, reme
 def _why_not(log: Log) -> str:
     causes = causes_in(log["permit_causes"])
     if causes:
-        return f"the monitor had stopped the robot: {', '.join(causes)}; remove the cause, then call e_stop_reset"
+        return (
+            f"the safety monitor had stopped the robot: {', '.join(causes)}; remove the cause, then call e_stop_reset"
+        )
     if last(log["requests_received"]) == 0:
         return "nothing arrived on cmd_vel"
-    return "the gate let no command pass; rosrun robot_control why.py says why"
+    return "the driver applied no command; check: rosrun robot_control why.py"
 
 
 def _stretches(good: BoolArray, cycle: FloatArray) -> list[slice]:

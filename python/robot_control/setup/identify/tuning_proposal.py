@@ -76,8 +76,8 @@ def feed_forward(found: Identification, base: Base, lifted: float, mass: float |
     if mass is not None:
         lifted = straight - mass * r**2 / (2 * h)
         if lifted <= 0:
-            what = f"--mass {mass:g} kg: the wheels feel no more than {2 * h * straight / r**2:.4g} kg"
-            raise ValueError(f"{what}. Weigh it again, or look whether wheel_radius is right")
+            what = f"--mass {mass:g} kg: the wheels measure at most {2 * h * straight / r**2:.4g} kg"
+            raise ValueError(f"{what}. Check the mass, or check that wheel_radius is right")
     lifted = min(lifted, LIGHTEST * straight, LIGHTEST * turning)
     return {
         "mass": 2 * h * (straight - lifted) / r**2 if mass is None else mass,
@@ -122,7 +122,7 @@ def propose(
             break
     else:
         what = f"the torque is {delay} cycles late, {delay * found.period * 1000:.3g} ms beyond the bus"
-        raise NoGainsError(f"{what}: no gains bear that. Look for the delay in the drive; nothing is written")
+        raise NoGainsError(f"{what}: no gains are stable with it. Check the drive for a delay; no file is written")
     loop = replace(loop, kp=_rounded(loop.kp), ki=_rounded(loop.ki))
     feed_forward = {name: _rounded(value) for name, value in forward.items()}
     margins_before = margins(before, delay)

@@ -46,7 +46,7 @@ def main(arguments: list[str] | None = None) -> None:
 
 
 def _parser() -> argparse.ArgumentParser:
-    what = "Says what is understood of a robot description: wheels, sides, sizes, masses, and what was assumed"
+    what = "Reports how a robot description is understood: wheels, sides, sizes, masses, and all assumptions"
     parser = argparse.ArgumentParser(prog="inspect_robot.py", description=f"{what}, repaired or ignored.")
     parser.add_argument("file", type=given_path, help="URDF, or .xacro")
     meaning = "parameter file; its robot: block lies over the URDF"

@@ -11,11 +11,11 @@ from robot_control.ui.table import table
 
 WIDTH = 110
 HEADINGS = {
-    "suspicious": "Suspicious: taken as it stands, but look at it",
+    "suspicious": "Warnings (accepted, please check)",
     "overridden": "Overridden by the robot: block",
-    "repaired": "Repaired: the file says something impossible",
-    "assumed": "Assumed: the file is silent",
-    "ignored": "Ignored: it has no use here",
+    "repaired": "Repaired (the file contained impossible values)",
+    "assumed": "Assumed (not in the file)",
+    "ignored": "Ignored (not used)",
 }
 
 
@@ -31,7 +31,7 @@ def report(robot: dict[str, Any]) -> str:
 
 def _body(robot: dict[str, Any]) -> list[str]:
     imu = robot["imu"]
-    place = f"{imu['link']} at {_vector(imu['position'])}" if imu["link"] else f"none: taken as in {robot['base_link']}"
+    place = f"{imu['link']} at {_vector(imu['position'])}" if imu["link"] else f"none: assumed in {robot['base_link']}"
     yaw_inertia = f", yaw inertia {robot['yaw_inertia']:.4g} kg·m²" if "yaw_inertia" in robot else ""
     return [
         f"base               {robot['base_link']}, floor at z {ground_height(robot):.4g} m",

@@ -85,7 +85,7 @@ class Authority:
         if self.commander is page:
             return
         if self.commander is not None and not (force and page.role >= Role.MAINTAIN):
-            raise RefusedError(f"{self.commander} commands; only the role maintain takes it away")
+            raise RefusedError(f"{self.commander} has the command; only the role maintain can take it")
         self._give(page, now, f"{page} has taken the command")
 
     def hand_over(self, page: Page, to: int, now: float) -> None:
@@ -99,19 +99,19 @@ class Authority:
     def give_back(self, page: Page, now: float) -> None:
         """Ends the command. Raises RefusedError."""
         self.require(page)
-        self._give(None, now, "the command was given back")
+        self._give(None, now, "the command was returned")
 
     def require(self, page: Page) -> None:
         """Raises RefusedError unless the page commands."""
         if self.commander is not page:
-            raise RefusedError(f"{self.commander or 'no page'} commands: take the command first")
+            raise RefusedError(f"{self.commander or 'no page'} has the command: take the command first")
 
     def receive(self, page: Page, drive: Drive, now: float) -> None:
         """Receives the state of a page; without the command it moves nothing. Raises RefusedError."""
         if self.commander is page:
             page.dead_man.receive(drive, now)
         elif drive.held:
-            raise RefusedError("this page does not command: take the command first")
+            raise RefusedError("this page does not have the command: take the command first")
 
     def interrupt(self, now: float, why: str) -> None:
         """Ends the motion after a stop, or after a pause of this program (interruptions.py)."""

@@ -25,7 +25,7 @@ HEARTBEAT_PERIOD = 0.1
 """s"""
 E_STOP_LIMIT, E_STOP_LOOK = 3.0, 0.02
 """s within which an emergency stop is answered, whatever the robot does; s between two looks for the answer"""
-NOT_ANSWERED = Answer(E_STOP, accepted=False, text="the console could not send it. Use the button on the robot")
+NOT_ANSWERED = Answer(E_STOP, accepted=False, text="the console could not send it. Press the button on the robot")
 
 
 class Backend:

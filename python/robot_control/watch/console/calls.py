@@ -101,7 +101,7 @@ def against(name: str, page: Page, authority: Authority, services: set[str] | No
     if authority.commander is not page:
         return "take the command first"
     if service and services is None:
-        return "the ROS master was restarted and does not know the robot: start the robot's nodes again"
+        return "the ROS master was restarted and does not know the robot: restart the nodes of the robot"
     if service and services is not None and service not in services:
         node = {NAVIGATE: "navigate", LOCALIZATION: "localization"}.get(service, service.rpartition("/")[0])
         if call.kind in {SetPosture, SetGait}:
@@ -155,7 +155,7 @@ class Calls:
         known, at = self._keys.pop(page.number, ("", 0.0))
         elapsed = time.monotonic() - at
         if not (known and secrets.compare_digest(known, key) and RESET_PAUSE <= elapsed <= RESET_WINDOW):
-            raise RefusedError("ask for the reset again, read what stands against it, and confirm within 10 s")
+            raise RefusedError("request the reset again, check what prevents it, and confirm within 10 s")
 
     def forget(self, page: Page) -> None:
         """Forgets a page that has ended."""
@@ -174,7 +174,7 @@ class Calls:
     def _send_place(self, name: str, given: Mapping[str, Any]) -> str:
         frame = self._map_frame()
         if not frame:
-            raise RefusedError("no map has come: start navigation.launch")
+            raise RefusedError("no map received: start navigation.launch")
         message = PoseStamped() if name == "goal" else PoseWithCovarianceStamped()
         message.header.stamp, message.header.frame_id = rospy.Time.now(), frame
         message.pose = placed_pose(**given)

@@ -165,7 +165,7 @@ class Client:
             task.add_done_callback(self._calls.discard)
 
     async def _call(self, number: int, name: str, arguments: dict[str, Any]) -> None:
-        backend, accepted, text = self._backend, False, f"{name} has failed: the log of console.py says why"
+        backend, accepted, text = self._backend, False, f"{name} has failed: check the log of console.py"
         with boundary.crossing(f"the call {name}"):
             try:
                 why = against(name, self.page, backend.authority, backend.available, running_kind())

@@ -81,7 +81,7 @@ class DeadMan:
     def state(self, now: float) -> str:
         """The state as text; empty if the page may drive."""
         if self._gap:
-            return "nothing comes over the link"
+            return "no message on the link"
         words = self.pad.state(now)
         if words == "release the enable button once":
             return f"release everything once{f': {self._ended}' if self._ended else ''}"
@@ -91,4 +91,4 @@ class DeadMan:
         if not self._gap and not self.alive(now):
             self._gap = True
             self.gaps += 1
-            self.interrupt(now, f"nothing came over the link for {1000 * self._settings.link_gap:.0f} ms")
+            self.interrupt(now, f"no message on the link for {1000 * self._settings.link_gap:.0f} ms")

@@ -26,7 +26,7 @@ class DoctorRun:
     def result(self) -> list[dict[str, Any]]:
         """The findings, the worst first: name, verdict, value, why, remedy. Raises RunsError."""
         if not self._running.acquire(blocking=False):
-            raise RunsError("the machine is being examined: try again")
+            raise RunsError("doctor.py already runs: try again later")
         try:
             command = [sys.executable, "-c", PROGRAM, "--json"]
             done = subprocess.run(command, capture_output=True, text=True, timeout=TIME, check=False)

@@ -44,7 +44,7 @@ def page_file(name: str) -> web.StreamResponse:
     """The file with this path, or 404."""
     path = FILES.get(name)
     if path is None or not path.is_file():
-        raise web.HTTPNotFound(text="there is no such file; scripts/setup --console installs the libraries")
+        raise web.HTTPNotFound(text="file not found; scripts/setup --console installs the libraries")
     headers = {"Content-Type": f"{TYPES.get(path.suffix, 'text/javascript')}; charset=utf-8"}
     return web.FileResponse(path, headers=headers | ({"Cache-Control": "max-age=3600"} if "/" in name else {}))
 

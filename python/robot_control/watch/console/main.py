@@ -71,11 +71,11 @@ def arguments(given: list[str]) -> argparse.Namespace:
     add("--port", type=int, default=8080)
     add("--tls", action="store_true", help="HTTPS, with a certificate of its own where none is given")
     add("--cert", type=given_path, help="certificate, PEM; implies --tls")
-    add("--key", type=given_path, help="its key, PEM; left out: it stands in the same file")
+    add("--key", type=given_path, help="its key, PEM; default: it is in the same file")
     add("--origin", action="append", default=[], help="further address of the page, as https://console.example")
-    add("--config", type=given_path, help="YAML laid over config/console.yaml")
+    add("--config", type=given_path, help="YAML, overrides config/console.yaml")
     add("--runs", type=given_path, default=FOLDER, help="folder of recorded runs (default %(default)s)")
-    add("--read-only", action="store_true", help="nothing but the emergency stop works")
+    add("--read-only", action="store_true", help="only the emergency stop works")
     return parser.parse_args(given)
 
 

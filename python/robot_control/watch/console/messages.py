@@ -66,7 +66,7 @@ def check_fields(name: str, given: Mapping[str, Any], fields: Fields) -> None:
         raise MessageError(f"{name}: the field {printable(field)} is {'unknown' if field in given else 'missing'}")
     for field, check in fields.items():
         if not check(given[field]):
-            raise MessageError(f"{name}: the value of {field} is none that may be used")
+            raise MessageError(f"{name}: the value of {field} is not allowed")
 
 
 def _no_constant(name: str) -> float:

@@ -46,7 +46,7 @@ class Model:
         try:
             root = ET.fromstring(description)
         except ET.ParseError as error:
-            raise ModelError(f"robot_description is no XML: {error}") from None
+            raise ModelError(f"robot_description is not XML: {error}") from None
         if root.find("link") is None or len(root) > MAX_PARTS:
             raise ModelError("robot_description has no link, or too many parts")
         names = {each.get("filename", "") for each in root.iter("mesh")}
@@ -56,7 +56,7 @@ class Model:
     def mesh(self, key: str) -> bytes:
         """Content of the mesh with this id. Raises ModelError, OSError."""
         if key not in self._meshes:
-            raise ModelError("there is no such mesh")
+            raise ModelError("mesh not found")
         path = _path(self._meshes[key])
         try:
             check_input(path, MAX_MESH)
@@ -82,7 +82,7 @@ def _path(name: str) -> Path:
 
 
 def _check_xml(content: bytes) -> None:
-    """Raises ModelError for what is no XML: a browser reports that with a style that the page's policy forbids.
+    """Raises ModelError for what is not XML: a browser reports that with a style that the page's policy forbids.
 
     It is read in pieces, so that the server's other thread goes on.
     """
@@ -92,4 +92,4 @@ def _check_xml(content: bytes) -> None:
             parser.Parse(content[at : at + PIECE], False)  # noqa: FBT003 (positional in expat)
         parser.Parse(b"", True)  # noqa: FBT003
     except expat.ExpatError as error:
-        raise ModelError(f"is no XML: {error}") from None
+        raise ModelError(f"is not XML: {error}") from None

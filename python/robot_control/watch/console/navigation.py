@@ -54,7 +54,7 @@ class NavigationView:
         """Origin, cell size [m] and cells, row by row, -1 … 100 as bytes in base64. Raises NoGridError."""
         message = self._grids[name].message if name in self._grids else None
         if message is None:
-            raise NoGridError("there is no such grid")
+            raise NoGridError("grid not found")
         info, cells = message.info, np.asarray(message.data, dtype=np.int8)
         if cells.size != info.width * info.height or not cells.size:
             raise NoGridError(f"{name} has {cells.size} cells, and its width x height are others")

@@ -44,7 +44,7 @@ class Runs:
         """The log with this id. Raises RunsError."""
         path = self._files().get(key)
         if path is None:
-            raise RunsError("there is no such run")
+            raise RunsError("run not found")
         return path
 
     def report(self, key: str) -> Path:
@@ -52,7 +52,7 @@ class Runs:
         path = self.file(key)
         page = Path(self._reports.name, f"{key}-{path.stat().st_mtime_ns}.html")
         if not self._making.acquire(blocking=False):
-            raise RunsError("another report is being made: try again")
+            raise RunsError("another report is in progress: try again later")
         try:
             if not page.exists():
                 program = "import sys; from robot_control.data.report.main import main; main(sys.argv[1:])"

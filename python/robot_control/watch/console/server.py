@@ -159,7 +159,7 @@ class Server:
         now, tried = time.time(), digest(link) if link else name  # wrong links block no other link
         wait = self._tries.admit(tried, remote, now)
         if wait > 0:
-            raise self._refusal(request, web.HTTPTooManyRequests, f"too many tries: wait {wait:.0f} s")
+            raise self._refusal(request, web.HTTPTooManyRequests, f"too many attempts: wait {wait:.0f} s")
         try:
             async with self._hashing:
                 check = (users.set_password, link, password, time.time()) if link else (users.check, name, password)
@@ -186,7 +186,7 @@ class Server:
 
     async def _socket(self, request: web.Request) -> web.StreamResponse:
         if not web.WebSocketResponse().can_prepare(request):
-            raise web.HTTPBadRequest(text="this address takes WebSockets alone")
+            raise web.HTTPBadRequest(text="this address accepts only WebSockets")
         with self._page(request) as client:
             return await client.serve(request)
 
@@ -254,7 +254,7 @@ class Server:
 
     async def _doctor(self, request: web.Request) -> web.StreamResponse:
         if request["session"].role < Role.MAINTAIN:
-            raise web.HTTPForbidden(text=f"needs the role {Role.MAINTAIN}: it names programs and users of the machine")
+            raise web.HTTPForbidden(text=f"needs the role {Role.MAINTAIN}: it names programs and users of the computer")
         return web.json_response(await _found(self._doctor_run.result))
 
 

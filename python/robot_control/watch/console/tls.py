@@ -38,7 +38,7 @@ def self_made(folder: Path, names: list[str]) -> tuple[Path, Path]:
         subprocess.run(command, check=True, capture_output=True, text=True, umask=0o077)
     except (OSError, subprocess.CalledProcessError) as error:
         reason = error.stderr.strip()[-300:] if isinstance(error, subprocess.CalledProcessError) else str(error)
-        raise TlsError(f"openssl made no certificate (scripts/setup --console installs it): {reason}") from None
+        raise TlsError(f"openssl created no certificate (scripts/setup --console installs it): {reason}") from None
     return certificate, key
 
 

@@ -59,12 +59,12 @@ class Users:
             return {}
         status = self.path.stat()
         if status.st_uid != os.getuid() or status.st_mode & (stat.S_IRWXG | stat.S_IRWXO):
-            raise UsersError(f"{self.path}: must belong to this account alone: chmod 600 {self.path}")
+            raise UsersError(f"{self.path}: must be readable only for this account: chmod 600 {self.path}")
         try:
             rows = json.loads(self.path.read_text(encoding="utf-8"))
             users = [_checked(User(**{**row, "role": Role[row["role"].upper()]})) for row in rows]
         except (ValueError, TypeError, KeyError, AttributeError, RecursionError):
-            why = f"{self.path}: is no file of console_users.py; remove it and add the users again"
+            why = f"{self.path}: is not a file of console_users.py; remove it and add the users again"
             raise UsersError(why) from None
         return {user.name: user for user in users}
 
@@ -99,7 +99,7 @@ class Users:
         users = self.all()
         found = [each for each in users.values() if each.link and hmac.compare_digest(each.link, digest(link))]
         if not found or now >= found[0].link_ends:
-            raise UsersError("this link is wrong, used, or older than a day: ask for another one")
+            raise UsersError("this link is wrong, used, or older than a day: request another one")
         salt = secrets.token_hex(16)
         user = replace(found[0], salt=salt, password=_hash(password, salt), link="", link_ends=0.0)
         self._write(users | {user.name: user})

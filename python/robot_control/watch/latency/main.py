@@ -54,7 +54,7 @@ def show(listener: Listener, seconds: float) -> None:
     while not rospy.is_shutdown() and time.monotonic() < end:
         time.sleep(FRAME)
         nodes = listener.nodes()
-        lines = table(nodes) if nodes else ["no node of the loop reports; does it run on the wall clock?"]
+        lines = table(nodes) if nodes else ["no node of the loop reports; check that it runs on the wall clock"]
         print(("\x1b[2J\x1b[H" if terminal else "") + "\n".join(lines), flush=True)
 
 

@@ -65,7 +65,7 @@ def main() -> None:
     """Entry point of scripts/robot_status.py."""
     argparse.ArgumentParser(
         prog="robot_status.py",
-        description="Publishes the robot's state for a host on robot_status (robot_control/RobotStatus): latched, once "
+        description="Publishes the robot's state for a host on robot_status (RobotStatus): latched, once "
         "per second and on every change. sim.launch and robot.launch start it.",
     ).parse_args(rospy.myargv()[1:])
     with running_node("robot_status") as signals:

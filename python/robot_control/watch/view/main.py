@@ -118,8 +118,8 @@ def main() -> None:
     """Entry point of scripts/view_markers.py."""
     argparse.ArgumentParser(
         prog="view_markers.py",
-        description="Publishes for RViz, as view.launch starts it: forces of wheels or feet, ways of swinging feet, "
-        "safety state and reasons as markers on view/markers, the path driven on view/path_driven.",
+        description="Publishes for RViz: forces of wheels or feet, paths of swinging feet, safety state and reasons as "
+        "markers on view/markers; the path driven on view/path_driven. Started by view.launch.",
     ).parse_args(rospy.myargv()[1:])
     with running_node("view_markers") as signals:
         view = View()

@@ -106,7 +106,7 @@ def main() -> None:
     """Entry point of scripts/why.py."""
     about = "Why does the robot not move? Its state, causes with value and limit, what to do, and by whom."
     parser = argparse.ArgumentParser(prog="why.py", description=about, epilog="Another robot's: __ns:=robot2.")
-    meaning = "one answer; exit code 1 if something stands against motion, else 0"
+    meaning = "one answer; exit code 1 if something prevents motion, else 0"
     parser.add_argument("--once", action="store_true", help=meaning)
     given = parser.parse_args(rospy.myargv()[1:])
     try:

@@ -50,7 +50,7 @@ def render(facts: Facts, layout: Layout = PLAIN) -> list[str]:
 
 
 def _headline(answer: Answer, layout: Layout) -> str:
-    return "It moves." if answer.verdict is Verdict.MOVING and not layout.times else escaped(answer.headline)
+    return "Moving." if answer.verdict is Verdict.MOVING and not layout.times else escaped(answer.headline)
 
 
 def _wrap(text: str, width: int) -> list[str]:
@@ -99,9 +99,9 @@ def _safety(safety: Safety, facts: Facts, layout: Layout) -> Rows:
     yield from _list("causes", causes)
     yield from _list("warnings", safety.warnings, "33")
     if facts.speed_limit < float("inf"):
-        what = "not" if facts.kind.legged else "no rim"
+        what = "" if facts.kind.legged else " at each rim"
         whose = "a warning or clearance" if safety.warnings else "clearance"
-        yield "limit", f"{what} faster than {facts.speed_limit:.3g} m/s, by {whose}", ""
+        yield "limit", f"at most {facts.speed_limit:.3g} m/s{what}, by {whose}", ""
     yield from _list("last reset", (f"refused: {refusal}" for refusal in safety.refusal))
 
 
@@ -178,7 +178,7 @@ def _circumstances(facts: Facts) -> Rows:
     if not facts.master_answers and facts.received() is not None:
         yield (
             "master",
-            f"{facts.master} does not answer: what is connected goes on, nothing new connects; start the nodes again",
+            f"{facts.master} does not answer: connected nodes continue, no new one can connect; restart the nodes",
             "33",
         )
 

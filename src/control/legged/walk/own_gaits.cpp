@@ -59,8 +59,8 @@ std::string tipping(const Gait& gait) {
     });
     const double limit = 0.7 * beside.factor * fall, part_limit = 0.4 * beside.factor * fall;
     if (longest <= limit && longest * part <= part_limit) continue;
-    return std::string("lets ") + beside.words + " bear alone for " + rounded(longest) + " s, in " + rounded(part) +
-           " of the period, and the body tips over: at most " + rounded(limit) +
+    return std::string("lets ") + beside.words + " are in stance by themselves for " + rounded(longest) + " s, in " +
+           rounded(part) + " of the period, so the body tips over: at most " + rounded(limit) +
            " s, and time · part of the period at most " + rounded(part_limit) + " s";
   }
   return {};
@@ -75,7 +75,7 @@ bool is_whole(const std::string& path, GivenValues& given) {
     if (!given.accepted(at) && !given.refused(at)) missing.push_back(member);
   }
   if (!accepted.empty() && !missing.empty())
-    given.refuse(path + std::string(accepted.front()), "describes no gait alone", "add " + listed(missing));
+    given.refuse(path + std::string(accepted.front()), "does not describe a gait by itself", "add " + listed(missing));
   return accepted.size() == kMembers.size();
 }
 
@@ -106,20 +106,20 @@ void check(const OwnGaits& gaits, const std::string& block, GivenValues& given) 
       continue;
     }
     if (std::find(names.begin(), names.end(), own.name) != names.end())
-      given.refuse(path + "name", "is taken: set_gait already knows it", "choose another name");
+      given.refuse(path + "name", "is already the name of a gait", "set another name");
     names.push_back(own.name);
     const Gait gait = gait_of(own);
     if (gait.swing_time() < kMinSwing)
       given.refuse(path + "period",
                    "lets a foot swing for less than " + shortest(kMinSwing) + " s, period · (1 - duty)",
-                   "raise the period, or lower the duty");
+                   "set a longer period or a smaller duty");
     if (const std::size_t feet = fewest_feet(gait); feet < kMinFeet)
       given.refuse(path + "phases",
                    "must leave two feet on the ground at any time; at the duty " + shortest(gait.duty) +
                        " they leave " + std::to_string(feet),
-                   "raise the duty, or choose other phases");
+                   "set a larger duty or other phases");
     else if (const std::string why = tipping(gait); !why.empty())
-      given.refuse(path + "duty", why, "raise the duty, or lower the period");
+      given.refuse(path + "duty", why, "set a larger duty or a shorter period");
   }
 }
 

@@ -51,7 +51,7 @@ class SceneFiles {
  private:
   [[noreturn]] static void refuse_scene(const std::filesystem::path& path, const std::string& problem) {
     throw DriverError(fit_for_message(file_error(path.string(), problem)) +
-                      ". Set mujoco_plant/scene to an MJCF file whose files are regular ones.");
+                      ". Set mujoco_plant.scene to an MJCF file whose files are regular ones.");
   }
 
   void read(const std::filesystem::path& path) {
@@ -81,7 +81,7 @@ class SceneFiles {
 
 /// Checks the files of a scene before MuJoCo opens them: the MJCF itself and every file that an attribute `file` names.
 /// It also searches included files, and the folders of `meshdir`, `texturedir` and `assetdir` beside the scene's
-/// folder. Throws DriverError if the scene or an existing file that it names is no regular file of at most
+/// folder. Throws DriverError if the scene or an existing file that it names is not a regular file of at most
 /// kMaxDescription bytes. MuJoCo itself reports missing files.
 void check_scene_files(const std::string& scene) {
   SceneFiles{scene};
@@ -121,7 +121,7 @@ ModelPointer load(const std::string& path, const mjVFS* files, const std::string
   ModelPointer model(mj_loadXML(path.c_str(), files, error.data(), static_cast<int>(error.size())));
   if (!model) {
     throw DriverError(blamed + ": MuJoCo does not compile it: " + fit_for_message(on_one_line(error.data())) +
-                      ". Repair the scene, or set another one (mujoco_plant/scene).");
+                      ". Repair the scene, or set another one (mujoco_plant.scene).");
   }
   return model;
 }
@@ -236,9 +236,8 @@ MujocoModel compiled(const MachineModel& robot, const MujocoPlantParameters& par
   install_mujoco_handlers();
   const std::filesystem::path scene = parameters.scene;
   if (std::error_code error; !std::filesystem::exists(scene, error)) {
-    const std::string why = std::make_error_code(std::errc::no_such_file_or_directory).message();
-    throw DriverError(fit_for_message(file_error(scene.string(), why)) +
-                      ". Set mujoco_plant/scene to the path of an MJCF file" + scenes_beside(scene) + ".");
+    throw DriverError(fit_for_message(file_error(scene.string(), failed("read", ENOENT))) +
+                      ". Set mujoco_plant.scene to the path of an MJCF file" + scenes_beside(scene) + ".");
   }
   check_scene_files(scene);
   MujocoModel result;

@@ -48,10 +48,10 @@ Brake brake_of(const TrueRobot& robot, std::size_t index, const MujocoPlantParam
 void check_brake(const Brake& brake, const std::string& joint, double inertia, double step) {
   const auto check = [&](const std::string& name, double value, double limit, const std::string& unit) {
     if (value > 0 && value <= limit) return;
-    throw DriverError("mujoco_plant/" + name + " = " + number(value) + " " + unit + ": joint " + joint +
+    throw DriverError("mujoco_plant." + name + " = " + number(value) + " " + unit + ": joint " + joint +
                       " has an inertia of only " + number(inertia) + " kg·m², a time step of " + number(step * 1000) +
-                      " ms bears values above 0 up to " + number(limit) + " " + unit +
-                      ". Set such a value, or leave it out.");
+                      " ms allows values above 0 up to " + number(limit) + " " + unit +
+                      ". Set such a value, or remove it.");
   };
   check("brake_damping", brake.damping, 0.5 * inertia / step, "N·m·s/rad");
   check("brake_stiffness", brake.stiffness, 0.5 * inertia / (step * step), "N·m/rad");

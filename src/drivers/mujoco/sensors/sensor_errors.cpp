@@ -153,7 +153,7 @@ void SensorErrors::step(Measurement& measurement) noexcept {
 
 std::size_t checked_delay(const char* name, std::uint64_t cycles) {
   if (cycles > kMaxDelay) {
-    throw DriverError("mujoco_plant/" + std::string(name) + " = " + std::to_string(cycles) + " cycles: at most " +
+    throw DriverError("mujoco_plant." + std::string(name) + " = " + std::to_string(cycles) + " cycles: at most " +
                       std::to_string(kMaxDelay) + " are possible. Set a smaller delay.");
   }
   return static_cast<std::size_t>(cycles);

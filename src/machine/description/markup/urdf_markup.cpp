@@ -22,17 +22,17 @@ std::string at_line(const RobotDescription& description, const TiXmlBase& place)
 void check_name(const RobotDescription& description, const TiXmlElement& element) {
   const char* const name = element.Attribute("name");
   if (name == nullptr || *name != 0) return;
-  refuse(at_line(description, element), "<" + element.ValueStr() + ">", "its name is empty", "Give it a name");
+  refuse(at_line(description, element), "<" + element.ValueStr() + ">", "its name is empty", "Set its name");
 }
 
 void check_joint(const RobotDescription& description, const TiXmlElement& joint, const TiXmlElement* free_one) {
   if (&joint == free_one) return;
   const std::string type = attribute(joint, "type");
   const std::string element = joint_element(attribute(joint, "name"));
-  const std::string remedy = "Use fixed, revolute, continuous or prismatic";
+  const std::string remedy = "Set type to fixed, revolute, continuous or prismatic";
   if (is_free(joint)) {
     refuse(at_line(description, joint), element,
-           "a " + type + " joint is supported only as the one joint of an empty root link", remedy);
+           "a " + type + " joint is supported only as the single joint of an empty root link", remedy);
   }
   if (type != "fixed" && type != "revolute" && type != "continuous" && type != "prismatic") {
     refuse(at_line(description, joint), element, "type=\"" + type + "\" is unknown", remedy);
@@ -57,8 +57,8 @@ void check_tree(const RobotDescription& description, const TiXmlElement& robot) 
     const auto [other, first] = above.emplace(link, Above{attribute(*joint, "name"), attribute(*parent, "link")});
     if (!first) {
       refuse(at_line(description, *joint), joint_element(attribute(*joint, "name")),
-             "its child \"" + link + "\" already hangs on joint \"" + other->second.joint + "\"",
-             "Give each link one parent: a URDF is a tree");
+             "its child \"" + link + "\" is already the child of joint \"" + other->second.joint + "\"",
+             "Set one parent for each link: a URDF is a tree");
     }
   }
   // Links are removed from the ends of the tree upwards; a ring has no end. (urdfdom would never free one.)
@@ -76,9 +76,14 @@ void check_tree(const RobotDescription& description, const TiXmlElement& robot) 
     if (--hanging[parent] == 0 && above.contains(parent)) ends.push_back(parent);
   }
   if (!above.empty()) {
-    refuse(description.source, joint_element(above.begin()->second.joint),
-           "its child \"" + above.begin()->first + "\" hangs on itself, in a ring of joints",
-           "Give each link one way up to the root: a URDF is a tree");
+    const std::string& first = above.begin()->first;
+    std::string link = first, cycle = first;
+    do {
+      link = above.at(link).parent;
+      cycle = link + " → " + cycle;
+    } while (link != first);
+    refuse(description.source, joint_element(above.begin()->second.joint), "cycle in the joint tree: " + cycle,
+           "Set another <parent> for one of these joints: a URDF is a tree");
   }
 }
 
@@ -92,8 +97,8 @@ void check_depth(const RobotDescription& description) {
     } else if (text.compare(i, 2, "</") == 0 || text.compare(i, 2, "/>") == 0) {
       --depth;
     } else if (text[i] == '<' && text[i + 1] != '!' && text[i + 1] != '?' && ++depth > kDeepest) {
-      refuse(description.source, "XML", "elements within elements, " + std::to_string(kDeepest) + " deep",
-             "Close each element; a URDF needs five levels");
+      refuse(description.source, "XML", "elements are nested " + std::to_string(kDeepest) + " deep",
+             "Check that each element is closed; a URDF needs five levels");
     }
   }
 }
@@ -103,8 +108,8 @@ void check_percent(const RobotDescription& description, const TiXmlElement& elem
   for (const TiXmlAttribute* given = element.FirstAttribute(); given != nullptr; given = given->Next()) {
     const std::string text = std::string(given->Name()) + "=\"" + given->Value() + "\"";
     if (std::string(given->Name()) == "filename" || text.find('%') == std::string::npos) continue;
-    refuse(at_line(description, element), "<" + element.ValueStr() + ">", text + " has a percent sign",
-           "Names and numbers have none");
+    refuse(at_line(description, element), "<" + element.ValueStr() + ">", text + " contains a percent sign",
+           "Remove it: names and numbers have none");
   }
   for (const TiXmlElement* child : children(element)) check_percent(description, *child);
 }
@@ -113,8 +118,8 @@ void check_percent(const RobotDescription& description, const TiXmlElement& elem
 void check_expanded(const RobotDescription& description, const TiXmlElement& robot) {
   for (const TiXmlElement* child : children(robot)) {
     if (!child->ValueStr().starts_with("xacro:")) continue;
-    refuse(at_line(description, *child), "<" + child->ValueStr() + ">", "it is xacro, which is not expanded here",
-           "Let the file's name end in .xacro, or expand it: xacro FILE > robot.urdf");
+    refuse(at_line(description, *child), "<" + child->ValueStr() + ">", "it is xacro, which is not expanded in a URDF",
+           "Rename the file to .xacro, or expand it: xacro FILE > robot.urdf");
   }
 }
 
@@ -127,10 +132,10 @@ void check_size(const RobotDescription& description, const TiXmlElement& robot) 
   }
   if (links > kMaxLinks)
     refuse(description.source, "<robot>", std::to_string(links) + " links",
-           "At most " + std::to_string(kMaxLinks) + " are read; join those that never move against each other");
+           "Merge links that are fixed to each other; the limit is " + std::to_string(kMaxLinks));
   if (shapes > kMaxShapes)
     refuse(description.source, "<robot>", std::to_string(shapes) + " shapes",
-           "At most " + std::to_string(kMaxShapes) + " are read; describe the parts by coarser ones");
+           "Replace them with simpler shapes; the limit is " + std::to_string(kMaxShapes));
 }
 
 std::set<std::string> words(std::string text) {
@@ -186,7 +191,7 @@ void check_text(const RobotDescription& description) {
     refuse(source, "XML", "it is UTF-16, not UTF-8", "Save it as UTF-8: iconv -f UTF-16 -t UTF-8 FILE");
   }
   if (const std::size_t at = text.find('\0'); at != std::string::npos) {
-    refuse(source, "XML", "it has a NUL character, at byte " + std::to_string(at), "Write text alone");
+    refuse(source, "XML", "it contains a NUL character at byte " + std::to_string(at), "Check that the file is text");
   }
   if (const std::size_t at = utf8_end(text); at != text.size()) {
     const auto line = 1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(at), '\n');
@@ -197,8 +202,8 @@ void check_text(const RobotDescription& description) {
     if (text.compare(i, 4, "<!--") == 0) {
       i = std::min(text.find("-->", i), text.size() - 2);
     } else if (text.compare(i, 8, "<!ENTITY") == 0) {
-      refuse(source, "<!ENTITY>", "it defines entities of its own, which a URDF does not need and which are not read",
-             "Write what they stand for, or use xacro");
+      refuse(source, "<!ENTITY>", "it defines entities, which are not supported",
+             "Replace them with their text, or use xacro");
     }
   }
 }
@@ -262,18 +267,25 @@ TiXmlElement& parse_markup(const RobotDescription& description, TiXmlDocument& x
   check_depth(description);
   xml.Parse(description.text.c_str(), nullptr, TIXML_ENCODING_UTF8);
   if (xml.Error()) {
-    const std::string line = xml.ErrorRow() > 0 ? " line " + std::to_string(xml.ErrorRow()) : "";
-    refuse(description.source + line, "XML", xml.ErrorDesc(), "Repair the markup");
+    // TinyXML gives no row of an element that the end of the file cuts off.
+    const std::size_t last = description.text.rfind('<');
+    const bool cut = xml.ErrorRow() <= 0 && last != std::string::npos;
+    const auto begin = description.text.begin();
+    const auto row = cut ? 1 + std::count(begin, begin + static_cast<std::ptrdiff_t>(last), '\n') : xml.ErrorRow();
+    const std::string line = row > 0 ? " line " + std::to_string(row) : "";
+    const std::string what =
+        cut ? "the element is not closed (end of file inside it)" : std::string("not well-formed: ") + xml.ErrorDesc();
+    refuse(description.source + line, "XML", what, "Check with: xmllint --noout FILE");
   }
   TiXmlElement* root = xml.RootElement();
   if (root == nullptr || root->ValueStr() != "robot") {
-    refuse(description.source, "<robot>", "there is no such element",
-           "Give a URDF, whose outermost element is <robot>");
+    refuse(description.source, "<robot>", "element not found",
+           "Check that the file is a URDF: its outermost element is <robot>");
   }
   if (const TiXmlElement* second = root->NextSiblingElement()) {
     refuse(at_line(description, *second), "<" + second->ValueStr() + ">",
-           "a second outermost element, beside <robot> in line " + std::to_string(root->Row()),
-           "Keep one: one file is one robot");
+           "a second outermost element after <robot> in line " + std::to_string(root->Row()),
+           "Remove one: one file describes one robot");
   }
   check_expanded(description, *root);
   for (const char* kind : {"link", "joint"}) {

@@ -49,8 +49,7 @@ class Search {
  public:
   explicit Search(const RigidBodies& robot) : robot_(robot) {
     for (const auto& [name, type] : robot.joints) {
-      if (type == JointType::kFixed && looks_like_a_wheel(robot, name))
-        reject(name, "it is fixed, a wheel has to turn");
+      if (type == JointType::kFixed && looks_like_a_wheel(robot, name)) reject(name, kFixedWheel, kContinuous);
     }
     for (std::size_t i = 1; i < robot.bodies.size(); ++i) consider(i);
     rolling_ = candidates_.size();
@@ -67,17 +66,17 @@ class Search {
       const BodyJoint& joint = robot_.bodies[hanging.body].joint;
       if (joint.driven) continue;  // other_drives.h
       notes.push_back({RobotNote::Kind::kSuspicious, joint_element(joint.name),
-                       "a wheel as large as the drive wheels that ends " +
+                       "a wheel with the radius of the drive wheels, whose lowest point is " +
                            number(1000 * (lowest_point(hanging.wheel) - lowest_point(wheel))) +
-                           " mm above them: taken as passive, only " + std::to_string(wheels.size()) +
-                           " wheels drive. If it drives, too, name all that do by robot/left_wheel_joints: […] and "
-                           "robot/right_wheel_joints: […]"});
+                           " mm above theirs: assumed passive, only " + std::to_string(wheels.size()) +
+                           " wheels drive. If it drives: " + kSetWheels});
     }
   }
 
   std::vector<RollingBody> drive_wheels() const {
     if (candidates_.empty()) {
-      refuse_unclear("no drive wheels found: " + (rejected_.empty() ? "no joint turns" : joined(rejected_)));
+      refuse_unclear("no drive wheels found", rejected_.empty() ? "no joint turns" : joined(others()),
+                     rejected_.empty() ? kContinuous : fix());
     }
     std::vector<RollingBody> driven;
     for (const RollingBody& candidate : candidates_) {
@@ -86,34 +85,39 @@ class Search {
     const bool bound = !driven.empty();
     if (!bound && rolling_ > kMaxWheels) {
       refuse(robot_.source, "<robot>",
-             std::to_string(rolling_) + " wheels roll, and nothing says which of them drive: tracks are not supported",
-             remedy());
+             "it is not clear which of " + std::to_string(rolling_) + " wheels drive, and tracks are not supported",
+             kSetWheels);
     }
     std::vector<RollingBody> pairs = bound ? driven : candidates_;
-    std::string objection = sort_into_pairs(robot_, pairs);
-    if (objection.empty() && !bound) objection = hanging_objection(pairs);
-    if (objection.empty()) return pairs;
-    const std::vector<std::string> nearly(rejected_.begin(), rejected_.begin() + near_);
-    const std::vector<std::string> others(rejected_.begin() + near_, rejected_.end());
-    std::string text = nearly.empty() ? "" : joined(nearly) + "; and without it ";
-    text += "which wheels drive is not clear: ";
-    if (bound) text += "the file says that " + list(names_of(driven)) + " are driven, but ";
-    text += objection + ". Candidates: ";
+    PairObjection objection = sort_into_pairs(robot_, pairs);
+    if (objection.found.empty() && !bound) objection = hanging_objection(pairs);
+    if (objection.found.empty()) return pairs;
+    std::string text = bound ? "the file names " + list(names_of(driven)) + " as driven, but " : "";
+    text += objection.found + ". Candidates: ";
     for (const RollingBody& candidate : candidates_) {
       text += (&candidate == &candidates_.front() ? "" : "; ") + described(robot_, candidate);
     }
-    if (!others.empty()) text += ". Not: " + joined(others);
-    refuse_unclear(text);
+    if (!others().empty()) text += ". Excluded: " + joined(others());
+    refuse_unclear("it is not clear which wheels drive", text, objection.fix == kSetWheels ? fix() : objection.fix);
   }
 
  private:
-  /// Rollers are named first, because a message about pairs would lead to another fault.
-  [[noreturn]] void refuse_unclear(const std::string& text) const {
-    if (!roller_wheel_) refuse(robot_.source, "<robot>", text, remedy());
-    const auto& [index, rollers] = *roller_wheel_;
-    refuse(robot_.source, joint_element(robot_.bodies[index].joint.name),
-           rollers_objection(rollers) + "; and without it " + text, kRollersRemedy);
+  /// Rollers, and joints that are nearly wheels, are named first: a message about pairs would lead to another fault.
+  [[noreturn]] void refuse_unclear(const std::string& problem, const std::string& found,
+                                   const std::string& remedy) const {
+    const std::string rest = "without that, " + problem + (found.empty() ? "" : ": " + found);
+    if (roller_wheel_) {
+      const auto& [index, rollers] = *roller_wheel_;
+      refuse(robot_.source, joint_element(robot_.bodies[index].joint.name), rollers_objection(rollers), rest,
+             kRollersRemedy);
+    }
+    if (near_ > 0)
+      refuse(robot_.source, "<robot>", joined({rejected_.begin(), rejected_.begin() + near_}), rest, fix());
+    refuse(robot_.source, "<robot>", problem, found, remedy);
   }
+
+  /// Returns the rejected joints that are not nearly wheels.
+  std::vector<std::string> others() const { return {rejected_.begin() + near_, rejected_.end()}; }
 
   std::vector<std::string> names_of(const std::vector<RollingBody>& wheels) const {
     std::vector<std::string> names;
@@ -131,16 +135,15 @@ class Search {
     return measure.objection.empty() && axle_tilt(measure) <= kAxleTolerance;
   }
 
-  static std::string remedy() {
-    return "Name the wheels' joints by robot/left_wheel_joints: […] and robot/right_wheel_joints: […]; they must "
-           "turn about the lateral (y) axis and have a round <collision> shape";
-  }
+  /// Returns the change that makes a wheel of the first rejected joint that is meant to have one.
+  std::string fix() const { return fixes_.empty() ? kSetWheels : fixes_.front(); }
 
   /// One that is `nearly` a wheel comes before the others.
-  void reject(const std::string& joint, const std::string& reason, bool nearly = false) {
+  void reject(const std::string& joint, const std::string& reason, const std::string& fix, bool nearly = false) {
+    if (nearly || looks_like_a_wheel(robot_, joint)) fixes_.insert(nearly ? fixes_.begin() + near_ : fixes_.end(), fix);
     std::string text = joint + ": " + reason;
-    if (robot_.unsaid_axes.contains(joint)) text += " (and no <axis xyz=\"…\"> is given)";
-    if (robot_.turned_joints.contains(joint)) text += " (and its <origin rpy=\"…\"> looks like degrees)";
+    if (robot_.unsaid_axes.contains(joint)) text += " (it has no <axis xyz=\"…\">)";
+    if (robot_.turned_joints.contains(joint)) text += " (its <origin rpy=\"…\"> looks like degrees)";
     rejected_.insert(nearly ? rejected_.begin() + near_ : rejected_.end(), text);
     if (nearly) ++near_;
   }
@@ -151,7 +154,7 @@ class Search {
     if (rollers_of(robot_, body.parent) > 0) return;
     if (const std::size_t rollers = rollers_of(robot_, index); rollers > 0) {
       if (!roller_wheel_) roller_wheel_ = {index, rollers};
-      return reject(joint, rollers_objection(rollers));
+      return reject(joint, rollers_objection(rollers), kRollersRemedy);
     }
     const bool named = looks_like_a_wheel(robot_, joint);
     if (body.joint.type == JointType::kPrismatic && !named) return;
@@ -160,16 +163,18 @@ class Search {
     if (turns && axle_tilt(measure) > kAxleTolerance) {
       return reject(joint,
                     "its axis is " + number(axle_tilt(measure) * 180 / M_PI) + "° off the lateral (y) axis of " +
-                        robot_.bodies[0].name + ", 0.2° are allowed",
-                    axle_tilt(measure) < kNearAxle);
+                        robot_.bodies[0].name + ", allowed is 0.2°",
+                    kLateralAxis, axle_tilt(measure) < kNearAxle);
     }
-    if (!measure.objection.empty()) return reject(joint, measure.objection, measure.nearly);
+    if (!measure.objection.empty()) return reject(joint, measure.objection, measure.fix, measure.nearly);
     if (const RigidBody* swivel = swivel_of(robot_, index); swivel != nullptr) {
-      return reject(joint, std::string("it stands behind a swivel, ") + swivel->joint.name +
-                               (is_steered(*swivel, body, measure) ? ", which steers it" : ""));
+      return reject(joint,
+                    std::string("it is mounted on a swivel, ") + swivel->joint.name +
+                        (is_steered(*swivel, body, measure) ? ", which steers it" : ""),
+                    kSetWheels);
     }
     if (!body.joint.mimicked.empty() && !follows_a_wheel(body)) {
-      return reject(joint, "it follows " + body.joint.mimicked);
+      return reject(joint, "it follows " + body.joint.mimicked, kSetWheels);
     }
     candidates_.push_back(rolling_body_of(index, measure));
   }
@@ -180,22 +185,24 @@ class Search {
     std::erase_if(candidates_, [&](const RollingBody& candidate) {
       const double gap = lowest_point(candidate.wheel) - floor;
       if (gap <= kFloorTolerance + suspension_travel(robot_, candidate.body)) return false;
-      reject(robot_.bodies[candidate.body].joint.name, "it ends " + number(gap) + " m above the lowest wheel");
+      reject(robot_.bodies[candidate.body].joint.name,
+             "its lowest point is " + number(gap) + " m above the lowest wheel", kSetWheels);
       hanging_.push_back(candidate);
       return true;
     });
   }
 
   /// Returns the objection to smaller wheels whose hubs are level with those of the drive wheels.
-  std::string hanging_objection(const std::vector<RollingBody>& wheels) const {
+  PairObjection hanging_objection(const std::vector<RollingBody>& wheels) const {
     for (const RollingBody& hanging : hanging_) {
       for (const RollingBody& wheel : wheels) {
         if (std::abs(hanging.wheel.centre_base[2] - wheel.wheel.centre_base[2]) > kFloorTolerance) continue;
-        return "their radii differ by more than 1 %: " + described(robot_, hanging) + " and " +
-               described(robot_, wheel);
+        return {
+            "their radii differ by more than 1 %: " + described(robot_, hanging) + " and " + described(robot_, wheel),
+            kOneRadius};
       }
     }
-    return "";
+    return {};
   }
 
   void drop_those_on_the_middle_line() {
@@ -213,17 +220,18 @@ class Search {
       const double away = std::abs(candidate.wheel.centre_base[1] - middle);
       if (away > std::max(kFloorTolerance, std::min(0.1 * candidate.wheel.radius, half / 2))) return false;
       reject(robot_.bodies[candidate.body].joint.name,
-             "it stands on the middle line, y " + length(middle) + " m, halfway between the outermost wheels");
+             "it is on the middle line, y " + length(middle) + " m, halfway between the outermost wheels", kSetWheels);
       return true;
     });
   }
 
   const RigidBodies& robot_;
   std::vector<RollingBody> candidates_;
-  std::vector<RollingBody> hanging_;                                 // candidates above the floor
-  std::size_t rolling_ = 0;                                          // number of candidates at any height
-  std::vector<std::string> rejected_;                                // joints with the reason
-  std::ptrdiff_t near_ = 0;                                          // number of the first ones that are nearly wheels
+  std::vector<RollingBody> hanging_;   // candidates above the floor
+  std::size_t rolling_ = 0;            // number of candidates at any height
+  std::vector<std::string> rejected_;  // joints with the reason
+  std::vector<std::string> fixes_;     // of those that are nearly wheels, or have the name of one
+  std::ptrdiff_t near_ = 0;            // number of the first ones that are nearly wheels
   std::optional<std::pair<std::size_t, std::size_t>> roller_wheel_;  // body of the first one, and number of its rollers
 };
 
@@ -233,8 +241,8 @@ void refuse_wheels_on_wheels(const RigidBodies& robot, const std::vector<Rolling
     for (std::size_t i = robot.bodies[wheel.body].parent; i != 0; i = robot.bodies[i].parent) {
       if (std::ranges::find(wheels, i, &RollingBody::body) == wheels.end()) continue;
       refuse(robot.source, joint_element(robot.bodies[wheel.body].joint.name),
-             "it hangs on " + robot.bodies[i].joint.name + ", which drives, too: its angle would count from that wheel",
-             "Give both joints the same <parent>, the body that carries them");
+             "its parent moves with another drive wheel, " + robot.bodies[i].joint.name,
+             "Set the same <parent> for both joints, the body that carries them");
     }
   }
 }
@@ -245,7 +253,7 @@ void note_lying_names(const RigidBodies& robot, const RollingBody& wheel, std::v
   const bool left = wheel.wheel.side == Side::kLeft;
   if (left ? says_left(names) || !says_right(names) : says_right(names) || !says_left(names)) return;
   notes.push_back({RobotNote::Kind::kSuspicious, joint_element(body.joint.name),
-                   std::string("its name says ") + (left ? "right" : "left") + ", but it is the " +
+                   std::string("its name contains ") + (left ? "right" : "left") + ", but it is the " +
                        (left ? "left" : "right") + " wheel: y is " + length(wheel.wheel.centre_base[1]) + " m"});
 }
 
@@ -254,7 +262,7 @@ void note_out_of_round(const RigidBodies& robot, const RollingBody& wheel, std::
   notes.push_back({RobotNote::Kind::kSuspicious, link_element(robot.bodies[wheel.body].name),
                    "out of round: it reaches " + number(wheel.out_of_round * 1000) +
                        " mm farther from its axle than most of its rim, whose radius of " + number(wheel.wheel.radius) +
-                       " m is taken"});
+                       " m is used"});
 }
 
 /// Returns whether the caster rolls, and sets `omni`.
@@ -265,8 +273,9 @@ bool judge_swivel(const RigidBodies& robot, const RollingMeasure& measure, Rolli
   const bool follows = swivel != nullptr && trails(*swivel, measure);
   if (follows) return true;
   notes.push_back({RobotNote::Kind::kAssumed, joint_element(robot.bodies[caster.body].joint.name),
-                   caster.wheel.omni ? "no swivel turns it: it slides sideways without friction, as an omni wheel does"
-                                     : "it stands below its swivel, which cannot turn it: it slides without friction"});
+                   caster.wheel.omni
+                       ? "it has no swivel: assumed to slide sideways without friction, like an omni wheel"
+                       : "it is centred below its swivel, which cannot turn it: assumed to slide without friction"});
   return caster.wheel.omni;
 }
 
@@ -314,7 +323,7 @@ RunningGear find_running_gear(const RigidBodies& robot, const DriveTrainParamete
   }
   if (gear.wheels.size() > kMaxWheels) {
     refuse(robot.source, "<robot>", std::to_string(gear.wheels.size()) + " drive wheels",
-           "At most " + std::to_string(kMaxWheels) + " are supported; tracks are not");
+           "Set at most " + std::to_string(kMaxWheels) + " wheel joints; tracks are not supported");
   }
   refuse_wheels_on_wheels(robot, gear.wheels);
   for (const RollingBody& wheel : gear.wheels) note_lying_names(robot, wheel, notes);
@@ -329,7 +338,7 @@ void release_followers(RigidBodies& robot, const RunningGear& gear, std::vector<
     BodyJoint& joint = robot.bodies[wheel.body].joint;
     if (joint.mimicked.empty()) continue;
     notes.push_back({RobotNote::Kind::kSuspicious, joint_element(joint.name),
-                     "<mimic joint=\"" + joint.mimicked + "\"> is left out: it is a drive wheel, driven by itself"});
+                     "<mimic joint=\"" + joint.mimicked + "\"> is ignored: a drive wheel has a motor of its own"});
     joint.mimicked.clear();
   }
 }

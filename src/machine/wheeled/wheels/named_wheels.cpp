@@ -17,10 +17,10 @@ RollingBody named_wheel(const RigidBodies& robot, const std::string& joint) {
   const auto found = robot.joints.find(joint);
   if (found == robot.joints.end()) {
     refuse(robot.source, element, "there is no such joint (moving joints: " + list(robot.moving_joints) + ")",
-           "Name the wheels' joints by robot/left_wheel_joints and robot/right_wheel_joints");
+           kSetWheels);
   }
   if (found->second == JointType::kFixed) {
-    refuse(robot.source, element, "it is fixed, a wheel has to turn", "Make it type=\"continuous\"");
+    refuse(robot.source, element, kFixedWheel, kContinuous);
   }
   const RigidBody& body = *robot.moved_by(joint);
   const auto index = static_cast<std::size_t>(&body - robot.bodies.data());
@@ -28,19 +28,14 @@ RollingBody named_wheel(const RigidBodies& robot, const std::string& joint) {
     refuse(robot.source, element, rollers_objection(rollers), kRollersRemedy);
   }
   const RollingMeasure measure = measure_wheel(body);
-  if (body.joint.type == JointType::kPrismatic) {
-    refuse(robot.source, element, measure.objection, "Make it type=\"continuous\"");
-  }
+  if (body.joint.type == JointType::kPrismatic) refuse(robot.source, element, measure.objection, measure.fix);
   if (axle_tilt(measure) > kAxleTolerance) {
     refuse(robot.source, element,
            "its axis is " + number(axle_tilt(measure) * 180 / M_PI) + "° off the lateral (y) axis of " +
-               robot.bodies[0].name + ", 0.2° are allowed",
-           "Turn <axis> or the joint's <origin rpy>");
+               robot.bodies[0].name + ", allowed is 0.2°",
+           kLateralAxis);
   }
-  if (!measure.objection.empty()) {
-    refuse(robot.source, link_element(body.name), measure.objection,
-           "Give it a <collision> cylinder or sphere about the axle, and a joint of type=\"continuous\"");
-  }
+  if (!measure.objection.empty()) refuse(robot.source, link_element(body.name), measure.objection, measure.fix);
   return rolling_body_of(index, measure);
 }
 
@@ -50,9 +45,9 @@ std::vector<RollingBody> named_wheels(const RigidBodies& robot, const DriveTrain
   const auto& left = parameters.left_wheel_joints;
   const auto& right = parameters.right_wheel_joints;
   if (left.size() != right.size()) {
-    refuse(robot.source, "robot/left_wheel_joints",
-           list(left) + " (robot/right_wheel_joints: " + list(right) + "): the two are not as many",
-           "Name as many joints on either side, or none: then they are found");
+    refuse(robot.source, "robot.left_wheel_joints",
+           list(left) + " (robot.right_wheel_joints: " + list(right) + "): the numbers of joints differ",
+           "Set the same number of joints on both sides, or none: then they are found");
   }
   std::vector<RollingBody> wheels;
   for (const auto* side : {&left, &right}) {
@@ -60,23 +55,21 @@ std::vector<RollingBody> named_wheels(const RigidBodies& robot, const DriveTrain
       wheels.push_back(named_wheel(robot, joint));
       const std::size_t body = wheels.back().body;
       if (std::count_if(wheels.begin(), wheels.end(), [body](const RollingBody& w) { return w.body == body; }) > 1) {
-        refuse(robot.source, "robot/" + std::string(side == &left ? "left" : "right") + "_wheel_joints",
-               "\"" + joint + "\" is named twice", "Name each joint once");
+        refuse(robot.source, "robot." + std::string(side == &left ? "left" : "right") + "_wheel_joints",
+               "\"" + joint + "\" is named twice", "Remove one of the two");
       }
     }
   }
   for (std::size_t i = 0; i < left.size(); ++i) {
     for (std::size_t j = left.size(); j < wheels.size(); ++j) {
       if (wheels[i].wheel.centre_base[1] > wheels[j].wheel.centre_base[1]) continue;
-      refuse(robot.source, "robot/left_wheel_joints",
+      refuse(robot.source, "robot.left_wheel_joints",
              "wheel " + described(robot, wheels[i]) + " is not left of " + described(robot, wheels[j]),
-             "Exchange the two names, or turn the robot: x is forward, y left");
+             "Exchange the two names, or turn the robot: x is forward, y is left");
     }
   }
-  const std::string objection = sort_into_pairs(robot, wheels);
-  if (!objection.empty()) {
-    refuse(robot.source, "robot/left_wheel_joints", objection, "Name wheels that stand in pairs and have one radius");
-  }
+  const PairObjection objection = sort_into_pairs(robot, wheels);
+  if (!objection.found.empty()) refuse(robot.source, "robot.left_wheel_joints", objection.found, objection.fix);
   return wheels;
 }
 

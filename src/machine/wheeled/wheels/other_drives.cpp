@@ -17,11 +17,11 @@ constexpr double kCrossAngle = 5 * M_PI / 180;
 constexpr double kRadiusTolerance = 0.1;  // share of the radius
 
 const char* const kRemedy =
-    "Only differential and skid-steer drives are supported; to drive it as one all the same, name the wheels by "
-    "robot/left_wheel_joints: […] and robot/right_wheel_joints: […]";
+    "Set robot.left_wheel_joints: […] and robot.right_wheel_joints: […] to drive it as a differential or skid-steer "
+    "drive; no other drive is supported";
 
 constexpr const char* kPlain =
-    "they are driven as plain ones, so the robot will not go sideways, and turns otherwise than with such wheels";
+    "they are driven like plain wheels: the robot does not move sideways, and its turns differ";
 
 class Judge {
  public:
@@ -55,22 +55,21 @@ class Judge {
     if (measure.centre_base[2] - measure.radius > floor_height(gear_) + kCasterTolerance) return;
     const RigidBody* swivel = swivel_of(robot_, index);
     if (swivel != nullptr && is_steered(*swivel, body, measure)) {
-      return refuse_or_note(body, "it is steered: it stands below " + swivel->joint.name +
-                                      ", which turns it into another direction than that of the drive wheels");
+      return refuse_or_note(body,
+                            "it is steered by " + swivel->joint.name + ", out of the direction of the drive wheels");
     }
     if (swivel == nullptr && is_crosswise(body, measure)) {
       return refuse_or_note(body, "it reaches the floor, and its axis is " + number(axle_tilt(measure) * 180 / M_PI) +
                                       "° off the lateral (y) axis of " + robot_.bodies[0].name +
-                                      ": the drive wheels would drag it sideways, unless all are omni wheels");
+                                      ": the drive wheels would drag it sideways, except omni wheels");
     }
     if (!body.joint.driven && (swivel == nullptr || !swivel->joint.driven)) return;
     if (swivel == nullptr && on_the_middle_line(measure)) {
-      return refuse_or_note(body,
-                            "the file says that it is driven, and it stands on the middle line between the others");
+      return refuse_or_note(body, "the file names it as driven, but it is on the middle line between the others");
     }
     notes_.push_back({RobotNote::Kind::kSuspicious, joint_element(body.joint.name),
-                      std::string("the file says that it, or what turns it, is driven: it is not, but ") +
-                          (swivel != nullptr ? "follows its swivel as a caster" : "rolls along")});
+                      std::string("the file names it, or its swivel, as driven; it is not driven: it ") +
+                          (swivel != nullptr ? "follows its swivel as a caster" : "rolls freely")});
   }
 
   bool is_crosswise(const RigidBody& body, const RollingMeasure& measure) const {
@@ -93,10 +92,9 @@ class Judge {
     const double radius = gear_.wheels.front().wheel.radius;
     const double height = body.in_root.translation().z() - floor_height(gear_);
     const bool alike = std::abs(height - radius) <= kRadiusTolerance * radius;
-    if (body.joint.driven) refuse_or_note(body, "the file says that it is driven, and " + rollers_objection(rollers));
+    if (body.joint.driven) refuse_or_note(body, "the file names it as driven, but " + rollers_objection(rollers));
     if (!body.joint.driven && alike && no_drive_is_said()) {
-      refuse_or_note(body, "it stands as high as the drive wheels, nothing says that it is not driven, and " +
-                               rollers_objection(rollers));
+      refuse_or_note(body, "it is as high as the drive wheels and may be driven, but " + rollers_objection(rollers));
     }
   }
 
@@ -109,7 +107,7 @@ class Judge {
         const auto says = [&](const std::string& name) { return lower_case(name).find(word) != std::string::npos; };
         if (!says(body.joint.name + " " + body.name) || says(robot_.bodies[0].name + " " + robot_.name)) continue;
         refuse(robot_.source, joint_element(body.joint.name),
-               "its name says " + word + ": such a wheel rolls sideways, too, and only plain wheels are driven here",
+               "its name contains " + word + ": such a wheel also rolls sideways, and only plain wheels are supported",
                kRemedy);
       }
     }
@@ -138,11 +136,12 @@ void note_plugins(const RigidBodies& robot, std::vector<RobotNote>& notes) {
   for (const std::string& plugin : robot.sideways_plugins) {
     notes.push_back(
         {RobotNote::Kind::kSuspicious, "<plugin> " + plugin,
-         "it moves a robot sideways, too: the wheels may be omni or mecanum wheels; " + std::string(kPlain)});
+         "it also moves a robot sideways: the wheels may be omni or mecanum wheels; " + std::string(kPlain)});
   }
   for (const std::string& plugin : robot.steering_plugins) {
-    notes.push_back({RobotNote::Kind::kSuspicious, "<plugin> " + plugin,
-                     "it steers wheels: the robot is driven as a differential drive, by its wheels' speeds alone"});
+    notes.push_back(
+        {RobotNote::Kind::kSuspicious, "<plugin> " + plugin,
+         "it steers wheels: the robot is driven as a differential drive, only by the speeds of its wheels"});
   }
 }
 
@@ -168,7 +167,7 @@ void note_sideways_names(const RigidBodies& robot, const RunningGear& gear, std:
   if (first == nullptr) return;
   const std::string more = others.empty() ? "" : ", as " + std::to_string(others.size()) + " other names do";
   notes.push_back({RobotNote::Kind::kSuspicious, first->element,
-                   "its name says " + first->word + more + ": if the wheels are such, " + kPlain});
+                   "its name contains " + first->word + more + ": if the wheels are such, " + kPlain});
 }
 
 }  // namespace

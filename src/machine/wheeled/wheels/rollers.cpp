@@ -64,7 +64,7 @@ std::size_t rollers_of(const RigidBodies& robot, std::size_t index) {
 
 std::string rollers_objection(std::size_t rollers) {
   return "its rim is " + std::to_string(rollers) +
-         " rollers, as omni and mecanum wheels have them: it rolls sideways, too, and only plain wheels are driven "
+         " rollers, as on an omni or mecanum wheel: it also rolls sideways, and only plain wheels are supported "
          "here";
 }
 

@@ -15,8 +15,7 @@ namespace robot_control {
 inline constexpr std::size_t kMinRollers = 4;
 
 inline constexpr const char* kRollersRemedy =
-    "Only differential and skid-steer drives are supported; to drive it as one all the same, leave the rollers out of "
-    "the URDF";
+    "Remove the rollers from the URDF to drive it as a differential or skid-steer drive; no other drive is supported";
 
 /// Returns how many rollers the body carries; 0 if they are fewer than kMinRollers.
 std::size_t rollers_of(const RigidBodies& robot, std::size_t body);

@@ -94,9 +94,8 @@ void assume_differential(RigidBodies& robot, const RunningGear& gear, std::vecto
   follower.mimicked = leader.name;
   follower.mimic_multiplier = axis_in_root(robot.bodies[left]).dot(axis_in_root(robot.bodies[right])) > 0 ? -1 : 1;
   notes.push_back({RobotNote::Kind::kAssumed, joint_element(follower.name),
-                   "a differential: it turns as " + leader.name +
-                       " does, the other way round; else the body between "
-                       "the two would tip to their stops"});
+                   "a differential: it turns opposite to " + leader.name +
+                       "; otherwise, the body between the two would tip to the end stops"});
 }
 
 }  // namespace robot_control

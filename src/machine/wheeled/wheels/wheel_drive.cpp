@@ -23,7 +23,7 @@ void assume_rotor(const RigidBodies& robot, RollingBody& rolling, double least, 
   wheel.rotor_inertia = least - wheel.inertia;
   wheel.inertia = least;
   notes.push_back({RobotNote::Kind::kAssumed, joint_element(robot.bodies[rolling.body].joint.name),
-                   "rotor inertia " + number(wheel.rotor_inertia) + " kg·m²: the wheel alone has " +
+                   "rotor inertia " + number(wheel.rotor_inertia) + " kg·m²: the wheel itself has " +
                        number(least - wheel.rotor_inertia) + " kg·m²"});
 }
 
@@ -47,12 +47,13 @@ DriveLimits drive_limits(const RigidBodies& robot, const RunningGear& gear, cons
     if (!parameters.wheel_effort_limit) {
       note(RobotNote::Kind::kAssumed,
            (implausible ? "effort " + number(joint.effort_limit) + " N·m is a placeholder: " : "no effort limit: ") +
-               number(useful) + " N·m taken, what the tyre transmits at a friction of 1 and the joint itself loses");
+               number(useful) +
+               " N·m assumed: what the tyre transmits at a friction of 1, plus the friction of the joint");
     }
   }
   if (!(limits.velocity > 0) && !parameters.wheel_velocity_limit) {
     note(RobotNote::Kind::kAssumed, joint.velocity_limit > 0 ? "velocity " + number(joint.velocity_limit) +
-                                                                   " rad/s is a placeholder: no limit taken"
+                                                                   " rad/s is a placeholder: no limit assumed"
                                                              : "no velocity limit");
   }
   limits.effort = overridden("wheel_effort_limit", "N·m", parameters.wheel_effort_limit, limits.effort, robot, notes);

@@ -48,7 +48,7 @@ TEST_F(FeetOnGround, CastersWithinAMillimetreOfTheWheelsLetThemDrive) {
 
 TEST_F(FeetOnGround, CastersFartherBelowAreNamedInTheRefusal) {
   const std::string message = message_of<DriverError>([&] { stood(on_balls(-0.003, -0.003)); });
-  EXPECT_THAT(message, AllOf(HasSubstr("wheels bear no load"), HasSubstr("front_caster"), HasSubstr("back_caster")));
+  EXPECT_THAT(message, AllOf(HasSubstr("wheels carry no load"), HasSubstr("front_caster"), HasSubstr("back_caster")));
 }
 
 /// Two casters of 4 cm on swivels, before and behind, `gap` m above the wheels' lowest points.
@@ -73,7 +73,7 @@ TEST_F(FeetOnGround, RollingCastersThatLiftTheWheelsAreNamedInTheRefusal) {
   MadeRobot robot;
   robot.more = swivelling("front", 0.3, -0.003) + swivelling("back", -0.3, -0.003);
   const std::string message = message_of<DriverError>([&] { stood(robot); });
-  EXPECT_THAT(message, AllOf(HasSubstr("wheels bear no load"), HasSubstr("front_wheel"), HasSubstr("back_wheel")));
+  EXPECT_THAT(message, AllOf(HasSubstr("wheels carry no load"), HasSubstr("front_wheel"), HasSubstr("back_wheel")));
 }
 
 TEST_F(FeetOnGround, AFootprintBoxDoesNotLiftTheWheels) {

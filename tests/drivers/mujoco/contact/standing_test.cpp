@@ -33,7 +33,7 @@ TEST_F(Standing, IsRefusedOnItsBodyWithTheWheelsInTheAir) {
   robot.more = part("bumper", "<collision><geometry><box size=\"0.6 0.6 0.04\"/></geometry></collision>", "base_link",
                     "type=\"fixed\"><origin xyz=\"0 0 -0.1\"/>");
   const std::string message = message_of<DriverError>([&] { stood(robot); });
-  EXPECT_THAT(message, HasSubstr("its left wheels bear no load"));
+  EXPECT_THAT(message, HasSubstr("its left wheels carry no load"));
   EXPECT_THAT(message, HasSubstr("what stands on the ground is bumper"));
 }
 
@@ -42,7 +42,7 @@ TEST_F(Standing, ARefusalNamesWhatIsSuspiciousInTheDescription) {
   MadeRobot robot;
   robot.body_x = 0.05;
   const std::string message = message_of<DriverError>([&] { stood(robot); });
-  EXPECT_THAT(message, HasSubstr(" Suspicious: <robot>: nothing within 3° of the ground carries it"));
+  EXPECT_THAT(message, HasSubstr(" Suspicious: <robot>: no wheel, caster or foot within 3° of the ground supports it"));
 }
 
 // A ball 0.3 m behind the axle ends 1 cm above the ground: the robot leans back on it by θ with

@@ -115,7 +115,7 @@ by("e-stop").addEventListener("click", async () => {
     const { confirmed, text } = answer.ok ? await answer.json() : { confirmed: false, text: await answer.text() };
     say(`${confirmed ? "emergency stop confirmed" : "EMERGENCY STOP NOT CONFIRMED"}: ${text}`);
   } catch {
-    say("EMERGENCY STOP NOT CONFIRMED: the console does not answer; use the button on the robot");
+    say("EMERGENCY STOP NOT CONFIRMED: the console does not answer; press the button on the robot");
   }
 });
 
@@ -123,8 +123,8 @@ function confirmReset(text) {
   const { causes = [], refusal = [] } = robot?.safety ?? {}, active = causes.filter((cause) => cause.active);
   const reasons = [...active.map((cause) => `${cause.sentence}: ${cause.remedy}`), ...refusal];
   key = text;
-  const none = "Nothing stands against it. Look at the robot first.";
-  by("against").textContent = reasons.length ? `Against it stands: ${reasons.join("; ")}` : none;
+  const none = "Nothing prevents it. Check the robot first.";
+  by("against").textContent = reasons.length ? `The reset is prevented by: ${reasons.join("; ")}` : none;
   by("confirm").hidden = false;
 }
 by("confirm-reset").addEventListener("click", async () => {
