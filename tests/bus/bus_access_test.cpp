@@ -141,7 +141,7 @@ TEST_F(BusAccessTest, ASymbolicLinkIsNotFollowed) {
   ASSERT_EQ(chmod(target.c_str(), 0600), 0);
   for (const std::string& to : {target, file() + ".nowhere"}) {
     ASSERT_EQ(symlink(to.c_str(), file().c_str()), 0);
-    EXPECT_THAT(error(), AllOf(HasSubstr("a symbolic link stands in its place"), HasSubstr("remove it")));
+    EXPECT_THAT(error(), AllOf(HasSubstr("a symbolic link has its name"), HasSubstr("remove it")));
     unlink(file().c_str());
   }
   std::string content;
@@ -152,13 +152,13 @@ TEST_F(BusAccessTest, ASymbolicLinkIsNotFollowed) {
 
 TEST_F(BusAccessTest, ADirectoryIsRefused) {
   ASSERT_EQ(mkdir(file().c_str(), 0700), 0);
-  EXPECT_THAT(error(), HasSubstr("a directory stands in its place"));
+  EXPECT_THAT(error(), HasSubstr("a directory has its name"));
 }
 
 TEST_F(BusAccessTest, APipeIsRefusedAndBlocksNoProcess) {
   ASSERT_EQ(mkfifo(file().c_str(), 0600), 0);
   alarm(kAlarm);
-  EXPECT_THAT(error(), HasSubstr("a pipe stands in its place"));
+  EXPECT_THAT(error(), HasSubstr("a pipe has its name"));
   alarm(0);
 }
 

@@ -106,7 +106,7 @@ TEST(CrashReport, NamesTheSignalAndItsReasonInOneLine) {
       {write_nowhere, SIGSEGV, "SIGSEGV at 0x10: "},
       {[] { __builtin_trap(); }, SIGILL, "SIGILL at 0x"},
       {[] { raise(SIGFPE); }, SIGFPE, "SIGFPE: it divided"},
-      {[] { std::abort(); }, SIGABRT, "SIGABRT: it gave up"},
+      {[] { std::abort(); }, SIGABRT, "SIGABRT: it aborted"},
       {[] { kill(getpid(), SIGSEGV); }, SIGSEGV, "SIGSEGV from another process: "},
       {[] { std::thread(read_truncated).join(); }, SIGBUS, "SIGBUS at 0x"}};
   for (const auto& [body, signal, words] : crashes) {

@@ -273,7 +273,7 @@ TEST(LatencyRequest, WritesThirtyTwoBitsToTheDevice) {
 
 TEST(LatencyRequest, SaysThatTheKernelHasNoDevice) {
   const LatencyRequest request(0, "/nonexistent");
-  EXPECT_TRUE(contains(request.refusal(), "/nonexistent: No such file or directory; remedy: leave"));
+  EXPECT_TRUE(contains(request.refusal(), "/nonexistent: No such file or directory; remedy: remove"));
 }
 
 TEST(AnOrdinaryThreadThatPrecedesOthers, HasTheLowestRealTimePriorityAndItsThreadsHaveNone) {

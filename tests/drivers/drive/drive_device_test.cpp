@@ -157,7 +157,7 @@ TEST_P(DriveAndDevice, SaysThatItWaitsWhileTheDeviceIsOff) {
   device_->inject(DeviceFault::kOff);
   rig_.run(2);
   EXPECT_EQ(state(), DrivePhase::kStarting);
-  EXPECT_THAT(rig_.drive().words(), HasSubstr("wheel_1 (node 1): starting; the drive waits for a first frame"));
+  EXPECT_THAT(rig_.drive().words(), HasSubstr("wheel_1 (node 1): starting; the drive waits for the first frame"));
   device_->inject(DeviceFault::kNone);
   EXPECT_TRUE(rig_.runs());
 }
