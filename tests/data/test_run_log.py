@@ -11,8 +11,8 @@ from std_msgs.msg import String
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        ("", "is no run.bag"),
-        ("run,cycle\n0,0\n", "is no run.bag .a run.csv is a table that export.py makes"),
+        ("", "is not a run.bag"),
+        ("run,cycle\n0,0\n", "is not a run.bag .export.py makes a run.csv"),
     ],
     ids=["nothing", "table"],
 )

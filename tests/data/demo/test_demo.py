@@ -90,7 +90,7 @@ def test_drives_of_wheels_on_a_robot_on_legs_are_refused(tmp_path, capsys):
     assert parse(["--robot", "quadbot", "--out", str(tmp_path)]).robot == "quadbot"
     with pytest.raises(SystemExit):
         parse(["--robot", "quadbot", "--drives", "odrive", "--out", str(tmp_path)])
-    assert "--drives need wheels, but quadbot stands on legs" in capsys.readouterr().err
+    assert "--drives need wheels, but quadbot has legs" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize("out", ["file", "file/below", "/proc/xx"])
@@ -124,7 +124,7 @@ def test_a_disk_that_fails_during_the_run_is_reported_without_a_traceback(tmp_pa
         assert demo.main() == 2
     finally:
         signal.signal(signal.SIGTERM, before)
-    assert "No space left on device" in capsys.readouterr().err
+    assert "no space left on the disk" in capsys.readouterr().err
 
 
 def test_sigterm_ends_like_an_interrupt():

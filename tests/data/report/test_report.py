@@ -204,8 +204,8 @@ def test_decimation_keeps_every_peak_where_it_is():
         ("distanze: {most: 1}", "unknown figure distanze; there are distance"),
         ("distance: 3", "distance: 3 is not {most: NUMBER} or {least: NUMBER}"),
         ("distance: {mots: 3}", "distance: {'mots': 3} is not"),
-        ("distance: {most: .nan}", "distance.most: nan is no number"),
-        ("distance: {most: yes}", "distance.most: True is no number"),
+        ("distance: {most: .nan}", "distance.most: nan is not a number"),
+        ("distance: {most: yes}", "distance.most: True is not a number"),
         ("[1, 2]", "contains no budgets"),
         ("", "contains no budgets"),
         ("{}", "contains no budgets"),
@@ -263,7 +263,7 @@ def test_what_cannot_be_read_is_refused_in_one_message(written):
     Path("text.csv").write_text("time,left\n1,2\n")
     for arguments, said in (
         (["nowhere.bag", "--ci"], "nowhere.bag"),
-        (["text.csv", "--ci"], "is no run.bag"),
+        (["text.csv", "--ci"], "is not a run.bag"),
         ([written(), "--ci", "--budgets", "absent.yaml"], "absent.yaml"),
     ):
         with pytest.raises(SystemExit, match=f"^report.py: .*{said}"):
