@@ -7,7 +7,7 @@ from pathlib import Path
 ROOT = Path(__file__).parents[2]
 README = ROOT / "README.md"
 CHINESE = [ROOT / "README.zh.md", *sorted((ROOT / "docs").rglob("*.zh.md"))]
-"""Translations: their code blocks are those of the page of the same name without `.zh`."""
+"""Translations: their structure is that of the page of the same name without `.zh`."""
 ENGLISH = [README, ROOT / "CONTRIBUTING.md", *sorted({*(ROOT / "docs").rglob("*.md")} - {*CHINESE})]
 PAGES = [page for page in ENGLISH if page.exists()]
 
@@ -57,9 +57,42 @@ def links(page):
 
 
 def anchors(page):
-    """Anchors as GitHub derives them from the headings."""
+    """Anchors as GitHub derives them from the headings, in their order."""
     headings = re.findall(r"^#+ (.*)$", prose(page), re.MULTILINE)
-    return {re.sub(r"[^\w\- ]", "", heading.lower()).replace(" ", "-") for heading in headings}
+    return [re.sub(r"[^\w\- ]", "", heading.lower()).replace(" ", "-") for heading in headings]
+
+
+def tables(page):
+    """Rows of cells of each table, from its head on."""
+    for lines in re.findall(r"(?:^\|.*\n)+", prose(page), re.MULTILINE):
+        head, _, *rows = (re.split(r"(?<!\\)\|", line.strip())[1:-1] for line in lines.splitlines())
+        yield [[cell.strip() for cell in row] for row in (head, *rows)]
+
+
+def english(chinese):
+    """The page of which this one is the translation; a page that is none is itself."""
+    return chinese.with_name(chinese.name.replace(".zh.", "."))
+
+
+def structure(page):
+    """What a page and its translation share; a link to a translation counts as one to its page."""
+    marks = re.findall(r"^(#+|\s*-|\s*\d+\.) ", prose(page), re.MULTILINE)
+    return {
+        "headings and lists": [re.sub(r"\d+", "1", mark) for mark in marks],
+        "rows and columns": [[len(row) for row in table] for table in tables(page)],
+        "code without comments": [(block.language, block.commands()) for block in blocks(page)],
+        "links": sorted(filter(None, (_destination(page, link) for link in links(page)))),
+        "inline code": sorted(set(inline_code(page))),
+    }
+
+
+def _destination(page, link):
+    """The page or file, and the number of its heading; empty for a link between a page and its translation."""
+    path, _, anchor = link.partition("#")
+    file = (page.parent / path).resolve() if path else page
+    if not anchor and english(file) == english(page):
+        return ""
+    return f"{english(file).relative_to(ROOT)} {anchors(file).index(anchor) if anchor else ''}"
 
 
 def inline_code(page):
