@@ -16,16 +16,10 @@ namespace py = pybind11;
 namespace robot_control {
 namespace {
 
-/// The text for any robot: roles stand for the programs that play them.
-std::string of_any_robot(std::string_view text) {
-  return with_names(text, kWheeledKind,
-                    [](Role role) { return "the " + std::string(kRoles[static_cast<std::size_t>(role)].role); });
-}
-
 py::list bits(std::span<const BitName> table) {
   py::list rows;
   for (const BitName& row : table) {
-    rows.append(py::make_tuple(std::string(row.name), of_any_robot(row.sentence), of_any_robot(row.remedy),
+    rows.append(py::make_tuple(std::string(row.name), std::string(row.sentence), std::string(row.remedy),
                                std::string(row.unit)));
   }
   return rows;
@@ -52,15 +46,16 @@ py::dict signal_names() {
   for (const RoleNames& row : kRoles) roles.append(py::make_tuple(std::string(row.role), std::string(row.program)));
   for (const KindNames& row : kKinds) kinds.append(py::make_tuple(std::string(row.kind), std::string(row.controller)));
   return py::dict("Role"_a = roles, "RobotKind"_a = kinds, "StopCause"_a = bits(kStopCauseNames),
+                  "ResetRefusal"_a = bits(kResetRefusalNames), "MissingNode"_a = bits(kMissingNodeNames),
                   "CommandReason"_a = bits(kCommandReasonNames), "RequestPart"_a = bits(kRequestPartNames),
                   "GateReason"_a = bits(kGateReasonNames), "StateFlag"_a = bits(kStateFlagNames),
                   "SlipReason"_a = bits(kSlipReasonNames), "DegradedReason"_a = bits(kDegradedReasonNames),
-                  "DriverFault"_a = bits(kDriverFaultNames), "SupervisorState"_a = states<SupervisorState>(6),
-                  "PermitAction"_a = states<PermitAction>(3), "GateVerdict"_a = states<GateVerdict>(5),
-                  "DriverState"_a = states<DriverState>(5), "JointMode"_a = states<JointMode>(kJointModes),
-                  "LegPhase"_a = states<LegPhase>(7), "Gait"_a = gait_words(all_gaits({})),
-                  "SensorIndex"_a = words(kStateSensorNames), "FaultComponent"_a = words(kFaultComponentNames),
-                  "FaultKind"_a = words(kFaultKindNames));
+                  "DriverFault"_a = bits(kDriverFaultNames), "DigitalInput"_a = bits(kDigitalInputNames),
+                  "SupervisorState"_a = states<SupervisorState>(6), "PermitAction"_a = states<PermitAction>(3),
+                  "GateVerdict"_a = states<GateVerdict>(5), "DriverState"_a = states<DriverState>(5),
+                  "JointMode"_a = states<JointMode>(kJointModes), "LegPhase"_a = states<LegPhase>(7),
+                  "Gait"_a = gait_words(all_gaits({})), "SensorIndex"_a = words(kStateSensorNames),
+                  "FaultComponent"_a = words(kFaultComponentNames), "FaultKind"_a = words(kFaultKindNames));
 }
 
 }  // namespace robot_control

@@ -75,7 +75,7 @@ def english(chinese):
 
 
 def structure(page):
-    """What a page and its translation share; a link to a translation counts as one to its page."""
+    """The parts that a page and its translation share; a link to a translation counts as one to its page."""
     marks = re.findall(r"^(#+|\s*-|\s*\d+\.) ", prose(page), re.MULTILINE)
     return {
         "headings and lists": [re.sub(r"\d+", "1", mark) for mark in marks],

@@ -1,5 +1,6 @@
 """The words of signals/names.h."""
 
+import re
 from dataclasses import dataclass
 from typing import Any
 
@@ -9,6 +10,8 @@ from numpy.typing import NDArray
 from robot_control._robot_control import signal_names
 
 _ALL: dict[str, list[Any]] = signal_names
+_REQUEST = {"request": "cmd_vel", "request_timeout": "cmd_vel_timeout"}
+"""topic and parameter of requests of a robot on wheels (signals/robot_kinds.h); Kind.worded names those of legs"""
 
 
 @dataclass(frozen=True)
@@ -40,7 +43,19 @@ def mask_of(kind: str, *names: str) -> int:
 
 def bits(kind: str) -> list[BitName]:
     """All bits, the lowest first."""
+    return [
+        BitName(row.name, _of_any_robot(row.sentence), _of_any_robot(row.remedy), row.unit) for row in templates(kind)
+    ]
+
+
+def templates(kind: str) -> list[BitName]:
+    """All bits, the lowest first, with {driver}, {request} and the like in place of names of a robot."""
     return [BitName(*row) for row in _ALL[kind]]
+
+
+def _of_any_robot(text: str) -> str:
+    """Roles stand for the programs that play them."""
+    return re.sub(r"\{(\w+)\}", lambda hole: _REQUEST.get(hole[1], f"the {hole[1]}"), text)
 
 
 def bit(kind: str, number: int) -> BitName:

@@ -14,6 +14,7 @@ from robot_control.drive.path.waypoints import PathError, read_csv_text
 from robot_control.settings.files import SettingsError
 from robot_control.watch.console import authority, calls, messages, sessions, settings, users
 from support.mutants import mutants
+from served_console import served
 from support.timed import timed
 from support.topics import graph, surprises_of
 
@@ -87,21 +88,6 @@ def test_no_message_of_a_page_surprises_the_console(message, monkeypatch):
 
 
 HEADERS = {"Host": "console", "Origin": "http://console", "Content-Type": "application/json"}
-
-
-def served(monkeypatch, known):
-    """A client of a server with these users."""
-    pytest.importorskip("aiohttp")
-    from aiohttp.test_utils import TestClient, TestServer
-    from robot_control.settings.addresses import Origins
-    from robot_control.watch.console.backend import Backend
-    from robot_control.watch.console.server import Server
-
-    with graph(monkeypatch):
-        backend = Backend(settings.Settings())
-    monkeypatch.undo()
-    origins = Origins(frozenset({"http://console"}))
-    return TestClient(TestServer(Server(backend, origins, known, known.path.parent, port=1, read_only=False).app))
 
 
 def test_wrong_links_block_no_first_login_of_another_link(monkeypatch, tmp_path):

@@ -27,11 +27,12 @@ from robot_control.watch.console.room import gives_way
 from robot_control.watch.console.runs import Runs, RunsError
 from robot_control.watch.console.sessions import Session, Sessions, Tries, digest
 from robot_control.watch.console.users import Users, UsersError
+from robot_control.watch.words.words import LANGUAGES, pairs_in
 
 MAX_PAGES = 20
 BODY_TIME = 10.0
 """s within which the body of a request has to arrive"""
-PUBLIC = frozenset({"/login", "/api/login", "/style.css", "/login.js", "/icon.svg"})
+PUBLIC = frozenset({"/login", "/api/login", "/style.css", "/login.js", "/icon.svg", "/words.js"})
 """Paths that are served without a login"""
 LOCAL_USER = "local"
 """Name of the user who has opened the page with the token"""
@@ -63,6 +64,7 @@ class Server:
         get("/api/runs/{id}/file", self._run_file)
         get("/api/runs/{id}/report", self._report)
         get("/api/doctor", self._doctor)
+        get("/words/{language}", self._words)
         get("/{path:.*}", self._file)
         post("/api/login", self._login)
         post("/api/logout", self._logout)
@@ -120,7 +122,7 @@ class Server:
             return self._with_token(request)
         elif request.path == "/":
             raise web.HTTPFound("/login")
-        elif request.path not in PUBLIC:
+        elif request.path not in PUBLIC and request.match_info.handler != self._words:
             raise web.HTTPUnauthorized(text="log in first")
         return await handler(request)
 
@@ -228,6 +230,12 @@ class Server:
 
     async def _file(self, request: web.Request) -> web.StreamResponse:
         return page_file({"": "index.html", "login": "login.html"}.get(path := request.match_info["path"], path))
+
+    async def _words(self, request: web.Request) -> web.StreamResponse:
+        language = request.match_info["language"]
+        if language not in LANGUAGES:
+            raise web.HTTPNotFound(text="the page is not written in this language")
+        return web.json_response(pairs_in(language))
 
     async def _urdf(self, _: web.Request) -> web.StreamResponse:
         return web.json_response(await _found(self._model.read))

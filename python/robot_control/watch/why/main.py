@@ -5,7 +5,6 @@ import os
 import shutil
 import sys
 import time
-from typing import TextIO
 
 import rosgraph
 import rospy
@@ -18,6 +17,7 @@ from robot_control.robot.diagnosis.state import Facts
 from robot_control.robot.ros_master import Master
 from robot_control.robot.ros_node import begin_node
 from robot_control.watch.why.screen import Layout, render
+from robot_control.watch.words.words import LANGUAGES, Words, words_in
 
 FRAME = 0.25
 """s between two drawings"""
@@ -25,21 +25,21 @@ TIMEOUT = 2.5
 """s to wait for a report of every node before the first answer; each node reports once per second"""
 
 
-def _layout_of(stream: TextIO) -> Layout:
-    colour = stream.isatty() and not os.environ.get("NO_COLOR")
-    return Layout(shutil.get_terminal_size((80, 24)).columns, colour)
-
-
 class Screen:
     """Overwrites itself on a terminal; elsewhere it prints the changes."""
 
-    def __init__(self) -> None:
-        self._terminal = sys.stdout.isatty()
+    def __init__(self, words: Words) -> None:
+        self._terminal, self._words = sys.stdout.isatty(), words
         self._last: list[str] = []
+
+    def print_once(self, facts: Facts) -> int:
+        """The answer alone; returns the exit code."""
+        print("\n".join(render(facts, self._layout())))
+        return 1 if judge(facts).verdict is Verdict.STOPPED else 0
 
     def show(self, facts: Facts) -> None:
         """One frame."""
-        lines = render(facts, _layout_of(sys.stdout))
+        lines = render(facts, self._layout())
         essence = lines if self._terminal else render(facts, Layout(times=False))
         if self._terminal:
             start = "\x1b[H" if self._last else "\x1b[2J\x1b[H"
@@ -50,22 +50,21 @@ class Screen:
         self._last = essence
         sys.stdout.flush()
 
+    def _layout(self) -> Layout:
+        colour = self._terminal and not os.environ.get("NO_COLOR")
+        return Layout(shutil.get_terminal_size((80, 24)).columns, colour, words=self._words)
 
-def _print_once(facts: Facts) -> int:
-    print("\n".join(render(facts, _layout_of(sys.stdout))))
-    return 1 if judge(facts).verdict is Verdict.STOPPED else 0
 
-
-def _master_is_there(screen: Screen | None) -> bool:
-    """Waits for the master and reports that on `screen`; without a screen it prints that there is none."""
+def _master_is_there(screen: Screen, *, once: bool) -> bool:
+    """Waits for the master and reports that on `screen`; `once`: it prints that there is none, and waits no more."""
     namespace = rosgraph.names.get_ros_namespace()
     for argument in sys.argv[1:]:
         namespace = argument.removeprefix("__ns:=") if argument.startswith("__ns:=") else namespace
     master = Master("/why")
     while master.state() is None:
         facts = Facts(master=master.uri, master_answers=False, namespace=f"/{namespace.strip('/')}")
-        if screen is None:
-            _print_once(facts)
+        if once:
+            screen.print_once(facts)
             return False
         screen.show(facts)
         time.sleep(MASTER_PERIOD)
@@ -84,15 +83,14 @@ def _listen() -> Listener:
     return listener
 
 
-def answer_once() -> int:
+def answer_once(screen: Screen) -> int:
     """Prints one answer on stdout and returns the exit code."""
-    return _print_once(_listen().facts()) if _master_is_there(None) else 1
+    return screen.print_once(_listen().facts()) if _master_is_there(screen, once=True) else 1
 
 
-def answer_live() -> int:
+def answer_live(screen: Screen) -> int:
     """Shows answers until interrupted."""
-    screen = Screen()
-    _master_is_there(screen)
+    _master_is_there(screen, once=False)
     listener = _listen()
     while not rospy.is_shutdown():
         with boundary.crossing("the robot's reports"):
@@ -108,8 +106,10 @@ def main() -> None:
     parser = argparse.ArgumentParser(prog="why.py", description=about, epilog="Another robot's: __ns:=robot2.")
     meaning = "one answer; exit code 1 if something prevents motion, else 0"
     parser.add_argument("--once", action="store_true", help=meaning)
+    parser.add_argument("--lang", choices=LANGUAGES, default=LANGUAGES[0], help="language of the answer")
     given = parser.parse_args(rospy.myargv()[1:])
+    screen = Screen(words_in(given.lang))
     try:
-        sys.exit(answer_once() if given.once else answer_live())
+        sys.exit(answer_once(screen) if given.once else answer_live(screen))
     except KeyboardInterrupt:
         sys.exit(0)

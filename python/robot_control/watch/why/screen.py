@@ -1,6 +1,5 @@
 """The answer of why.py as lines of text, as wide as the screen; no ROS in here."""
 
-import textwrap
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
@@ -8,6 +7,8 @@ from robot_control.files.files import escaped
 from robot_control.robot.diagnosis.answer import Answer, Verdict
 from robot_control.robot.diagnosis.diagnosis import judge, missing_nodes, senders_in_words
 from robot_control.robot.diagnosis.state import Facts, Safety, speeds
+from robot_control.ui.columns import padded, wrapped
+from robot_control.watch.words.words import ENGLISH, Words
 
 LABEL = 11
 """columns for the word before each line"""
@@ -18,6 +19,8 @@ COLOURS = {Verdict.STOPPED: "31;1", Verdict.IDLE: "33;1", Verdict.MOVING: "32;1"
 """SGR of ECMA-48: red, yellow, green; bold."""
 DIM = "2"
 BOLD = "1"
+COMMAND = "$ "
+"""Begin of a line for a shell, which stays as it is."""
 
 
 @dataclass(frozen=True)
@@ -27,6 +30,7 @@ class Layout:
     width: int = 80  # columns; no line is longer
     colour: bool = False  # with escape sequences, for a terminal
     times: bool = True  # with values that change by themselves, speeds and seconds
+    words: Words = ENGLISH
 
     def paint(self, text: str, style: str) -> str:
         """The text in SGR `style`."""
@@ -40,22 +44,24 @@ def render(facts: Facts, layout: Layout = PLAIN) -> list[str]:
     """One screen, a line each."""
     answer = judge(facts)
     width = max(layout.width, NARROWEST)
-    lines = [layout.paint(line, COLOURS[answer.verdict]) for line in textwrap.wrap(_headline(answer, layout), width)]
+    lines = [layout.paint(line, COLOURS[answer.verdict]) for line in wrapped(_headline(answer, layout), width)]
     lines.append("")
     for label, text, style in _rows(facts, answer, layout):
-        for number, line in enumerate(_wrap(text, width - LABEL)):
-            head = (label if number == 0 else "").ljust(LABEL)
+        shown = text if text.startswith(COMMAND) else layout.words.of(text)
+        for number, line in enumerate(_wrap(shown, width - LABEL)):
+            head = padded(layout.words.of(label) if number == 0 else "", LABEL)
             lines.append((layout.paint(head, DIM) + layout.paint(line, style)).rstrip())
     return lines
 
 
 def _headline(answer: Answer, layout: Layout) -> str:
-    return "Moving." if answer.verdict is Verdict.MOVING and not layout.times else escaped(answer.headline)
+    still = answer.verdict is Verdict.MOVING and not layout.times
+    return escaped(layout.words.of("Moving." if still else answer.headline))
 
 
 def _wrap(text: str, width: int) -> list[str]:
     line = escaped(text.replace("\n", " "))
-    return textwrap.wrap(line, width, subsequent_indent="  ", break_on_hyphens=False) or [""]
+    return wrapped(line, width, indent="  ") or [""]
 
 
 Rows = Iterator[tuple[str, str, str]]
@@ -82,7 +88,7 @@ def _list(label: str, texts: Iterable[str], style: str = "") -> Rows:
 def _to_do(answer: Answer) -> Rows:
     yield from _list("to do", (f"{actor}: {text}" if actor else text for actor, text in answer.actions), BOLD)
     for command in answer.commands:
-        yield "", f"$ {command}", ""
+        yield "", f"{COMMAND}{command}", ""
     if answer.actions or answer.commands:
         yield "", "", ""
 

@@ -1,5 +1,6 @@
 // Keys, stick and pad → what is held. Whatever takes this page's attention away releases all of it at once.
 import { on, send, reconnect } from "/link.js";
+import { words } from "/words.js";
 
 const PERIOD = 50;       // ms between two messages while this page commands
 const FROZEN = 300;      // ms between two passes, after which this page stood still
@@ -53,7 +54,7 @@ export function release() {
 
 /** True if this page commands; else the page says what is missing. */
 function mayDrive() {
-  if (!commands) document.getElementById("dead-man").textContent = "Take the command first.";
+  if (!commands) document.getElementById("dead-man").textContent = words("Take the command first.");
   return commands;
 }
 

@@ -1,4 +1,6 @@
 // The login, and the first one by a link that works once: /login#LINK.
+import { words } from "/words.js";
+
 const by = (id) => document.getElementById(id);
 const link = location.hash.slice(1);
 history.replaceState(null, "", "/login");  // the link stays in no history
@@ -19,8 +21,8 @@ by("login").addEventListener("submit", async (event) => {
       method: "POST", headers: { "Content-Type": "application/json" }, body: JSON.stringify(body),
     });
     if (answer.ok) location.assign("/");
-    else by("message").textContent = await answer.text();
+    else by("message").textContent = words(await answer.text());
   } catch {
-    by("message").textContent = "The console does not answer.";
+    by("message").textContent = words("The console does not answer.");
   }
 });

@@ -1,6 +1,7 @@
 // Values → words. Text of the robot, of users and of files enters the page by textContent alone.
 import { released } from "/drive.js";
 import { on, silent } from "/link.js";
+import { words } from "/words.js";
 
 export const by = (id) => document.getElementById(id);
 const SIGNS = { moving: "▶", idle: "◆", stopped: "■" };  // readable without colour
@@ -12,14 +13,14 @@ export function number(value, digits = 2) {
   const text = typeof value === "number" ? value.toFixed(digits) : "–";
   return Number(text) === 0 ? (0).toFixed(digits) : text;
 }
-const put = (id, text) => { if (by(id).textContent !== text) by(id).textContent = text; };
+const put = (id, text) => show(by(id), words(text));
+const show = (element, text) => { if (element.textContent !== text) element.textContent = text; };
 
 export function list(id, texts) {
   const parent = by(id);
   while (parent.children.length > texts.length) parent.lastChild.remove();
   texts.forEach((text, i) => {
-    const item = parent.children[i] ?? parent.appendChild(document.createElement("li"));
-    if (item.textContent !== text) item.textContent = text;
+    show(parent.children[i] ?? parent.appendChild(document.createElement("li")), words(text));
   });
 }
 
@@ -31,7 +32,7 @@ on("fast", (frame) => {
     put(`${name}-l`, number(frame[name]?.[2]));
   }
   const [x, y, yaw] = frame.pose ?? [];
-  put("pose", `${number(x)} m, ${number(y)} m, ${number(yaw)} rad`);
+  show(by("pose"), `${number(x)} m, ${number(y)} m, ${number(yaw)} rad`);
   if (frame.legs) legs(frame.legs);
   document.body.dataset.frames = String(Number(document.body.dataset.frames ?? 0) + 1);
 });
@@ -42,8 +43,7 @@ function legs({ posture, gait, chosen, gaits, feet }) {
   put("posture", gait ? `${posture}, ${gait} (${whose})` : `${posture}, gait: ${chosen}`);
   while (by("feet").children.length < feet.length) by("feet").append(document.createElement("span"));
   feet.forEach(({ name, bears, load }, i) => {
-    const text = `${bears ? "●" : "○"} ${name.replace("_", " ")} ${number(load, 0)} N`, foot = by("feet").children[i];
-    if (foot.textContent !== text) foot.textContent = text;
+    show(by("feet").children[i], `${bears ? "●" : "○"} ${words(name.replace("_", " "))} ${number(load, 0)} N`);
   });
 }
 

@@ -1,6 +1,7 @@
 // Plots of the last minute. Their memory is fixed, and they rest while nobody can see them.
 import { Chart, LineController, LineElement, PointElement, LinearScale, Legend, Title } from "/lib/chart.js/chart.mjs";
 import { on } from "/link.js";
+import { words } from "/words.js";
 
 Chart.register(LineController, LineElement, PointElement, LinearScale, Legend, Title);
 const SPAN = 60, STEP = 0.2, POINTS = SPAN / STEP, REDRAW = 400, MAX_LINES = 8;  // s, s, points, ms
@@ -10,6 +11,7 @@ const DASHES = [[], [6, 3], [2, 2], [8, 3, 2, 3]];
 class Plot {
   constructor(id, title) {
     this.sets = [];
+    this.title = title;
     this.chart = new Chart(document.getElementById(id), {
       type: "line", data: { datasets: this.sets },
       options: {
@@ -17,7 +19,7 @@ class Plot {
         elements: { point: { radius: 0 }, line: { borderWidth: 1.5 } },
         plugins: {
           legend: { position: "bottom", labels: { boxWidth: 18, font: { size: 10 } } },
-          title: { display: true, text: title },
+          title: { display: true },
         },
         scales: {
           x: { type: "linear", min: -SPAN, max: 0, ticks: { maxTicksLimit: 7 } },
@@ -28,19 +30,21 @@ class Plot {
   }
   add(values) {
     for (const label of Object.keys(values).slice(0, MAX_LINES)) {
-      if (this.sets.length >= MAX_LINES || this.sets.some((set) => set.label === label)) continue;
+      if (this.sets.length >= MAX_LINES || this.sets.some((set) => set.key === label)) continue;
       const data = Array.from({ length: POINTS }, (_, i) => ({ x: (i + 1 - POINTS) * STEP, y: NaN }));
       const nth = this.sets.length, borderDash = DASHES[nth % DASHES.length];
-      this.sets.push({ label, data, borderColor: COLOURS[nth % COLOURS.length], borderDash });
+      this.sets.push({ key: label, data, borderColor: COLOURS[nth % COLOURS.length], borderDash });
     }
-    for (const { label, data } of this.sets) {
+    for (const { key, data } of this.sets) {
       for (let i = 1; i < POINTS; ++i) data[i - 1].y = data[i].y;
-      data[POINTS - 1].y = values[label] ?? NaN;
+      data[POINTS - 1].y = values[key] ?? NaN;
     }
   }
   draw() {
     const { options } = this.chart, { title, legend } = options.plugins, { color } = getComputedStyle(document.body);
     Chart.defaults.color = options.color = title.color = legend.labels.color = color;
+    title.text = words(this.title);
+    for (const set of this.sets) set.label = words(set.key);
     this.chart.update("none");
   }
 }

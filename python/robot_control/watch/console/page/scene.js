@@ -3,6 +3,7 @@ import * as THREE from "/lib/three/build/three.module.js";
 import { OrbitControls } from "/lib/three/examples/jsm/controls/OrbitControls.js";
 import { on } from "/link.js";
 import { build, pose } from "/robot.js";
+import { words } from "/words.js";
 
 const MAX_POINTS = 5000, STEP = 0.05;   // of the path driven; m between two of them
 const MAX_NOTES = 6;                    // of meshes that cannot be shown
@@ -91,7 +92,7 @@ async function load() {
   scene.add(robot);
   dirty = true;
   if (!renderer) begin();
-  document.title = `${made.name || "Robot"} console`;
+  document.title = words(`${made.name || "Robot"} console`);
   document.body.dataset.model = made.name;
 }
 

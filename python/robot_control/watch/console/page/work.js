@@ -2,12 +2,14 @@
 import { on, send, call, connect } from "/link.js";
 import { release } from "/drive.js";
 import { by, list, number } from "/panels.js";
+import { words } from "/words.js";
 
 const E_STOP_LIMIT = 4000;  // ms; the server answers after 3 s at the latest
 const messages = [];
 let authority = null, robot = null, key = "";
 
-function say(text) {
+function say(english) {
+  const text = words(english);
   if (messages[0]?.endsWith(` ${text}`)) return;
   messages.unshift(`${new Date().toLocaleTimeString()} ${text}`);
   messages.length = Math.min(messages.length, 8);
@@ -69,18 +71,18 @@ on("slow", (slow) => {
   fill("component", slow.components);
   fill("kind", slow.kinds);
   by("simulation").hidden = !slow.simulated;
-  by("pause").textContent = slow.paused ? "Go on" : "Pause";
+  by("pause").textContent = words(slow.paused ? "Go on" : "Pause");
 });
 
 on("authority", (next) => {
   const first = !authority, mine = next.commander === next.you, taken = next.commander !== null && !mine;
   authority = next;
   for (const button of document.querySelectorAll("[data-call]")) {
-    button.title = authority.against[button.dataset.call];
+    button.title = words(authority.against[button.dataset.call]);
     button.setAttribute("aria-disabled", String(Boolean(button.title)));
   }
   by("take").hidden = mine;
-  by("take").textContent = taken ? "Take it away" : "Take the command";
+  by("take").textContent = words(taken ? "Take it away" : "Take the command");
   by("take").setAttribute("aria-disabled", String(authority.role === "watch" || (taken && authority.role !== "maintain")));
   by("give").hidden = !mine;
   const drivers = authority.pages.filter((page) => page.number !== authority.you && page.role !== "watch");
@@ -124,7 +126,7 @@ function confirmReset(text) {
   const reasons = [...active.map((cause) => `${cause.sentence}: ${cause.remedy}`), ...refusal];
   key = text;
   const none = "Nothing prevents it. Check the robot first.";
-  by("against").textContent = reasons.length ? `The reset is prevented by: ${reasons.join("; ")}` : none;
+  by("against").textContent = words(reasons.length ? `The reset is prevented by: ${reasons.join("; ")}` : none);
   by("confirm").hidden = false;
 }
 by("confirm-reset").addEventListener("click", async () => {
@@ -145,7 +147,7 @@ function row(run) {
   const links = line.insertCell();
   for (const [text, path, target] of [["report", "report", "_blank"], ["download", "file", ""]]) {
     const href = `/api/runs/${run.id}/${path}`, rel = "noopener";
-    links.append(Object.assign(document.createElement("a"), { textContent: text, href, target, rel }), " ");
+    links.append(Object.assign(document.createElement("a"), { textContent: words(text), href, target, rel }), " ");
   }
   return line;
 }
