@@ -62,6 +62,9 @@ static_assert(std::atomic<std::uint64_t>::is_always_lock_free);
 
 /// The frames of a channel that one thread writes and reads: they are neither copied nor checked, because nothing can
 /// tear them. They have checksums only if `sealed`. A frame that was stored by `store` is a copy and checked.
+///
+/// A frame that was published in place is missing when `kept` later ones were: the fewer, the less memory a cycle
+/// passes through.
 template <class Frame, std::size_t SlotCount = kFrameSlots>
 struct OwnFrames {
   struct Slot {
@@ -84,10 +87,11 @@ struct OwnFrames {
 
   std::array<Slot, SlotCount> slots;
   bool sealed = false;
+  std::size_t kept = SlotCount;  ///< frames that their writer leaves where they are, 1 … SlotCount
 };
 
 /// The result of a lookup without a copy. The frame is in the buffer of the caller, or where its writer has put it;
-/// there it stays for the next seven cycles.
+/// there it stays for OwnFrames::kept cycles.
 template <class Frame>
 struct Found {
   Lookup lookup = Lookup::kMissing;
@@ -118,7 +122,7 @@ class FrameWriter {
     if (own_ != nullptr) own_->slots[frame.head.cycle % SlotCount].whole = true;
   }
 
-  /// Publishes a frame that stays where it is until SlotCount cycles later. A reader in the same thread finds it there.
+  /// Publishes a frame that stays where it is for `kept` cycles. A reader in the same thread finds it there.
   void publish_in_place(Frame& frame) noexcept {
     if (own_ == nullptr) return publish(frame);
     if (own_->sealed) seal(frame);
@@ -132,7 +136,7 @@ class FrameWriter {
   bool seals() const noexcept { return own_ == nullptr || own_->sealed; }
 
   /// Returns how many frames a writer must keep for `publish_in_place`.
-  std::size_t kept() const noexcept { return own_ == nullptr ? 1 : SlotCount; }
+  std::size_t kept() const noexcept { return own_ == nullptr ? 1 : own_->kept; }
 
   /// Publishes a frame that is already sealed.
   void publish_sealed(const Frame& frame) noexcept {

@@ -119,7 +119,8 @@ class ClosedLoop {
   /// A channel of this thread with its writer and its reader.
   template <class Frame>
   struct Channel {
-    Channel() = default;
+    /// `kept` frames are as many as a reader looks back.
+    explicit Channel(std::size_t kept) { frames->kept = kept; }
     Channel(const Channel& other) : frames(std::make_unique<OwnFrames<Frame>>(*other.frames)) {
       // One thread uses these atomics, and a channel has the same bytes in every process.
       std::memcpy(static_cast<void*>(memory.get()), other.memory.get(), sizeof *memory);
@@ -141,10 +142,10 @@ class ClosedLoop {
   Parameters parameters_;
   std::shared_ptr<const Robot> robot_;
   std::unique_ptr<Driver> machine_;
-  Channel<SensorFrame> sensors_;
-  Channel<StateFrame> state_;
-  Channel<CommandFrame> command_;
-  Channel<Permit> permit_;
+  Channel<SensorFrame> sensors_{1};  ///< of this cycle
+  Channel<StateFrame> state_{2};     ///< of this cycle, and to the monitor of the one before
+  Channel<CommandFrame> command_{kCommandLife};
+  Channel<Permit> permit_{kFrameSlots};
   DriverCycle driver_;
   EstimatorCycle estimator_;
   ControllerCycle controller_;

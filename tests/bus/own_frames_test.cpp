@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <random>
 
 #include "bus/latest_frames.h"
@@ -76,6 +77,21 @@ TEST_F(OwnFramesTest, AFoundFrameIsWhereItsWriterHasPutIt) {
   const Found<SmallFrame> found = own_reader_.find_newest(buffer);
   EXPECT_EQ(found.lookup, Lookup::kFrame);
   EXPECT_EQ(found.frame, &frame);
+}
+
+TEST_F(OwnFramesTest, AFrameInWhosePlaceALaterOneStandsIsMissing) {
+  own_->kept = 2;
+  ASSERT_EQ(own_writer_.kept(), 2u);
+  std::array<SmallFrame, 2> places;
+  for (std::uint64_t cycle = 3; cycle < 6; ++cycle) {
+    places[cycle % 2] = {.head = {.run = 1, .cycle = cycle}, .content = cycle};
+    own_writer_.publish_in_place(places[cycle % 2]);
+  }
+  SmallFrame buffer;
+  EXPECT_EQ(own_reader_.find_at(1, 3, buffer).lookup, Lookup::kMissing);
+  EXPECT_EQ(own_reader_.find_at(1, 4, buffer).frame->content, 4u);
+  EXPECT_EQ(own_reader_.find_at(1, 5, buffer).frame->content, 5u);
+  EXPECT_EQ(own_reader_.find_within(1, 3, 3, buffer).lookup, Lookup::kMissing);
 }
 
 TEST_F(OwnFramesTest, ACopyHoldsTheFramesItself) {

@@ -353,7 +353,7 @@ void DriveController::step(const ControlInput& input, CommandFrame& out) noexcep
   const SensorFrame& sensors = *input.sensors;
   const std::uint64_t cycle = sensors.head.cycle;
   out.joint_count = joint_count_;
-  out.joints.fill({});
+  std::fill_n(out.joints.begin(), joint_count_, JointCommand{});
   out.wheeled = {};
   out.twist_limited = {};
 

@@ -117,7 +117,7 @@ class DriveController {
   /// Returns the values in use: derived from the parameters, or set by `tune`.
   const DriveTuning& tuning() const noexcept { return tuning_; }
 
-  /// Fills everything but `out.head`.
+  /// Fills everything but `out.head` and the joints behind those of the robot, which stay as they are.
   void step(const ControlInput& input, CommandFrame& out) noexcept;
 
  private:
