@@ -103,9 +103,10 @@ void LogFile::check_presence() {
 void LogFile::append(std::string_view part) {
   if (room_ && !room_(bytes_ + static_cast<std::int64_t>(part.size()))) {
     file_.close();
-    throw LogError("log " + path_ +
-                   " has ended: telemetry.quota is reached, and no older log can be removed. The next log starts in 10 s; "
-                   "then this one may be removed. Set a larger telemetry.quota, or remove files");
+    throw LogError(
+        "log " + path_ +
+        " has ended: telemetry.quota is reached, and no older log can be removed. The next log starts in 10 s; "
+        "then this one may be removed. Set a larger telemetry.quota, or remove files");
   }
   const int error = file_.write(part);
   if (error == 0) {

@@ -106,11 +106,12 @@ class DeviceSimulatorNode final : public Node {
 
 int main(int argc, char** argv) {
   using namespace robot_control;
-  return run_node(argc, argv,
-                  {.name = "device_simulator",
-                   .purpose = "Simulates a robot with motor drives on CAN or a motor board, commanded by the program driver "
-                              "over the bus or line of the drive file.",
-                   .make = [](const Setup& setup) -> std::unique_ptr<Node> {
-                     return std::make_unique<DeviceSimulatorNode>(setup);
-                   }});
+  return run_node(
+      argc, argv,
+      {.name = "device_simulator",
+       .purpose = "Simulates a robot with motor drives on CAN or a motor board, commanded by the program driver "
+                  "over the bus or line of the drive file.",
+       .make = [](const Setup& setup) -> std::unique_ptr<Node> {
+         return std::make_unique<DeviceSimulatorNode>(setup);
+       }});
 }

@@ -52,8 +52,7 @@ TEST(GivenPath, ATildeIsTheHomeAlsoWithoutTheVariable) {
 
 TEST(GivenPath, AnErrorSaysWhatWasGivenWhatItBecameAndWhy) {
   const Variable caller(kCallerFolder, "/called/here");
-  EXPECT_EQ(file_error(resolved_path("mine.urdf"), "is a FIFO"),
-            "mine.urdf: is a FIFO (/called/here/mine.urdf)");
+  EXPECT_EQ(file_error(resolved_path("mine.urdf"), "is a FIFO"), "mine.urdf: is a FIFO (/called/here/mine.urdf)");
   EXPECT_EQ(shown_path(resolved_path("out/") + "robot2/run.bag"),
             "out/robot2/run.bag (/called/here/out/robot2/run.bag)");
   EXPECT_EQ(shown_path(resolved_path("/abs/mine.urdf")), "/abs/mine.urdf");

@@ -29,8 +29,7 @@ std::string refusal(const std::string& text, std::uint64_t executable = CommandS
 
 TEST(CommandScript, RefusesWhatIsNoRegularFile) {
   for (const std::string path : {"/dev/zero", "/tmp", "/nowhere.csv"}) {
-    EXPECT_THAT(message_of<ParameterError>([&] { CommandScript{path}; }),
-                HasSubstr(path + ": "));
+    EXPECT_THAT(message_of<ParameterError>([&] { CommandScript{path}; }), HasSubstr(path + ": "));
   }
 }
 

@@ -27,7 +27,7 @@ def interruptions(*statuses):
         ([READY, STOPPED], "STOPPED: e_stop was called"),
         ([READY, STOPPED, RELEASED], "e_stop_reset was called"),
         ([READY, RELEASED], "stopped and released"),
-        ([READY, Status("DRIVE", withdrawals=3, run=8)], "started again"),
+        ([READY, Status("DRIVE", withdrawals=3, run=8)], "restarted"),
         ([READY, Status("INIT")], RESTARTED),
     ],
 )
@@ -73,7 +73,7 @@ def test_a_restart_that_is_not_over_at_the_first_look_revokes_what_the_program_w
     made = before_the_first_look(Status("INIT", withdrawals=4, run=8, withdrawn=2.0))
     made.step(3.5, [Status("READY", withdrawals=4, run=8, withdrawn=2.0)], waited=True)
     assert made.count == 1
-    assert "started again" in made.revoked(1.0)
+    assert "restarted" in made.revoked(1.0)
     assert made.revoked(2.1) == "", "what was requested after the restart begins with its permission"
 
 

@@ -108,7 +108,7 @@ def test_a_healthy_robot_may_be_driven():
     [
         ({"state": ""}, "no safety_status"),
         ({"pose": None}, "no odometry"),
-        ({"senders": ("/teleop",)}, "/teleop may send on cmd_vel"),
+        ({"senders": ("/teleop",)}, "/teleop may also send on cmd_vel"),
         ({"linear": 0.2}, "the robot moves"),
         ({"speed_limit": 0.3}, "limited to 0.3 m/s"),
         ({"state": "STOPPED", "sentences": ("the e-stop is pressed",)}, "the e-stop is pressed; remove the cause"),

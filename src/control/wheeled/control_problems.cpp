@@ -174,14 +174,14 @@ std::string unstable_message(const Loop& loop, const Loop& derived, const std::s
   const double part = stable_part(loop, derived);
   if (part <= 0) {
     return problem +
-           "No smaller gains of this proportion are stable. Reduce pid_ki or pid_kd against pid_kp, or remove pid_kp and "
+           "No smaller gains of this proportion are stable. Reduce pid_ki or pid_kd against pid_kp, or remove pid_kp "
+           "and "
            "pid_ki: then they are derived from the robot.";
   }
-  return problem +
-         formatted(
-             "Set at most pid_kp %.3g, pid_ki %.3g, pid_kd %.3g, or remove pid_kp and pid_ki: then they are "
-             "derived from the robot.",
-             part * gains.kp, part * part * gains.ki, part * gains.kd);
+  return problem + formatted(
+                       "Set at most pid_kp %.3g, pid_ki %.3g, pid_kd %.3g, or remove pid_kp and pid_ki: then they are "
+                       "derived from the robot.",
+                       part * gains.kp, part * part * gains.ki, part * gains.kd);
 }
 
 std::string underdamped_message(const Loop& loop, const Loop& derived, const std::string& joint, const Load& load) {
@@ -191,9 +191,9 @@ std::string underdamped_message(const Loop& loop, const Loop& derived, const std
              "with the wheel %s: damping ratio %.3g, must be at least %.3g. ",
              kController, loop.gains.kp, loop.gains.ki, loop.gains.kd, loop.bandwidth, joint.c_str(),
              load_words(loop, load).c_str(), loop.damping(load), Loop::least_damping(derived, load)) +
-         (limit > 0 ? formatted("Set at most pid_ki %.3g", limit)
-                    : formatted("Reduce pid_kp and pid_kd, or set tracking_bandwidth nearer to %.3g Hz",
-                                derived.bandwidth)) +
+         (limit > 0
+              ? formatted("Set at most pid_ki %.3g", limit)
+              : formatted("Reduce pid_kp and pid_kd, or set tracking_bandwidth nearer to %.3g Hz", derived.bandwidth)) +
          "; or remove them: then they are derived from the robot.";
 }
 

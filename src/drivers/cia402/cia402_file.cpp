@@ -80,8 +80,7 @@ void Cia402File::check(const Cia402Parameters& joint, JointValues& values) const
                   "correct it, or set robot.wheel_command");
   }
   if (joint.abort_option == 0 && drive.on_silence != SilenceReaction::kUnknown) {
-    values.refuse("on_silence", "contradicts abort_option: 0, with which the drive does nothing",
-                  "remove one of them");
+    values.refuse("on_silence", "contradicts abort_option: 0, with which the drive does nothing", "remove one of them");
   }
 }
 

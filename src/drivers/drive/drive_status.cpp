@@ -39,7 +39,8 @@ constexpr CauseWords kCauseWords[] = {
     {"has an unknown reaction on silence",
      "set its watchdog and on_silence, or accept_unknown_watchdog: true, in the drive file"},
     {"braked by itself, because it received no order in time", "check the line, then reset"},
-    {"does not turn although it is driven: no counts of", "check the connector of its encoder, then for a blockage; then reset"},
+    {"does not turn although it is driven: no counts of",
+     "check the connector of its encoder, then for a blockage; then reset"},
 };
 static_assert(std::size(kCauseWords) == static_cast<std::size_t>(DriveCause::kNoCounts) + 1);
 

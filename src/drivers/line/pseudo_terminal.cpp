@@ -24,8 +24,8 @@ PseudoTerminal::PseudoTerminal(std::string path) : path_(std::move(path)) {
     throw DriverError("no tty can be created at " + path_ + ", which is not a link. Remove it" + remedy);
   if (std::filesystem::exists(path_, ignored)) {
     throw DriverError("no tty can be created at " + path_ + ", which leads to " +
-                      std::filesystem::read_symlink(path_, ignored).string() + " in use. Stop the program that created it" +
-                      remedy);
+                      std::filesystem::read_symlink(path_, ignored).string() +
+                      " in use. Stop the program that created it" + remedy);
   }
   std::filesystem::remove(path_, ignored);  // of a program that was killed
   plug();

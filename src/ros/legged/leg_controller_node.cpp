@@ -179,7 +179,8 @@ class LegControllerNode final : public CommandedNode {
     for (std::size_t i = 0; i < kLegsJoints; ++i) {
       const bool moves = phase == LegPhase::kJoints && command.joints[i].mode == JointMode::kImpedance;
       if (!moves && !has_position(sensors.joints[i]))
-        return "the joint " + robot().joints[i].name + " is not measured: check the faults of the driver in /diagnostics";
+        return "the joint " + robot().joints[i].name +
+               " is not measured: check the faults of the driver in /diagnostics";
       start[i] = std::clamp(moves ? command.joints[i].position : sensors.joints[i].position, bounds[i].range.lower,
                             bounds[i].range.upper);
     }

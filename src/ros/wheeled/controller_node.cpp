@@ -195,7 +195,8 @@ class ControllerNode final : public CommandedNode {
     Answer answer;
     if (!lock) {
       answer.text =
-          "set_parameters refused, nothing is changed: another change is in progress, or waits for the ROS master; call "
+          "set_parameters refused, nothing is changed: another change is in progress, or waits for the ROS master; "
+          "call "
           "again";
       ROS_WARN("%s", answer.text.c_str());
       return answer;

@@ -258,7 +258,10 @@ def spoil(line, old, new):
         ((4, "0.01,", "0.005,"), "line 4: time is 0.005, not after the row before"),
         ((4, "0.01,", "0.001,"), "line 4: time is 0.001, not after the row before"),
         ((4, "0.01,", "1e30,"), "line 4: the time is 1e30, beyond 146 years; check --time-unit"),
-        ((4, "0.01,0.0", "0.01,fast"), "line 4, column left: 'fast' is not a number; leave the cell of an absent sample"),
+        (
+            (4, "0.01,0.0", "0.01,fast"),
+            "line 4, column left: 'fast' is not a number; leave the cell of an absent sample",
+        ),
         ((4, "0.01,", "0.01,1,"), "line 4: 10 cells, the header has 9"),
         ((4, "0.01,", "0.01 "), "line 4: 8 cells, the header has 9"),
         ((4, "0.01,", '"0.01,'), "line 4: a quotation mark is not closed in this line"),

@@ -169,7 +169,8 @@ TEST(CanSocket, APathThatIsTooLongIsRefused) {
 TEST(CanSocket, AnInterfaceThatIsNotThereIsRefusedWithTheRemedy) {
   EXPECT_THAT(refusal("nocan7"), AllOf(HasSubstr("CAN bus nocan7: "), HasSubstr("; ")));
   EXPECT_THAT(refusal(""), HasSubstr("set can0, or unix:FOLDER"));
-  EXPECT_THAT(refusal("name\x1b[2J_that_is_too_long"), AllOf(HasSubstr("\\x1b"), HasSubstr("not the name of an interface")));
+  EXPECT_THAT(refusal("name\x1b[2J_that_is_too_long"),
+              AllOf(HasSubstr("\\x1b"), HasSubstr("not the name of an interface")));
 }
 
 TEST(CanSocket, SocketCanCarriesFramesBetweenTwoSockets) {

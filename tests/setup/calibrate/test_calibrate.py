@@ -119,7 +119,7 @@ def test_says_how_much_space_it_needs():
     assert "3.875 m ahead" in space(parse_options([]))
     assert "from 1 m behind it to 5 m ahead, and 5 m to either side" in space(parse_options([]))
     assert "square" not in space(parse_options(["--side=0"]))
-    assert "nothing is sent" in space(parse_options(["--manual"]))
+    assert "no command is sent" in space(parse_options(["--manual"]))
 
 
 @pytest.mark.parametrize(

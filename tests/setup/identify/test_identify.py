@@ -83,7 +83,7 @@ def test_refuses_a_log_that_is_not_there(tmp_path, monkeypatch):
 @pytest.mark.parametrize(
     ("command", "missing"),
     [
-        ((0.5, 0.0), "turning cannot be determined from this log: it holds no turns"),
+        ((0.5, 0.0), "turning cannot be determined from this log: it contains no turns"),
         ((0.0, 0.5), "straight cannot be determined"),
     ],
 )
@@ -100,7 +100,7 @@ def test_the_log_of_a_demo_is_refused_without_nan_or_a_warning(tmp_path, monkeyp
     loop = ClosedLoop({"mujoco_plant": {"sensor_errors": "data_sheet"}})
     log = written(loop, tmp_path, 10.0, lambda t: (0.5, 0.2) if 1 < t < 9 else (0.0, 0.0))
     message = refusal(monkeypatch, f"--log={log}", f"--output={tmp_path}/x.yaml")
-    assert "the log contains too little of it; drive more" in message or "cannot be determined" in message
+    assert "The log contains too little of it; drive more" in message or "cannot be determined" in message
     assert "nan" not in message
 
 

@@ -34,7 +34,7 @@ TEST_F(Standing, IsRefusedOnItsBodyWithTheWheelsInTheAir) {
                     "type=\"fixed\"><origin xyz=\"0 0 -0.1\"/>");
   const std::string message = message_of<DriverError>([&] { stood(robot); });
   EXPECT_THAT(message, HasSubstr("its left wheels carry no load"));
-  EXPECT_THAT(message, HasSubstr("what stands on the ground is bumper"));
+  EXPECT_THAT(message, HasSubstr("on the ground is bumper"));
 }
 
 // A suspicious entry of the description may be the reason, so the refusal quotes it.

@@ -131,13 +131,11 @@ TEST_F(MujocoModelTest, ASceneThatIsOrNamesNoRegularFileIsRefused) {
   const auto naming = [&](const std::string& body) {
     return refusal(scene_file("naming.xml", "<mujoco>" + body + "</mujoco>"));
   };
-  EXPECT_THAT(naming(R"(<include file="/dev/zero"/>)"),
-              HasSubstr("/dev/zero: is a device"));
+  EXPECT_THAT(naming(R"(<include file="/dev/zero"/>)"), HasSubstr("/dev/zero: is a device"));
   EXPECT_THAT(naming(R"(<compiler meshdir="/dev"/><asset><mesh name="m" file = 'zero'/></asset>)"),
               HasSubstr("/dev/zero: is a device"));
   scene_file("inner.xml", R"(<mujocoinclude><asset><hfield name="h" file="/dev/zero"/></asset></mujocoinclude>)");
-  EXPECT_THAT(naming(R"(<include file="inner.xml"/>)"),
-              HasSubstr("/dev/zero: is a device"));
+  EXPECT_THAT(naming(R"(<include file="inner.xml"/>)"), HasSubstr("/dev/zero: is a device"));
 }
 
 TEST_F(MujocoModelTest, ASceneThatIsNoXmlIsRefused) {
