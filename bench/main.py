@@ -21,7 +21,7 @@ from typing import Any
 
 from robot_control.files.files import write_text
 
-from bench import legs, markdown
+from bench import legs, markdown, recordings
 from bench.drives.sensor_errors import LEVELS
 from bench.drives.wheel_command import WHEEL_COMMANDS
 from bench.faults.fault_sequence import ALL_RUNS
@@ -45,6 +45,7 @@ JUDGED = (
     "slopes",
     "legs",
     "odometry",
+    "recordings",
     "hostile",
     "tuning",
     "bags",
@@ -69,6 +70,7 @@ PARTS = {
     "navigation": navigation.PARTS,
     "data_return": ("upload", "changes", "cost"),
     "loops": ("speed", "python", "instructions"),
+    "recordings": recordings.PARTS,
 }
 NAMES = MEASURED + JUDGED
 SEED_PROGRAMS = {"limiter": 1_000_000, "release": 10_000, "bags": 10_000}  # seeds; a minute at most on two cores
@@ -153,6 +155,7 @@ TRIALS: dict[str, tuple[str, Callable[[Any, argparse.Namespace, Runner], Result]
     ),
     "driving": ("drives.normal_driving", lambda m, g, runner: m.bench(g.share, say, runner, g.errors, g.wheel_command)),
     "odometry": ("odometry.bench", _odometry),
+    "recordings": ("recordings", lambda m, g, _: m.bench(_parts_of("recordings", g), say)),
     "tuning": ("tuning", lambda m, g, runner: m.bench(g.first, g.runs or m.ALL_RUNS, say, runner)),
     "replay": ("faults.replayed", lambda m, g, _: m.bench(g.first, g.runs or m.ALL_RUNS, say)),
     "hostile": ("hostile", lambda m, g, _: m.bench(g.first, g.runs or m.ALL_RUNS, say)),
@@ -197,7 +200,7 @@ def to_table(result: dict[str, Any]) -> str:
     """One line per figure: value, unit, reference of the same run, ratio to it; then a line of robots that were not
     judged.
     """
-    wide = max(24, *(len(row["name"]) for row in result["rows"]))
+    wide = max([24, *(len(row["name"]) for row in result["rows"])])
     lines = [*result["table"], ""] if result.get("table") else []
     lines += [f"{result['bench']:<{wide + 2}}{'value':>12}  {'unit':<22}{'reference':>12}{'ratio':>10}"]
     for row in result["rows"]:

@@ -1,7 +1,7 @@
 """Recorded drives of real robots, and a simple odometry of each for comparison.
 
-NumPy archives of public recordings, in the folder that ROBOT_RECORDINGS names. They are not part of the project: a test
-that needs one skips where the folder is absent.
+NumPy archives of public recordings, in the folder that ROBOT_RECORDINGS names; otherwise `shared/recordings` above the
+repository is used. They are not part of the project: a test that needs one skips where the folder is absent.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ FloatArray = NDArray[np.float64]
 Table = tuple[FloatArray, FloatArray, FloatArray]
 Rows = tuple[FloatArray, FloatArray, FloatArray, FloatArray, FloatArray]
 
-ABSENT = "no folder of recordings: set ROBOT_RECORDINGS"
+ABSENT = "no folder of recordings: set ROBOT_RECORDINGS, or put it at shared/recordings above the repository"
 NAMES = (
     "skid_steer_a",
     "skid_steer_b",
@@ -42,6 +42,7 @@ NAMES = (
 _SKID_COUNTS = 360  # of a wheel's turn
 _VACUUM_COUNTS = 508.8
 _VEHICLE_RADIUS, _VEHICLE_BASE = 0.3, 1.0  # m: any pair gives the speeds and rates back
+_CREATE_RADIUS, _CREATE_BASE = 0.033, 0.26  # m, of an iRobot Create; any pair gives the commanded speeds back
 _OUTDOOR_END = 121.0  # s; after it its recorder has gaps
 _TIME_STEP = 1e-6  # s between two rows at least, because some stamps are equal
 
@@ -58,7 +59,7 @@ class Recording:
         radius, base: m; the effective wheel base where the recording's description names one.
         counts: of a wheel's turn; None: its encoder is fine.
         track: m, between left and right wheels, where it is not the base: wheels behind each other; None: no such.
-        truth: (n, 3) time, x, y of another sensor; empty where there is none.
+        truth: (n, 3) time, x, y of another sensor, or (n, 4) with the yaw; empty where there is none.
     """
 
     name: str
@@ -89,9 +90,12 @@ class Recording:
 
 
 def recordings_folder() -> Path | None:
-    """The folder of recordings; None if no folder is named."""
+    """The folder of recordings; None where there is none."""
     named = os.environ.get("ROBOT_RECORDINGS")
-    return Path(named) if named else None
+    if named:
+        return Path(named)
+    beside = (parent / "shared" / "recordings" for parent in Path(__file__).resolve().parents)
+    return next((folder for folder in beside if folder.is_dir()), None)
 
 
 @cache
@@ -222,9 +226,38 @@ def _warthog(name: str, data: Mapping[str, FloatArray]) -> Recording:
     rows = merged(
         (data["wheel_time"], data["left_angle"], data["right_angle"]), (data["imu_time"], data["gyro"], data["accel"])
     )
-    truth = np.column_stack([data["truth_time"] - start, data["truth_x"], data["truth_y"]])
+    names = ("truth_x", "truth_y", "truth_yaw")
+    truth = np.column_stack([data["truth_time"] - start, *(data[which] for which in names)])
     radius, base = (float(data[which]) for which in ("wheel_radius", "wheel_base"))
     return Recording(name, *rows, rest=_rest_of(rows), radius=radius, base=base, truth=truth)
+
+
+@cache
+def commanded_drives() -> dict[str, Recording]:
+    """Robots on two wheels without encoders and without an IMU: their wheels turn as commanded. Name → drive.
+
+    Raises:
+        FileNotFoundError: no folder, or no such file in it.
+    """
+    folder = recordings_folder()
+    if folder is None:
+        raise FileNotFoundError(ABSENT)
+    drives = {}
+    with np.load(folder / "mrclam_6.npz") as data:
+        for number in range(1, 6):
+            odometry, truth = data[f"robot{number}_odometry"], data[f"robot{number}_truth"]
+            time = _strictly_increasing(odometry[:, 0] - truth[0, 0])
+            since = np.diff(time, append=time[-1])  # a command holds until the next one
+            way, turn = (np.concatenate([[0], np.cumsum(odometry[:, i] * since)[:-1]]) for i in (1, 2))
+            left, right = way - turn * _CREATE_BASE / 2, way + turn * _CREATE_BASE / 2
+            nothing = np.full((time.size, 3), np.nan)
+            truth = np.column_stack([truth[:, 0] - truth[0, 0], truth[:, 1:]])
+            name = f"create_{number}"
+            angles = (left / _CREATE_RADIUS, right / _CREATE_RADIUS)
+            drives[name] = Recording(
+                name, time, *angles, nothing, nothing, rest=0.0, radius=_CREATE_RADIUS, base=_CREATE_BASE, truth=truth
+            )
+    return drives
 
 
 def _rest_of(rows: tuple[FloatArray, ...]) -> float:

@@ -129,7 +129,7 @@ def test_speeds_in_coarse_steps_are_not_called_slip(drives, name):
 @pytest.mark.parametrize("name", ["outdoor_skid_steer", "outdoor_skid_steer_imu_b", "warthog_grass"])
 def test_self_calibration_harms_no_drive_with_a_truth(drives, name):
     drive, without = drives(name), Drive(recording(name), self_calibration=False)
-    time, *truth = drive.drive.truth.T
+    time, *truth = drive.drive.truth.T[:3]
     seen = time < drive.drive.time[-1]
 
     def rms(path: np.ndarray) -> float:
