@@ -57,7 +57,7 @@ void LegFilter::turn(double angle) noexcept {
   rotate(state_.velocity);
   for (Vector3& foot : state_.feet) rotate(foot);
   auto P = covariance();
-  for (int entry = 0; entry < kEntries; entry += 3) {
+  for (int entry = 0; entry < kGround; entry += 3) {
     if (entry == kRateBias || entry == kForceBias) continue;
     P.middleRows<3>(entry) = (matrix * P.middleRows<3>(entry)).eval();
     P.middleCols<3>(entry) = (P.middleCols<3>(entry) * matrix.transpose()).eval();
@@ -65,7 +65,7 @@ void LegFilter::turn(double angle) noexcept {
 }
 
 void LegFilter::predict(const Vector3d& rate, const Vector3d& force, const std::array<Vector3d, kLegs>& rolling,
-                        const std::array<double, kLegs>& slide, double dt) noexcept {
+                        double creep, double dt) noexcept {
   const Quaterniond before = attitude();
   const Vector3d turn = dt * (rate - ConstMap(state_.rate_bias.data()));
   Transition transition;
@@ -94,7 +94,7 @@ void LegFilter::predict(const Vector3d& rate, const Vector3d& force, const std::
   grow(kSpeed, kAccelerometerNoise);
   grow(kRateBias, kGyroWalk);
   grow(kForceBias, kAccelerometerWalk);
-  for (std::size_t foot = 0; foot < kLegs; ++foot) grow(kFeet + 3 * static_cast<int>(foot), slide[foot]);
+  for (std::size_t foot = 0; foot < kLegs; ++foot) grow(kFeet + 3 * static_cast<int>(foot), creep);
 }
 
 void LegFilter::set_variance(int entry, double variance) noexcept {
@@ -106,7 +106,9 @@ void LegFilter::set_variance(int entry, double variance) noexcept {
 
 void LegFilter::land(std::size_t foot, const Vector3d& place) noexcept {
   Map(state_.feet[foot].data()) = attitude() * place;
-  for (int axis = 0; axis < 3; ++axis) set_variance(kFeet + 3 * static_cast<int>(foot) + axis, kFoot * kFoot);
+  const int entry = kFeet + 3 * static_cast<int>(foot);
+  for (int axis = 0; axis < 3; ++axis) set_variance(entry + axis, kFoot * kFoot);
+  error_.segment<3>(entry).setZero();  // the attitude's error is that of the place, too
 }
 
 void LegFilter::stand(std::size_t foot, const Vector3d& place) noexcept {
@@ -131,15 +133,54 @@ void LegFilter::stop(double deviation) noexcept {
     measure(kSpeed + axis, state_.velocity[static_cast<std::size_t>(axis)], deviation * deviation);
 }
 
+/// Returns the change of the foot's height with each entry of the error.
+LegFilter::Column LegFilter::height_row(std::size_t foot) const noexcept {
+  Column row = Column::Zero();
+  row[kTurn] = state_.feet[foot][1];
+  row[kTurn + 1] = -state_.feet[foot][0];
+  row[kPlace + 2] = row[kFeet + 3 * static_cast<int>(foot) + 2] = 1;
+  return row;
+}
+
+bool LegFilter::touch(std::size_t foot, double deviation, double gate) noexcept {
+  Column row = height_row(foot);
+  row[kGround] = -1;
+  const Column column = covariance() * row;
+  const double innovation = height(foot) - state_.ground - row.dot(error_);
+  const double expected = row.dot(column) + deviation * deviation;
+  if (innovation * innovation > gate * gate * expected) return false;
+  correct(column, innovation, expected);
+  return true;
+}
+
+void LegFilter::set_ground(std::size_t foot, double deviation) noexcept {
+  const Column row = height_row(foot), column = covariance() * row;
+  state_.ground = height(foot);
+  error_[kGround] = row.dot(error_);
+  auto P = covariance();
+  P.row(kGround) = column.transpose();
+  P.col(kGround) = column;
+  P(kGround, kGround) = row.dot(column) + deviation * deviation;
+}
+
+bool LegFilter::as_high(std::size_t foot, std::size_t other, double deviation, double gate) const noexcept {
+  const Column row = height_row(foot) - height_row(other);
+  const double difference = height(foot) - height(other) - row.dot(error_);
+  return difference * difference <= gate * gate * (row.dot(covariance() * row) + 2 * deviation * deviation);
+}
+
 /// `error` is a measurement of this entry of the error.
 void LegFilter::measure(int entry, double error, double variance) noexcept {
-  auto P = covariance();
-  const Eigen::Matrix<double, kRows, 1> column = P.col(entry);
-  const double expected = column[entry] + variance;
+  const Column column = covariance().col(entry);
+  correct(column, error - error_[entry], column[entry] + variance);
+}
+
+/// `column` is the covariance of the error with a measurement, `expected` the variance of its innovation.
+void LegFilter::correct(const Column& column, double innovation, double expected) noexcept {
   if (!(expected > 0)) return;
-  const Eigen::Matrix<double, kRows, 1> gain = column / expected;
-  error_ += (error - error_[entry]) * gain;
-  P.noalias() -= gain * column.transpose();
+  const Column gain = column / expected;
+  error_ += innovation * gain;
+  covariance().noalias() -= gain * column.transpose();
 }
 
 void LegFilter::finish() noexcept {
@@ -155,6 +196,7 @@ void LegFilter::finish() noexcept {
   Map(state_.position.data()) -= error_.segment<3>(kPlace);
   Map(state_.rate_bias.data()) -= error_.segment<3>(kRateBias);
   Map(state_.force_bias.data()) -= error_.segment<3>(kForceBias);
+  state_.ground -= error_[kGround];
   error_.setZero();
 }
 

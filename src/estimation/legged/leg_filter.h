@@ -15,10 +15,12 @@
 ///
 ///   gain K = P column / (P entry + variance)
 ///
-/// A foot that lands becomes a landmark where it is, which changes nothing else. One that stands may slide, with the
-/// density kSlide, and kLandSlide at the edges of its stance. An innovation
+/// A foot that lands becomes a landmark where it is, which changes nothing else. One that stands may creep. An innovation
 /// beyond kGate deviations means that it has moved. Then its own variance grows by the innovation's square, so that the
 /// foot moves and not the body.
+///
+/// The height h of one level plane is a state, too. A foot on it measures p_z + eᵢ_z − h, whose error is that of p_z, êᵢ_z
+/// and ĥ, and ξ_x êᵢ_y − ξ_y êᵢ_x.
 ///
 /// All functions are real-time safe.
 
@@ -40,21 +42,29 @@ class LegFilter {
   static constexpr double kGyroBias = 0.02;            ///< rad/s, before a rest
   static constexpr double kAccelerometerBias = 0.2;    ///< m/s²
   static constexpr double kFoot = 5e-4;                ///< m, of a foot's place by kinematics
-  static constexpr double kSlide = 0.003;              ///< m/√s
-  static constexpr double kLandSlide = 0.03;           ///< m/√s
   static constexpr double kGate = 4;
 
   /// Entries of the error.
-  enum Entry : int { kTurn = 0, kSpeed = 3, kPlace = 6, kRateBias = 9, kForceBias = 12, kFeet = 15, kEntries = 27 };
-  static constexpr int kRows = 28;  ///< even, for aligned columns; the last one is 0
-  using Covariance = Eigen::Matrix<double, kRows, kRows>;
+  enum Entry : int {
+    kTurn = 0,
+    kSpeed = 3,
+    kPlace = 6,
+    kRateBias = 9,
+    kForceBias = 12,
+    kFeet = 15,
+    kGround = 27,
+    kEntries = 28  ///< even, for aligned columns
+  };
+  using Column = Eigen::Matrix<double, kEntries, 1>;
+  using Covariance = Eigen::Matrix<double, kEntries, kEntries>;
 
   struct State {
     std::array<double, 4> attitude{0, 0, 0, 1};  ///< x y z w, base → odom
     Vector3 velocity{}, position{};              ///< m/s, m
     Vector3 rate_bias{}, force_bias{};           ///< rad/s, m/s², base axes
     std::array<Vector3, kLegs> feet{};           ///< m, eᵢ
-    alignas(16) std::array<double, kRows * kRows> covariance{};
+    double ground = 0;                           ///< m, h
+    alignas(16) std::array<double, kEntries * kEntries> covariance{};
   };
 
   explicit LegFilter(State& state) noexcept : state_(state) {}
@@ -66,10 +76,9 @@ class LegFilter {
   /// Turns odom by this angle in rad about z, beneath the position.
   void turn(double angle) noexcept;
 
-  /// `rate` and `force` are measured; `rolling` is in base axes.
+  /// `rate` and `force` are measured; `rolling` is in base axes. Feet creep with the density `creep` [m/√s].
   void predict(const Eigen::Vector3d& rate, const Eigen::Vector3d& force,
-               const std::array<Eigen::Vector3d, kLegs>& rolling, const std::array<double, kLegs>& slide,
-               double dt) noexcept;
+               const std::array<Eigen::Vector3d, kLegs>& rolling, double creep, double dt) noexcept;
 
   /// `place` is in base axes, from the body.
   void land(std::size_t foot, const Eigen::Vector3d& place) noexcept;
@@ -78,7 +87,20 @@ class LegFilter {
   void stand(std::size_t foot, const Eigen::Vector3d& place) noexcept;
   void rest(const Eigen::Vector3d& rate, double deviation) noexcept;  ///< the measured rate is the bias
   void stop(double deviation) noexcept;                               ///< the velocity is zero
+  /// The foot is on the plane, to this deviation [m]. Without a correction it returns false if the foot is `gate`
+  /// deviations beside it.
+  bool touch(std::size_t foot, double deviation, double gate) noexcept;
   void finish() noexcept;
+
+  /// The plane is now where this foot is, to this deviation [m].
+  void set_ground(std::size_t foot, double deviation) noexcept;
+  /// Returns whether two feet, known to this deviation [m] each, are as high as each other, within `gate` deviations.
+  bool as_high(std::size_t foot, std::size_t other, double deviation, double gate) const noexcept;
+  Eigen::Vector3d foot(std::size_t foot) const noexcept { return Eigen::Vector3d(state_.feet[foot].data()); }
+  /// Returns the largest variance of the velocity in m²/s².
+  double speed_variance() const noexcept { return covariance().diagonal().segment<3>(kSpeed).maxCoeff(); }
+  /// Returns the variance of roll and pitch together in rad².
+  double tilt_variance() const noexcept { return covariance().diagonal().segment<2>(kTurn).sum(); }
 
   /// Sets entry and all of its covariances to zero, but `variance` on the diagonal.
   void set_variance(int entry, double variance) noexcept;
@@ -88,10 +110,16 @@ class LegFilter {
   Eigen::Map<Covariance, Eigen::Aligned16> covariance() noexcept {
     return Eigen::Map<Covariance, Eigen::Aligned16>(state_.covariance.data());
   }
+  Eigen::Map<const Covariance, Eigen::Aligned16> covariance() const noexcept {
+    return Eigen::Map<const Covariance, Eigen::Aligned16>(state_.covariance.data());
+  }
+  double height(std::size_t foot) const noexcept { return state_.position[2] + state_.feet[foot][2]; }
+  Column height_row(std::size_t foot) const noexcept;
   void measure(int entry, double error, double variance) noexcept;
+  void correct(const Column& column, double innovation, double expected) noexcept;
 
   State& state_;
-  Eigen::Matrix<double, kRows, 1> error_ = Eigen::Matrix<double, kRows, 1>::Zero();
+  Column error_ = Column::Zero();
 };
 
 }  // namespace robot_control

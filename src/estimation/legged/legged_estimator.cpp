@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "estimation/legged/small_turn.h"
+#include "machine/gravity.h"
 #include "signals/rotation.h"
 
 namespace robot_control {
@@ -22,31 +23,34 @@ constexpr double kHeightDeviation = 0.005;  // m, of a robot that lies or stands
 constexpr double kRestRate = 0.01;          // rad/s, of one sample of the gyro
 constexpr double kRestSpeed = 0.02;         // m/s
 constexpr double kFallSpeed = 1;            // m/s, of a body on the ground: its velocity vanishes within 0.3 s
-constexpr double kEdge = 0.15;              // of a stance
 // The densities of the filter exceed white noise, so that errors which repeat with every step do not look like
 // knowledge of the tilt. The velocity is better than they say, by this part of the variance
 // (docs/evidence/derivations.md).
 constexpr double kSpeedPart = 0.07;
 
-/// Returns which feet stand: those that bear as the command asked, or, where none is asked to, those that bear. A foot
-/// that stood still does while it may bear. Without the angles of all joints no foot is known to stand.
-std::array<bool, kLegs> feet_that_stand(const SensorFrame& sensors, const LeggedEstimator::State& state) noexcept {
-  std::array<bool, kLegs> stand{};
-  if (!joints_have(sensors, kLegsJoints, kValidMotion)) return stand;
+/// Returns which feet bear: as the command asked, or, where none is asked to, all that do. A foot that stood still does
+/// while it may bear. Without the angles of all joints no foot is known to bear.
+std::array<bool, kLegs> feet_that_bear(const SensorFrame& sensors, const LeggedEstimator::State& state) noexcept {
+  std::array<bool, kLegs> bear{};
+  if (!joints_have(sensors, kLegsJoints, kValidMotion)) return bear;
   const bool asked = feet_asked(sensors);
   for (std::size_t leg = 0; leg < kLegs; ++leg)
-    stand[leg] = (FootContacts::bears(state.contacts.probability[leg]) ||
-                  (state.bears[leg] != 0 && state.contacts.probability[leg] > 0)) &&
-                 (sensors.gate.contact_schedule[leg] > 0 || !asked);
-  return stand;
+    bear[leg] = (FootContacts::bears(state.contacts.probability[leg]) ||
+                 (state.stands[leg] != 0 && state.contacts.probability[leg] > 0)) &&
+                (sensors.gate.contact_schedule[leg] > 0 || !asked);
+  return bear;
 }
 
 }  // namespace
 
 LeggedEstimator::LeggedEstimator(const LegModel& robot, double period)
     : period_(period),
+      footfall_(kFootfall * robot.leg_length()),
+      creep_(footfall_ / std::sqrt(std::sqrt(robot.leg_length() / kGravity))),
+      foot_speed_(kFootSpeed * std::sqrt(robot.leg_length() * kGravity)),
       legs_(robot.legs),
       contacts_(robot),
+      ground_(robot.leg_length()),
       base_from_imu_(rotation_of(robot.imu_in_base.orientation)),
       imu_(robot.imu_in_base.position.data()),
       belly_ground_(robot.belly) {
@@ -80,8 +84,7 @@ void LeggedEstimator::resume(const StateFrame& last) noexcept {
     leg_filter().set_variance(LegFilter::kPlace + static_cast<int>(i), base.pose_covariance[7 * i]);
   leg_filter().set_variance(LegFilter::kTurn + 2, base.pose_covariance[35]);
   state_.distance = base.distance;
-  state_.ground = belly_ground_;
-  state_.grounded = state_.begun = 1;
+  state_.begun = 1;
 }
 
 void LeggedEstimator::set_pose(const Vector3& pose) noexcept {
@@ -125,7 +128,8 @@ void LeggedEstimator::step(const SensorFrame& sensors, StateFrame& out) noexcept
   const bool measured = joints_have(sensors, kLegsJoints, kValidMotion);
   const bool felt = read(sensors, dt);
   const Vector3d up = quaternion_of(state_.filter.attitude).conjugate() * Vector3d::UnitZ();
-  const FeetMotion feet = feet_motion(legs_, sensors, rate(), up);
+  const Vector3d normal = quaternion_of(state_.filter.attitude).conjugate() * ConstMap(state_.ground.normal.data());
+  const FeetMotion feet = feet_motion(legs_, sensors, rate(), normal);
   if (state_.begun != 0) {
     if (measured) {
       const Vector3d force = ConstMap(state_.force.data()) - ConstMap(state_.filter.force_bias.data());
@@ -137,10 +141,8 @@ void LeggedEstimator::step(const SensorFrame& sensors, StateFrame& out) noexcept
                                  .asked = feet_asked(sensors),
                                  .dt = dt};
     PlainLegs::turn(input, state_.plain);
-    if (measured) PlainLegs::move(input, feet, feet_that_stand(sensors, state_), state_.plain);
-    filter(sensors, feet, dt);
-    settle(sensors);
-    compare(dt);
+    if (measured) PlainLegs::move(input, feet, feet_that_bear(sensors, state_), state_.plain);
+    compare(filter(sensors, feet, dt), dt);
     state_.distance += dt * velocity().norm();
   }
   write(sensors, feet, felt && measured, out);
@@ -175,56 +177,51 @@ bool LeggedEstimator::read(const SensorFrame& sensors, double dt) noexcept {
   return gyro && accelerometer;
 }
 
-void LeggedEstimator::filter(const SensorFrame& sensors, const FeetMotion& feet, double dt) noexcept {
+/// Returns whether feet bear, and none shows the filter's velocity.
+bool LeggedEstimator::filter(const SensorFrame& sensors, const FeetMotion& feet, double dt) noexcept {
   LegFilter filter(state_.filter);
-  std::array<double, kLegs> slide{};
-  for (std::size_t leg = 0; leg < kLegs; ++leg) {
-    const double stance = sensors.gate.contact_schedule[leg];
-    const bool inside = stance > kEdge && stance < 1 - kEdge;
-    slide[leg] = inside ? LegFilter::kSlide : LegFilter::kLandSlide;
-  }
-  filter.predict(ConstMap(state_.rate.data()), ConstMap(state_.force.data()), feet.rolling, slide, dt);
-  const std::array<bool, kLegs> stand = feet_that_stand(sensors, state_);
-  for (std::size_t leg = 0; leg < kLegs; ++leg) {
-    const Vector3d place = feet.place[leg] - imu_;
-    if (stand[leg] && state_.bears[leg] != 0) filter.stand(leg, place);
-    if (stand[leg] && state_.bears[leg] == 0) filter.land(leg, place);
-    state_.bears[leg] = stand[leg] ? 1 : 0;
-  }
+  filter.predict(ConstMap(state_.rate.data()), ConstMap(state_.force.data()), feet.rolling, creep_, dt);
+  const std::array<bool, kLegs> bear = feet_that_bear(sensors, state_);
+  const bool lost = stand(bear, feet, filter);
   const double once = std::sqrt(0.001 / dt);
   if (state_.still > kRestTime) {
     filter.rest(ConstMap(state_.rate.data()), kRestRate * once);
     filter.stop(kRestSpeed * once);
-  } else if (stand == std::array<bool, kLegs>{} && joints_have(sensors, kLegsJoints, kValidMotion) &&
+  } else if (bear == std::array<bool, kLegs>{} && joints_have(sensors, kLegsJoints, kValidMotion) &&
              !feet_asked(sensors)) {
     filter.stop(kFallSpeed * once);
   }
   filter.finish();
+  if (bear == std::array<bool, kLegs>{} && !feet_asked(sensors) && state_.still > kRestTime)
+    set_height(state_.ground.known != 0 ? state_.filter.ground - belly_ground_ : position()[2]);
+  return lost;
 }
 
-void LeggedEstimator::settle(const SensorFrame& sensors) noexcept {
-  double height = 0, count = 0;
+bool LeggedEstimator::stand(const std::array<bool, kLegs>& bear, const FeetMotion& feet, LegFilter& filter) noexcept {
+  const double deviation = std::sqrt(filter.speed_variance() + foot_speed_ * foot_speed_);
+  bool any = false, all_move = true;
   for (std::size_t leg = 0; leg < kLegs; ++leg) {
-    if (state_.bears[leg] == 0) continue;
-    height += state_.filter.position[2] + state_.filter.feet[leg][2];
-    count += 1;
+    const Vector3d place = feet.place[leg] - imu_;
+    const bool moves = (velocity() - feet.base_velocity[leg]).norm() > kStandGate * deviation;
+    any = any || bear[leg];
+    all_move = all_move && (moves || !bear[leg]);
+    const bool stood = state_.stands[leg] != 0;
+    state_.stands[leg] = bear[leg] && (stood || !moves) ? 1 : 0;
+    if (state_.stands[leg] == 0) continue;
+    if (stood) {
+      filter.stand(leg, place);
+    } else {
+      filter.land(leg, place);
+      ground_.footfall(leg, footfall_, filter, state_.ground);
+    }
   }
-  if (count == 0 && !feet_asked(sensors)) {
-    state_.lay = 1;
-    if (state_.still > kRestTime) set_height(0);
-  }
-  if (count == 0 || state_.lay == 0) return;
-  state_.lay = 0;
-  if (state_.grounded == 0) state_.ground = height / count;
-  state_.grounded = 1;
-  set_height(position()[2] + state_.ground - height / count);
+  return any && all_move;
 }
 
-void LeggedEstimator::compare(double dt) noexcept {
+void LeggedEstimator::compare(bool lost, double dt) noexcept {
   const Vector3d plain = ConstMap(state_.plain.velocity.data());
   state_.degraded = std::max(0.0, state_.degraded - dt);
-  const bool apart = (velocity() - plain).norm() > kMaxDivergence;
-  state_.apart = apart ? state_.apart + dt : 0;
+  state_.apart = lost ? state_.apart + dt : 0;
   if (state_.apart < kDivergenceTime) return;
   state_.apart = 0;
   state_.degraded = kDegraded;
@@ -234,7 +231,8 @@ void LeggedEstimator::compare(double dt) noexcept {
   const Vector3d at = position();
   leg_filter().begin(attitude, attitude * (plain + rate().cross(imu_)), kPlainTilt, kPlainSpeed);
   Map(state_.filter.position.data()) += at - position();
-  state_.bears = {};
+  state_.stands = {};
+  state_.ground.fallen = {};
 }
 
 void LeggedEstimator::write(const SensorFrame& sensors, const FeetMotion& feet, bool good,
@@ -257,7 +255,7 @@ void LeggedEstimator::write(const SensorFrame& sensors, const FeetMotion& feet, 
   for (std::size_t leg = 0; leg < kLegs; ++leg) {
     out.contacts[leg].probability = state_.contacts.probability[leg];
     out.contacts[leg].load = state_.contacts.loads[leg];
-    out.contacts[leg].slip = state_.bears[leg] != 0 ? (feet.base_velocity[leg] - velocity()).norm() : 0;
+    out.contacts[leg].slip = state_.stands[leg] != 0 ? (feet.base_velocity[leg] - velocity()).norm() : 0;
   }
   for (std::size_t i = 0; i < kLegsJoints; ++i) out.joint_velocity[i] = valid_velocity(sensors.joints[i]);
 }

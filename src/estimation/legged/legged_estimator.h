@@ -5,14 +5,18 @@
 ///   contacts   foot_contacts.h: what each foot bears, and how probably
 ///   rest       nothing moves: joints slower than kRestRate in the mean over kMeanTime, and a gyro within kRestRate about it,
 ///              for kRestTime
-///   filter     leg_filter.h: feet that bear are landmarks. At rest the gyro measures its bias, and the velocity is
-///              zero. A robot whose feet neither bear nor are asked to lies, or falls on its body: its velocity
-///              vanishes
-///   plain      plain_legs.h. Where both velocities differ by more than kMaxDivergence for kDivergenceTime, the filter begins again
-///              with roll, pitch and velocity of the plain estimate, and the state is degraded for kDegraded
-///   height     the ground is level where the robot lies: feet that bear after it lay stand where the first ones of the
-///              run stood. While nothing moves and no foot bears, it lies, at zero. A restarted estimator takes its
-///              belly's height
+///   filter     leg_filter.h: feet that stand are landmarks. A foot that bears stands once the velocity of the body that
+///              it shows is that of the filter, within kStandGate deviations. Before, it still falls, rolls or slides.
+///              At rest the gyro measures its bias, and the velocity is zero. A robot whose feet neither bear nor are
+///              asked to lies, or falls on its body: its velocity vanishes
+///   plain      plain_legs.h. Where feet bear, but none shows the filter's velocity for kDivergenceTime, the filter
+///              begins again with roll, pitch and velocity of the plain estimate, and the state is degraded for
+///              kDegraded
+///   height     ground.h. A robot that lies at rest has its belly on the plane
+///
+/// What a contact is scales with the length l of a leg. A foot is known to kFootfall l: so rough is the ground, so far
+/// are foot and ground compressed, and so far the foot creeps within √(l/g). It moves with kFootSpeed √(l g) while it
+/// stands.
 ///
 /// The pose begins at zero. A contact's slip is the speed of its foot over the ground.
 
@@ -23,6 +27,7 @@
 
 #include "estimation/legged/feet_motion.h"
 #include "estimation/legged/foot_contacts.h"
+#include "estimation/legged/ground.h"
 #include "estimation/legged/leg_filter.h"
 #include "estimation/legged/plain_legs.h"
 #include "machine/legs/leg_model.h"
@@ -37,9 +42,11 @@ class LeggedEstimator {
   static constexpr double kRestRate = 0.05;       ///< rad/s, of gyro and joints
   static constexpr double kMaxBias = 0.1;         ///< rad/s
   static constexpr double kMeanTime = 0.1;        ///< s, of the means of gyro and joints
-  static constexpr double kMaxDivergence = 0.15;  ///< m/s
   static constexpr double kDivergenceTime = 0.1;  ///< s
   static constexpr double kDegraded = 1.0;        ///< s
+  static constexpr double kFootfall = 0.0125;     ///< of a leg's length
+  static constexpr double kFootSpeed = 0.03;      ///< of √(l g)
+  static constexpr double kStandGate = 4;
 
   /// `period` is in s.
   LeggedEstimator(const LegModel& robot, double period);
@@ -56,15 +63,13 @@ class LeggedEstimator {
     LegFilter::State filter;
     PlainLegs::State plain;
     FootContacts::State contacts;
-    std::array<std::uint64_t, kLegs> bears{};  ///< 1: the foot is a landmark
+    std::array<std::uint64_t, kLegs> stands{};  ///< 1: the foot is a landmark
     Vector3 rate{}, force{};                   ///< rad/s, m/s², base axes: the newest sample
     Vector3 mean_rate{};                       ///< rad/s, base axes
     LegsValues mean_rates{};                   ///< rad/s, of the joints
-    double ground = 0;                         ///< m, odom axes: height of the centres of feet on the ground
-    std::uint64_t grounded = 0;                ///< 1: `ground` is known
-    std::uint64_t lay = 1;                     ///< 1: no foot has borne since the robot lay
+    Ground::State ground;
     double still = 0;                          ///< s since anything moved
-    double apart = 0;                          ///< s for which filter and plain estimate differ
+    double apart = 0;                          ///< s for which no foot that bears shows the filter's velocity
     double degraded = 0;                       ///< s left
     double distance = 0;                       ///< m
     std::uint64_t begun = 0;                   ///< 1: the attitude was set by an accelerometer
@@ -76,9 +81,9 @@ class LeggedEstimator {
 
  private:
   bool read(const SensorFrame& sensors, double dt) noexcept;
-  void filter(const SensorFrame& sensors, const FeetMotion& feet, double dt) noexcept;
-  void settle(const SensorFrame& sensors) noexcept;
-  void compare(double dt) noexcept;
+  bool filter(const SensorFrame& sensors, const FeetMotion& feet, double dt) noexcept;
+  bool stand(const std::array<bool, kLegs>& bear, const FeetMotion& feet, LegFilter& filter) noexcept;
+  void compare(bool lost, double dt) noexcept;
   LegFilter leg_filter() noexcept { return LegFilter(state_.filter); }
   Eigen::Vector3d rate() const noexcept;      ///< rad/s, less its bias
   Eigen::Vector3d velocity() const noexcept;  ///< m/s, of the base's origin, base axes
@@ -88,8 +93,12 @@ class LeggedEstimator {
   void write(const SensorFrame& sensors, const FeetMotion& feet, bool good, StateFrame& out) const noexcept;
 
   double period_;
+  double footfall_;    ///< m, deviation of a foot
+  double creep_;       ///< m/√s
+  double foot_speed_;  ///< m/s
   std::array<Leg, kLegs> legs_;
   FootContacts contacts_;
+  Ground ground_;
   Eigen::Matrix3d base_from_imu_;
   Eigen::Vector3d imu_;      ///< m, base axes
   double belly_ground_ = 0;  ///< m, base axes: height of the centres of feet on the ground on which the belly lies

@@ -22,6 +22,7 @@ Vector3d vector_of(const Vector3& v) {
 /// the filter assumes.
 struct Walk {
   static constexpr double kPeriod = 0.001;  // s
+  static constexpr double kCreep = 0.003;   // m/√s
   explicit Walk(std::uint64_t seed, bool errors = true) : random(seed), noisy(errors) {
     state.covariance = {};
     LegFilter filter(state);
@@ -54,12 +55,12 @@ struct Walk {
     turn = (turn * turned_by(kPeriod * rate)).normalized();
     position += kPeriod * (velocity + kPeriod / 2 * acceleration);
     velocity += kPeriod * acceleration;
-    for (Vector3d& foot : feet) foot += kPeriod * noise(LegFilter::kSlide);
+    for (Vector3d& foot : feet) foot += kPeriod * noise(kCreep);
     LegFilter filter(state);
     filter.predict(rate + rate_bias + noise(LegFilter::kGyroNoise),
                    force + force_bias + noise(LegFilter::kAccelerometerNoise),
                    {Vector3d::Zero(), Vector3d::Zero(), Vector3d::Zero(), Vector3d::Zero()},
-                   {LegFilter::kSlide, LegFilter::kSlide, LegFilter::kSlide, LegFilter::kSlide}, kPeriod);
+                   kCreep, kPeriod);
     for (std::size_t foot = 0; foot < kLegs; ++foot)
       filter.stand(foot, seen(foot) + (foot == 0 ? jump : Vector3d::Zero()));
     filter.finish();

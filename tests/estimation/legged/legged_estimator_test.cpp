@@ -83,6 +83,29 @@ TEST(LeggedEstimator, GivesWayToThePlainEstimateWhereTheyContradict) {
   EXPECT_LE(fastest, 60 * 0.15);
 }
 
+/// One foot stands, and three land with the speed of a swing.
+TEST(LeggedEstimator, TakesNoFootForALandmarkThatBearsButStillMoves) {
+  Standing robot;
+  robot.sensors.gate.contact_schedule = {0, 0, 0, 0.5};
+  for (std::size_t leg = 0; leg < 3; ++leg) robot.sensors.contacts[leg].force = {};
+  robot.run(1);
+  const Vector3 before = robot.out.base.pose_odom.position;
+  robot.sensors.gate.contact_schedule = {0.1, 0.1, 0.1, 0.5};
+  for (std::size_t leg = 0; leg < 3; ++leg) robot.sensors.contacts[leg].force = {0, 0, 31};
+  for (int k = 0; k < 30; ++k) {
+    for (std::size_t leg = 0; leg < 3; ++leg) {
+      robot.sensors.joints[3 * leg + 2].velocity = -4;  // its foot moves with 0.7 m/s
+      robot.sensors.joints[3 * leg + 2].position -= 4 * Standing::kPeriod;
+    }
+    robot.run(Standing::kPeriod);
+    EXPECT_LE(robot.speed(), 0.01) << k;
+  }
+  for (std::size_t leg = 0; leg < 3; ++leg) robot.sensors.joints[3 * leg + 2].velocity = 0;
+  robot.run(0.1);
+  for (std::size_t leg = 0; leg < kLegs; ++leg) EXPECT_EQ(robot.estimator.state().stands[leg], 1u) << leg;
+  for (std::size_t i = 0; i < 3; ++i) EXPECT_NEAR(robot.out.base.pose_odom.position[i], before[i], 1e-3) << i;
+}
+
 TEST(LeggedEstimator, ContinuesWithoutAJump) {
   Standing robot;
   robot.sensors.imu.angular_velocity = {0.03, -0.02, 0.04};
