@@ -155,7 +155,7 @@ TRIALS: dict[str, tuple[str, Callable[[Any, argparse.Namespace, Runner], Result]
     ),
     "driving": ("drives.normal_driving", lambda m, g, runner: m.bench(g.share, say, runner, g.errors, g.wheel_command)),
     "odometry": ("odometry.bench", _odometry),
-    "recordings": ("recordings", lambda m, g, _: m.bench(_parts_of("recordings", g), say)),
+    "recordings": ("recordings", lambda m, g, _: m.bench(_parts_of("recordings", g), say, programs_of(g), g.file)),
     "tuning": ("tuning", lambda m, g, runner: m.bench(g.first, g.runs or m.ALL_RUNS, say, runner)),
     "replay": ("faults.replayed", lambda m, g, _: m.bench(g.first, g.runs or m.ALL_RUNS, say)),
     "hostile": ("hostile", lambda m, g, _: m.bench(g.first, g.runs or m.ALL_RUNS, say)),
@@ -279,6 +279,7 @@ def parse(arguments: Sequence[str] | None = None) -> argparse.Namespace:
     parser.add_argument("--robot", choices=OWN, default=DIFFBOT, help=f"{', '.join(BY_ROBOT)}: the robot")
     parser.add_argument("--only", type=_scenarios, metavar="SCENARIO[,…]", help="odometry: these scenarios alone")
     parser.add_argument("--plots", type=Path, help="odometry: folder for pictures")
+    parser.add_argument("--file", type=Path, help="recordings legs: another recording, of the same form")
     parser.add_argument("--keep", type=Path, help="record: folder for the logs and their reports")
     cluster = parser.add_argument_group("cluster", f"{', '.join(ON_CLUSTERS)} run with the workers of a Dask scheduler")
     cluster.add_argument("--scheduler", metavar="tls://HOST:8786", help="its address; default: this computer only")

@@ -1,7 +1,8 @@
 #pragma once
 /// The ground below the feet: its normal, and a level plane of known height (LegFilter::State::ground).
 ///
-/// normal   n of the diagonals between the last footfalls of all legs, with the mean over kFootfalls of them. A ball foot
+/// normal   n of the diagonals between the last footfalls of all legs, with the mean over kFootfalls of them. A ball
+/// foot
 ///          rolls along the ground, not along the horizon
 /// level    the ground is level where n is vertical, and where a footfall is as high as those of the other legs, all
 ///          within kLevelGate deviations
@@ -24,9 +25,9 @@ class Ground {
   static constexpr double kPlaneGate = 3;
 
   struct State {
-    Vector3 normal{0, 0, 1};                     ///< odom axes
-    std::array<std::uint64_t, kLegs> fallen{};   ///< 1: the filter's foot is a footfall
-    std::uint64_t known = 0;                     ///< 1: there is a plane
+    Vector3 normal{0, 0, 1};                    ///< odom axes
+    std::array<std::uint64_t, kLegs> fallen{};  ///< 1: the filter's foot is a footfall
+    std::uint64_t known = 0;                    ///< 1: there is a plane
   };
 
   /// `length` is that of a leg in m.

@@ -15,12 +15,12 @@
 ///
 ///   gain K = P column / (P entry + variance)
 ///
-/// A foot that lands becomes a landmark where it is, which changes nothing else. One that stands may creep. An innovation
-/// beyond kGate deviations means that it has moved. Then its own variance grows by the innovation's square, so that the
-/// foot moves and not the body.
+/// A foot that lands becomes a landmark where it is, which changes nothing else. One that stands may creep. An
+/// innovation beyond kGate deviations means that it has moved. Then its own variance grows by the innovation's square,
+/// so that the foot moves and not the body.
 ///
-/// The height h of one level plane is a state, too. A foot on it measures p_z + eᵢ_z − h, whose error is that of p_z, êᵢ_z
-/// and ĥ, and ξ_x êᵢ_y − ξ_y êᵢ_x.
+/// The height h of one level plane is a state, too. A foot on it measures p_z + eᵢ_z − h, whose error is that of p_z,
+/// êᵢ_z and ĥ, and ξ_x êᵢ_y − ξ_y êᵢ_x.
 ///
 /// All functions are real-time safe.
 

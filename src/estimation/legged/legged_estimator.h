@@ -14,9 +14,9 @@
 ///              kDegraded
 ///   height     ground.h. A robot that lies at rest has its belly on the plane
 ///
-/// What a contact is scales with the length l of a leg. A foot is known to kFootfall l: so rough is the ground, so far
-/// are foot and ground compressed, and so far the foot creeps within √(l/g). It moves with kFootSpeed √(l g) while it
-/// stands.
+/// The deviations of a contact scale with the length l of a leg. A foot is known to kFootfall l. The ground is as rough
+/// as that, and foot and ground give way by as much. The foot creeps as far within √(l/g). While it stands, it moves
+/// with kFootSpeed √(l g).
 ///
 /// The pose begins at zero. A contact's slip is the speed of its foot over the ground.
 
@@ -64,15 +64,15 @@ class LeggedEstimator {
     PlainLegs::State plain;
     FootContacts::State contacts;
     std::array<std::uint64_t, kLegs> stands{};  ///< 1: the foot is a landmark
-    Vector3 rate{}, force{};                   ///< rad/s, m/s², base axes: the newest sample
-    Vector3 mean_rate{};                       ///< rad/s, base axes
-    LegsValues mean_rates{};                   ///< rad/s, of the joints
+    Vector3 rate{}, force{};                    ///< rad/s, m/s², base axes: the newest sample
+    Vector3 mean_rate{};                        ///< rad/s, base axes
+    LegsValues mean_rates{};                    ///< rad/s, of the joints
     Ground::State ground;
-    double still = 0;                          ///< s since anything moved
-    double apart = 0;                          ///< s for which no foot that bears shows the filter's velocity
-    double degraded = 0;                       ///< s left
-    double distance = 0;                       ///< m
-    std::uint64_t begun = 0;                   ///< 1: the attitude was set by an accelerometer
+    double still = 0;         ///< s since anything moved
+    double apart = 0;         ///< s for which no foot that bears shows the filter's velocity
+    double degraded = 0;      ///< s left
+    double distance = 0;      ///< m
+    std::uint64_t begun = 0;  ///< 1: the attitude was set by an accelerometer
     std::uint64_t last_cycle = 0;
     std::uint64_t stepped = 0;  ///< 1: last_cycle is that of a step
   };

@@ -14,10 +14,10 @@ using Eigen::Vector3d;
 /// A body 0.3 m above feet that fall on made ground, one after the other. It moves by a part of a stride between two
 /// footfalls, as its filter knows to kDrift of the height. So the height and its deviation are those of the footfalls.
 struct Footfalls {
-  static constexpr double kLeg = 0.4;         // m
+  static constexpr double kLeg = 0.4;          // m
   static constexpr double kDeviation = 0.004;  // m, of a foot
-  static constexpr double kStride = 0.025;    // m, between two footfalls
-  static constexpr double kDrift = 0.002;     // m, between two footfalls
+  static constexpr double kStride = 0.025;     // m, between two footfalls
+  static constexpr double kDrift = 0.002;      // m, between two footfalls
   explicit Footfalls(double tilt_deviation = 0.002) {
     state.position = {0, 0, 0.3};
     LegFilter(state).begin(Quaterniond::Identity(), Vector3d::Zero(), tilt_deviation, 0);

@@ -59,8 +59,7 @@ struct Walk {
     LegFilter filter(state);
     filter.predict(rate + rate_bias + noise(LegFilter::kGyroNoise),
                    force + force_bias + noise(LegFilter::kAccelerometerNoise),
-                   {Vector3d::Zero(), Vector3d::Zero(), Vector3d::Zero(), Vector3d::Zero()},
-                   kCreep, kPeriod);
+                   {Vector3d::Zero(), Vector3d::Zero(), Vector3d::Zero(), Vector3d::Zero()}, kCreep, kPeriod);
     for (std::size_t foot = 0; foot < kLegs; ++foot)
       filter.stand(foot, seen(foot) + (foot == 0 ? jump : Vector3d::Zero()));
     filter.finish();
