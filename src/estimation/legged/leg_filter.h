@@ -42,7 +42,7 @@ class LegFilter {
   static constexpr double kGyroBias = 0.02;            ///< rad/s, before a rest
   static constexpr double kAccelerometerBias = 0.2;    ///< m/s²
   static constexpr double kFoot = 5e-4;                ///< m, of a foot's place by kinematics
-  static constexpr double kGate = 4;
+  static constexpr double kGate = 8;
 
   /// Entries of the error.
   enum Entry : int {
