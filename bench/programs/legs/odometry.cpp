@@ -77,6 +77,7 @@ void drive(const LegModel& model, const Course& course, std::uint64_t seed, Wors
   parameters.plant.contact_sensors = false;
   parameters.plant.gyro_bias = 0.02;
   parameters.plant.accelerometer_bias = 0.2;
+  parameters.plant.joint_offset = 0.01;
   QuadrupedLoop robot(model, parameters);
   LeggedEstimator beside(model, parameters.loop.period());  // its plain estimate alone counts
   StateFrame unused;

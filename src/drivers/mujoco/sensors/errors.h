@@ -52,6 +52,7 @@ struct Errors {
   double foot_offset = 3;      ///< N, standard deviation of each axis' draw
   double foot_noise = 0.05;    ///< N/√Hz
   double foot_threshold = 10;  ///< N; a smaller force is measured as zero
+  double joint_offset = 0;     ///< rad, standard deviation of the zero of each encoder on legs: set by hand, 0.01
 
   // These errors act only at kField.
   double roughness = 1;  ///< factor of the floor on both vibrations and the slow error (sensor_errors.h)
@@ -100,6 +101,7 @@ inline Keys keys(Errors& errors) {
       {"foot_offset", &errors.foot_offset, "N", 0, 1000},
       {"foot_noise", &errors.foot_noise, "N/√Hz", 0, 100},
       {"foot_threshold", &errors.foot_threshold, "N", 0, 1000},
+      {"joint_offset", &errors.joint_offset, "rad", 0, 0.2},
   };
 }
 

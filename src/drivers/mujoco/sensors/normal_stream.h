@@ -16,6 +16,7 @@ enum ErrorStream : std::uint64_t {
   kLeftSlipStream = 10,
   kRightSlipStream = 11,
   kLaserStream = 16,  ///< and all numbers behind it: one stream per scan
+  kJointOffsetStream = 1ULL << 62,
 };
 
 /// A NormalStream returns independent standard normal numbers by G. Marsaglia's polar method (SIAM Review 6, 1964, p.

@@ -64,6 +64,7 @@ SensorErrors::SensorErrors(const MachineModel& machine, const std::vector<Rim>& 
       accelerometer_(parameters.accelerometer_noise, parameters.accelerometer_bias, parameters.accelerometer_bias_walk,
                      period, kAccelerometerDevice),
       threshold_(parameters.foot_threshold),
+      joint_offset_(rims.empty() ? parameters.joint_offset : 0),
       vibration_(rims, parameters, period),
       late_imu_(parameters.imu_delay.value_or(imu_of(rims).mean), parameters.imu_jitter.value_or(imu_of(rims).jitter),
                 period, kImuLateStream),
@@ -89,13 +90,16 @@ void SensorErrors::reset() {
   vibration_.reset(seed_);
   late_imu_.reset(seed_);
   late_encoders_.reset(seed_);
+  NormalStream offsets;
+  offsets.seed(seed_, kJointOffsetStream);
+  for (Encoder& encoder : encoders_) encoder.offset = joint_offset_ * offsets.next();
 }
 
 void SensorErrors::encode(Measurement& measurement) noexcept {
   for (Encoder& encoder : encoders_) {
     if (encoder.count == 0) continue;
     JointSample& joint = measurement.joints[encoder.joint];
-    const double counted = std::round(joint.position / encoder.count);
+    const double counted = std::round((joint.position + encoder.offset) / encoder.count);
     joint.position = counted * encoder.count;
     joint.velocity = first_ ? 0 : (counted - encoder.counted) * encoder.count / period_;
     encoder.counted = counted;

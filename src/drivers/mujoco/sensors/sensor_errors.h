@@ -3,8 +3,9 @@
 ///
 /// The encoder of a driven joint that turns, with N = encoder_resolution counts per turn, δ = 2π/N, T the period:
 ///
-///   n(k) = round(q(k)/δ)      position = n(k)·δ      velocity = (n(k) − n(k−1))·δ/T
+///   n(k) = round((q(k) + o)/δ)      position = n(k)·δ      velocity = (n(k) − n(k−1))·δ/T
 ///
+/// On legs o = joint_offset·u of each joint, else it is 0.
 /// The velocity is computed as in a drive, in steps of δ/T (1.53 rad/s for 4096 counts at 1 kHz); it is 0 in the first
 /// sample. The encoder of a held joint is on its motor, and its gear makes N kHeldGear times larger. With N = 0
 /// encoders are exact. Exact are also other joints, contact forces of wheels, battery and inputs, and efforts, because
@@ -215,6 +216,7 @@ class SensorErrors {
   struct Encoder {
     std::size_t joint = 0;
     double count = 0;    ///< rad, δ; 0: exact
+    double offset = 0;   ///< rad
     double counted = 0;  ///< n in the last sample
   };
   std::vector<Encoder> encoders_;
@@ -223,6 +225,7 @@ class SensorErrors {
   InertialError gyro_, accelerometer_;
   std::vector<InertialError> feet_;  ///< of contacts of a machine without rims
   double threshold_;                 ///< N
+  double joint_offset_;              ///< rad
   Vibration vibration_;
   LateSamples<ImuSample> late_imu_;
   using Encoders = std::array<JointSample, kMaxJoints>;

@@ -287,6 +287,24 @@ TEST_F(SensorErrorsTest, CountTheSpeedInStepsOfACountPerPeriod) {
   EXPECT_NEAR(travelled, 0.25 * kCount * 999, kCount) << "nothing gets lost between the counts";
 }
 
+TEST_F(SensorErrorsTest, ShiftTheZeroOfEachJointOfARobotWithoutWheels) {
+  parameters_.joint_offset = 0.01;
+  std::vector<double> left, right;
+  for (parameters_.seed = 0; parameters_.seed < 1000; ++parameters_.seed) {
+    SensorErrors encoder = errors();
+    for (const double angle : {0.0, 1.0}) {
+      Measurement measurement;
+      measurement.joints[kLeftWheel].position = measurement.joints[kRightWheel].position = angle;
+      encoder.step(measurement);
+      left.push_back(measurement.joints[kLeftWheel].position - angle);
+      right.push_back(measurement.joints[kRightWheel].position - angle);
+    }
+    EXPECT_NEAR(left.end()[-1], left.end()[-2], kCount) << "it stays";
+  }
+  EXPECT_NEAR(variance(left) / (0.01 * 0.01), 1, variance_bound(1000));
+  EXPECT_LE(std::abs(correlation(left, right)), correlation_bound(1000));
+}
+
 TEST_F(SensorErrorsTest, CountTheTurnsOfAJointThatIsHeld) {
   const auto seen = [&] {
     SensorErrors encoder = errors();
