@@ -45,16 +45,8 @@ class LegFilter {
   static constexpr double kGate = 8;
 
   /// Entries of the error.
-  enum Entry : int {
-    kTurn = 0,
-    kSpeed = 3,
-    kPlace = 6,
-    kRateBias = 9,
-    kForceBias = 12,
-    kFeet = 15,
-    kGround = 27,
-    kEntries = 28  ///< even, for aligned columns
-  };
+  enum Entry : int { kTurn = 0, kSpeed = 3, kPlace = 6, kRateBias = 9, kForceBias = 12, kFeet = 15, kGround = 27 };
+  static constexpr int kEntries = 28;  ///< even, for aligned columns
   using Column = Eigen::Matrix<double, kEntries, 1>;
   using Covariance = Eigen::Matrix<double, kEntries, kEntries>;
 

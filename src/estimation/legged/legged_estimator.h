@@ -44,7 +44,7 @@ class LeggedEstimator {
   static constexpr double kMeanTime = 0.1;        ///< s, of the means of gyro and joints
   static constexpr double kDivergenceTime = 0.1;  ///< s
   static constexpr double kDegraded = 1.0;        ///< s
-  static constexpr double kFootfall = 0.015;      ///< of a leg's length
+  static constexpr double kFootfall = 0.0125;     ///< of a leg's length
   static constexpr double kFootSpeed = 0.04;      ///< of √(l g)
   static constexpr double kStandGate = 4;
 
