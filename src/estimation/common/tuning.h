@@ -61,8 +61,9 @@ struct Tuning {
   static constexpr double kGyroRange = 100;            ///< rad/s, beyond the range of MEMS gyros
   static constexpr double kAccelerometerRange = 1000;  ///< m/s², beyond the range of MEMS accelerometers
   static constexpr double kFastestWheel = 1000;        ///< rad/s, 10⁴ rpm, if the robot names no limit
+  static constexpr double kFastestSpinUp = 500;        ///< rad/s², a free wheel of 0.005 kg m² under 2.5 N m
   static constexpr double kEncoderSlack = 0.1;         ///< rad, some counts of a coarse encoder, and backlash
-  static constexpr double kNewZero = 1.0;      ///< rad, of a jump to zero; more than a wheel turns between two readings
+  static constexpr double kNewZero = 1.0;              ///< rad, of a jump; more than a wheel turns between two readings
   static constexpr double kSteepest = 0.6;     ///< sine of a tilt, 37°, at which rubber on dry ground begins to slide
   static constexpr double kInitialTilt = 0.1;  ///< rad, deviation at switch-on; the steepest road
   static constexpr double kMaxOffset = 0.4;    ///< s, twice the largest clock offset of the recordings

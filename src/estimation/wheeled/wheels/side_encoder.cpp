@@ -20,11 +20,14 @@ bool SideEncoder::Wheel::measured(const SensorFrame& sensors) const noexcept {
          taken.precedes(sensors, sensors.joints[joint]);
 }
 
-bool SideEncoder::Wheel::plausible(const SensorFrame& sensors, double time, double late) const noexcept {
+bool SideEncoder::Wheel::plausible(const SensorFrame& sensors, const Wait& wait) const noexcept {
   const double position = sensors.joints[joint].position, velocity = tracking.velocity();
-  const bool jumps = std::abs(position - angle - velocity * time) > Tuning::kNewZero + std::abs(velocity) * late;
-  if (jumps && std::abs(position) <= Tuning::kEncoderSlack + std::abs(velocity) * time) return false;
-  return std::abs(position - angle) <= velocity_bound * time + Tuning::kEncoderSlack;
+  const double off = std::abs(position - angle - velocity * wait.time);
+  const double usual = Tuning::kNewZero + std::abs(velocity) * wait.late;
+  const bool zero = std::abs(position) <= Tuning::kEncoderSlack + std::abs(velocity) * wait.time;
+  if (off > usual + (zero ? 0 : Tuning::kFastestSpinUp / 2 * wait.open * wait.open)) return false;
+  const double turned = position - angle - velocity * (wait.time - wait.open);
+  return std::abs(turned) <= velocity_bound * wait.open + Tuning::kEncoderSlack;
 }
 
 bool SideEncoder::Wheel::lost_zero(const SensorFrame& sensors) noexcept {
@@ -72,8 +75,9 @@ EncoderReading SideEncoder::step(const SensorFrame& sensors, double dt) noexcept
   travel_ = 0;
   waiting_ += dt;
   const auto measured = [&](const Wheel& wheel) { return wheel.measured(sensors); };
-  const double late = rejected_ == 0 ? waiting_ + gap_ : 0;
-  const auto plausible = [&](const Wheel& wheel) { return wheel.plausible(sensors, waiting_, late); };
+  if (rejected_ == 0) open_ = waiting_;
+  const Wait wait{.time = waiting_, .open = open_, .late = rejected_ == 0 ? waiting_ + gap_ : 0};
+  const auto plausible = [&](const Wheel& wheel) { return wheel.plausible(sensors, wait); };
   for (Wheel& wheel : wheels_) zero_lost_ = wheel.lost_zero(sensors) || zero_lost_;
   if (!std::ranges::all_of(wheels_, measured)) return EncoderReading::kRejected;
   EncoderReading reading = EncoderReading::kTravel;

@@ -10,10 +10,13 @@
 /// The side's wheels are read together: one unused sample rejects the reading. The first reading is the offset, without
 /// travel. A sample that is missing, not finite, impossible or old is not used; the next good one brings the travel of
 /// the gap. A difference is impossible above 2 · velocity_limit times the time passed, plus kEncoderSlack; without a
-/// limit, kFastestWheel replaces 2 · velocity_limit. A jump to zero is impossible, too, if readings that were held up
-/// do not explain it. With the tracked speed q̇ and the time t since the last reading, it is one where
+/// limit, kFastestWheel replaces 2 · velocity_limit. With the tracked speed q̇ and the time t since the last reading, it
+/// is also impossible where
 ///
-///   |q| ≤ kEncoderSlack + |q̇|·t   and   |q − qₗₐₛₜ − q̇·t| > kNewZero + |q̇|·(t + gap),   later > kNewZero
+///   |q − qₗₐₛₜ − q̇·t| > kNewZero + |q̇|·(t + gap) + kFastestSpinUp·t²/2
+///
+/// The last term is missing for a jump to zero, |q| ≤ kEncoderSlack + |q̇|·t, as an encoder makes that is switched on
+/// again. From the first impossible reading on, these bounds do not widen: the angle continues at the tracked speed.
 ///
 /// If angles stay impossible for more than kMaxHeld readings, the encoder was reset. Then the present angles become the
 /// offset, and the travel in between is lost. So do the first angles after a drive had a fault and no position.
@@ -84,6 +87,12 @@ class SideEncoder {
   double gap() const noexcept { return gap_; }
 
  private:
+  /// Holds times in s.
+  struct Wait {
+    double time = 0;  ///< since the last accepted reading
+    double open = 0;  ///< of that, until the first reading that was rejected
+    double late = 0;  ///< by which a reading may be held up
+  };
   struct Wheel {
     std::size_t joint;
     double metres_per_radian;
@@ -95,7 +104,7 @@ class SideEncoder {
 
     Wheel(const WheelModel& wheel, const DriveTrain& robot, double bandwidth, double period);
     bool measured(const SensorFrame& sensors) const noexcept;
-    bool plausible(const SensorFrame& sensors, double time, double late) const noexcept;  ///< s, s
+    bool plausible(const SensorFrame& sensors, const Wait& wait) const noexcept;
     bool lost_zero(const SensorFrame& sensors) noexcept;  ///< The drive may come back with another zero.
     double accept(const SensorFrame& sensors) noexcept;   ///< m, travel
     void track(double periods) noexcept;                  ///< since the last accepted angle; 0: it does not continue
@@ -107,6 +116,7 @@ class SideEncoder {
   double travel_ = 0;
   double time_ = 0;
   double waiting_ = 0;
+  double open_ = 0;  ///< s, until the first rejected reading
   double gap_ = 0;
   bool known_ = false;
   bool zero_lost_ = false;      ///< A wheel may have another zero than at its last reading.

@@ -80,14 +80,34 @@ TEST_F(SideEncoderOfFourWheels, OneWheelThatIsNotUsedRejectsTheReading) {
   EXPECT_EQ(right_.step(sensors_, kPeriod), EncoderReading::kTravel);
 }
 
-// Without a limit a wheel is trusted up to 1000 rad/s.
+// Without a limit a wheel turns by up to kNewZero more than at the last speed.
 TEST_F(SideEncoderOfFourWheels, NeedsNoVelocityLimit) {
-  const double possible = 1000 * kPeriod + Tuning::kEncoderSlack;
-  sensors_.joints[0].position = possible - 0.01;
+  sensors_.joints[0].position = Tuning::kNewZero - 0.01;
   EXPECT_EQ(left_.step(sensors_, kPeriod), EncoderReading::kTravel);
-  sensors_.joints[0].position += possible + 0.01;
+  sensors_.joints[0].position += 2 * Tuning::kNewZero + 0.01;
   EXPECT_EQ(left_.step(sensors_, kPeriod), EncoderReading::kRejected);
 }
+
+/// The parameter is the jump of a counter, rad, of wheels without a velocity limit at 100 Hz and 3 rad/s.
+struct CounterThatBeginsAgain : SideEncoderOfFourWheels, testing::WithParamInterface<double> {};
+
+// The bound on a jump does not widen with the time for which readings are rejected.
+TEST_P(CounterThatBeginsAgain, HasNotTravelled) {
+  constexpr double kGap = 0.01;
+  const auto read = [&](double angle) {
+    sensors_.joints[0].position = sensors_.joints[1].position = angle;
+    return left_.step(sensors_, kGap);
+  };
+  double angle = 0;
+  for (int i = 0; i < 100; ++i) ASSERT_EQ(read(angle += 0.03), EncoderReading::kTravel) << i;
+  angle += GetParam();
+  for (std::uint64_t i = 0; i < Tuning::kMaxHeld; ++i) ASSERT_EQ(read(angle += 0.03), EncoderReading::kRejected) << i;
+  EXPECT_EQ(read(angle += 0.03), EncoderReading::kLost);
+  EXPECT_EQ(read(angle += 0.03), EncoderReading::kTravel);
+  EXPECT_NEAR(left_.travel(), -0.003, 1e-13);
+}
+
+INSTANTIATE_TEST_SUITE_P(Jumps, CounterThatBeginsAgain, testing::Values(-54.0, -20.0, -3.0, 1.5, 8.0, 42.0, 200.0));
 
 TEST_F(SideEncoderTest, BringsTheTravelOfAGapWithTheNextGoodReading) {
   EXPECT_EQ(read(kNaN), EncoderReading::kRejected);
