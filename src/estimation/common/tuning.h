@@ -15,7 +15,8 @@ struct Tuning {
 
   static constexpr double kFirstSlip = 5e-3;   ///< m/√m, slip noise of a side at the start; skid steers, recordings
   static constexpr double kFirstScrub = 0.05;  ///< rad/√rad, noise of a turn at the start; skid steers, recordings
-  static constexpr double kLevelStep = 0.2;    ///< step of the logarithm of these levels per block; recordings
+  static constexpr double kUnwatched = 2;  ///< factor on both where no gyro watches the turn of the wheels; recordings
+  static constexpr double kLevelStep = 0.2;         ///< step of the logarithm of these levels per block; recordings
   static constexpr double kCalibrationWalk = 0.04;  ///< 1/m, walk of ratio and base, of the slip noise; recordings
   static constexpr double kOffset = 0.08;  ///< s, deviation of the clock offset at the start; recordings: 0.03 … 0.17
   static constexpr double kOffsetWalk = 2e-3;  ///< s/√s, walk of the clock offset; recordings

@@ -13,12 +13,12 @@ struct EstimatorParameters {
   double wheel_radius_deviation = 0.017;  ///< relative, of the mean radius: evenly within ±3 %, as of tyres under load
   double tyre_creep = 0.003;    ///< s²/m, slip per specific force: 1/(g C), tyres of stiffness C = 34 loads; 0: none
   double gyro_noise = 2.44e-4;  ///< rad/s/√Hz, white noise density of the gyro
-  double standstill_speed = 0.01;  ///< rad/s, wheel and yaw rate below which the robot may be standing
-  double standstill_time = 0.25;   ///< s, for which all sensors must be quiet before the robot stands
-  double encoder_noise = 4.4e-4;   ///< rad, standard deviation of an angle: 2π/4096/√12 for 4096 counts per turn
-  double gyro_scale_deviation = 5.8e-4;     ///< standard deviation of the gyro's scale; it enters the covariance only
-  double gyro_bias_initial = 0.05;          ///< rad/s, standard deviation at switch-on (3 °/s, a consumer MEMS gyro)
-  double gyro_bias_walk = 8.7e-6;           ///< rad/s/√s
+  double standstill_speed = 0.01;      ///< rad/s, wheel and yaw rate below which the robot may be standing
+  double standstill_time = 0.25;       ///< s, for which all sensors must be quiet before the robot stands
+  double encoder_noise = 4.4e-4;       ///< rad, standard deviation of an angle: 2π/4096/√12 for 4096 counts per turn
+  double gyro_scale_deviation = 3e-3;  ///< standard deviation of the gyro's scale; it enters the covariance only
+  double gyro_bias_initial = 0.0175;   ///< rad/s, standard deviation at switch-on: 1 °/s, a consumer MEMS gyro
+  double gyro_bias_walk = 8.7e-6;      ///< rad/s/√s
   double accelerometer_noise = 1.716e-3;    ///< m/s²/√Hz, white noise density
   double accelerometer_bias_initial = 0.2;  ///< m/s², standard deviation at switch-on (20 mg)
   double accelerometer_bias_walk = 6.5e-5;  ///< m/s²/√s

@@ -43,8 +43,9 @@ double icr_deviation(const DriveTrain& robot) {
   const auto along = [](const WheelModel& wheel) { return wheel.centre_base[0]; };
   const auto [last, first] = std::ranges::minmax(robot.wheels, {}, along);
   const double scrubs = std::sqrt(std::max(0.0, robot.wheel_base_multiplier - 1)) * robot.wheel_base;
+  const double unknown = drags_wheels(robot) ? robot.effective_wheel_base() / 2 : 0;
   const double length = along(first) - along(last);
-  return (length > 0 ? length : scrubs) / std::sqrt(12.0);
+  return (length > 0 ? length : scrubs > 0 ? scrubs : unknown) / std::sqrt(12.0);
 }
 
 bool drags_wheels(const DriveTrain& robot) {

@@ -19,7 +19,8 @@ double encoder_deviation(const EstimatorParameters& parameters, const DriveTrain
 
 /// Returns the standard deviation of the x of the centre of rotation, in m. The load puts that centre anywhere between
 /// the first and the last axle. If the places of the wheels are not known, the wheel base's multiplier gives the length
-/// between the axles (DriveTrain::wheel_base_multiplier).
+/// between the axles (DriveTrain::wheel_base_multiplier): B_eff = B + L²/B. Of a robot that is given as radius and
+/// effective base alone, L is at most B_eff/2.
 double icr_deviation(const DriveTrain& robot);
 /// Returns true if a turn drags wheels over the floor: wheels behind each other, tracks, or bodies that are unknown.
 bool drags_wheels(const DriveTrain& robot);

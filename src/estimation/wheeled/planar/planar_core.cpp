@@ -19,12 +19,15 @@ PlanarCore::PlanarCore(const PlanarCoreParams& params) noexcept
 void PlanarCore::forget(int first, int count) noexcept {
   (*covariance_).middleRows(first, count).setZero();
   (*covariance_).middleCols(first, count).setZero();
+  (*held_).segment(first, count).setZero();
 }
 
 void PlanarCore::place(const PlanarPose& pose) noexcept {
   forget(kX, 4);
   (*state_).segment<4>(kX) << pose.x, pose.y, pose.yaw, pose.yaw;
   doubt_ = apart_ = 0;
+  placed_x_ = pose.x;
+  placed_y_ = pose.y;
 }
 
 void PlanarCore::set_bias(double bias, double deviation) noexcept {
@@ -50,6 +53,7 @@ void PlanarCore::set_pose_covariance(const Eigen::Matrix3d& known) noexcept {
 void PlanarCore::add(int to, double factor, int from) noexcept {
   (*covariance_).row(to) += factor * (*covariance_).row(from);
   (*covariance_).col(to) += factor * (*covariance_).col(from);
+  (*held_)[to] += factor * (*held_)[from];
 }
 
 /// The middle of the wheels moves sideways if it is not the centre of rotation.
@@ -79,8 +83,8 @@ void PlanarCore::turn_by_wheels(double left, double right, double already) noexc
   add(kYaw, (left + right) / 2 / params_.wheel_base, kRatio);
   add(kYaw, -turned, kBase);
   slide(turned);
-  add_yaw_variance(square(slip() / params_.wheel_base) * (std::abs(left) + std::abs(right)) +
-                   square(noise_.twist()) * std::abs(turned));
+  const double rolled = square(slip() / params_.wheel_base) * (std::abs(left) + std::abs(right));
+  add_yaw_variance(square(Tuning::kUnwatched) * (rolled + square(noise_.twist()) * std::abs(turned)));
 }
 
 void PlanarCore::roll(double x, double y, double rate) noexcept {
@@ -107,6 +111,7 @@ void PlanarCore::begin_block(double rate) noexcept {
   (*state_)[kAnchor] = (*state_)[kYaw];
   (*covariance_).row(kAnchor) = (*covariance_).row(kYaw);
   (*covariance_).col(kAnchor) = (*covariance_).col(kYaw);
+  (*held_)[kAnchor] = (*held_)[kYaw];
 }
 
 PlanarCore::Innovation PlanarCore::end_block(const Block& block) noexcept {
@@ -118,13 +123,13 @@ PlanarCore::Innovation PlanarCore::end_block(const Block& block) noexcept {
   h[kAnchor] = -b;
   h[kOffset] = -b * later;
   h[kRatio] = -mean;
+  const double by_wheels = difference + ratio() * mean;
   const WheelNoise::Variances parts = noise_.variances(rolled, angle, b);
   const double drift = square(params_.gyro_noise) * block.time + bias_variance() * square(block.time);
-  const double by_wheels = difference + ratio() * mean, innovation = by_wheels - b * angle;
+  const double innovation = by_wheels - b * (angle + (*held_)[kYaw] - (*held_)[kAnchor]);
   const double reading = 4 * square(params_.encoder);
-  const auto [turn, noise, widest, held] =
-      params_.drags_wheels ? std::tuple(b * angle, square(b) * drift, 0.0, 5)
-                           : std::tuple(by_wheels, parts.slips + reading, square(innovation / Tuning::kHuber), 0);
+  const auto [turn, noise, held] = params_.drags_wheels ? std::tuple(b * angle, square(b) * drift, kHeld)
+                                                        : std::tuple(by_wheels, parts.slips + reading, 0);
   if (square(turn) > square(Tuning::kSignificantTurn) * noise) h[kBase] = turn / (1 + base());
   const Vector ph = *covariance_ * h;
   const double s = h.dot(ph) + parts.slips + parts.twists + reading;
@@ -132,10 +137,8 @@ PlanarCore::Innovation PlanarCore::end_block(const Block& block) noexcept {
   const bool agree = std::abs(normalised) <= Tuning::kGate;
   compare(angle, angle + innovation / b, Tuning::kSignificant * std::sqrt(s) / b, agree, block.stuck);
   if (block.slid) return {.nis = square(normalised), .used = false};
-  const double widened = std::max(s, widest), most = Tuning::kHuber * std::sqrt(widened);
-  Vector gain = ph / widened;
-  gain.segment(kX, held).setZero();
-  if (agree) correct(gain, ph, widened, std::clamp(innovation, -most, most));
+  const double widened = std::max(s, square(innovation / Tuning::kHuber));
+  if (agree) correct(ph / widened, ph, widened, innovation, held);
   noise_.learn(normalised, parts, s);
   const double other =
       difference + (start_.radius_ratio - 1) * mean - params_.wheel_base * start_.wheel_base_factor * angle;
@@ -155,7 +158,7 @@ void PlanarCore::compare(double angle, double wheels, double usual, bool agree, 
     apart_ *= 1 - taken;
     return;
   }
-  const double least = params_.drags_wheels && !stuck ? wheels * 3 / 4 : wheels;
+  const double least = params_.drags_wheels && !stuck ? 0 : wheels;
   const double nearest = std::clamp(angle, std::min(least, wheels), std::max(least, wheels));
   contradict(std::copysign(std::max(0.0, std::abs(angle - nearest) - (stuck ? 0 : usual)), nearest - angle));
 }
@@ -179,32 +182,43 @@ void PlanarCore::contradict(double angle) noexcept {
 }
 
 ///   P ← (I − k hᵀ) P (I − k hᵀ)ᵀ + k r kᵀ, with s = hᵀ P h + r
-void PlanarCore::correct(Vector gain, const Vector& ph, double s, double innovation) noexcept {
+/// From x on, the corrections of `held` states are not applied.
+void PlanarCore::correct(Vector gain, const Vector& ph, double s, double innovation, int held) noexcept {
   gain.tail<kConsidered>().setZero();
-  *state_ += innovation * gain;
+  Vector change = innovation * gain;
+  (*held_).segment(kX, held) += change.segment(kX, held);
+  change.segment(kX, held).setZero();
+  *state_ += change;
   (*state_)[kOffset] = std::clamp((*state_)[kOffset], -Tuning::kMaxOffset, Tuning::kMaxOffset);
   const Matrix half = gain * (s / 2 * gain - ph).transpose();
   *covariance_ += half + half.transpose();
 }
 
+void PlanarCore::apply_held(int first, int count) noexcept {
+  (*state_).segment(first, count) += (*held_).segment(first, count);
+  (*held_).segment(first, count).setZero();
+}
+
 void PlanarCore::rest(double mean, double variance, bool keeps_pose) noexcept {
   const Vector ph = (*covariance_).col(kBias);
   const double s = ph[kBias] + variance;
-  Vector gain = ph / s;
-  if (keeps_pose) gain.segment<4>(kX).setZero();
-  correct(gain, ph, s, mean - bias());
+  correct(ph / s, ph, s, mean - bias() - (*held_)[kBias], kHeld);
+  apply_held(kBias, 1);
+  turned_ = turned_ || square((*held_)[kYaw]) > square(Tuning::kSignificant) * (*covariance_)(kYaw, kYaw);
+  if (turned_ && !keeps_pose) apply_held(kX, kHeld - 1);
 }
 
-/// A heading that is wrong by δ since the doubt began turns the way since then by δ. The way errs by sin δ across, and
-/// by 1 − cos δ along it.
+/// A heading that is wrong by δ since the doubt began turns the way since then by δ, so that it errs by sin δ across. A
+/// heading whose whole deviation is σ shortens the way from the place where the pose was set by up to 1 − cos σ.
 Eigen::Matrix4d PlanarCore::pose_covariance() const noexcept {
-  Eigen::Matrix4d covariance = (*covariance_).topLeftCorner<4, 4>();
-  if (doubt_ == 0) return covariance;
-  const double x = (*state_)[kX] - doubted_x_, y = (*state_)[kY] - doubted_y_;
-  const Eigen::Vector4d across(0, -y, x, 1);
-  const Eigen::Vector4d along(0, x, y, 0);
+  const Eigen::Vector4d held = (*held_).head<4>();
+  Eigen::Matrix4d covariance = (*covariance_).topLeftCorner<4, 4>() + held * held.transpose();
+  const double x = (*state_)[kX], y = (*state_)[kY];
+  const Eigen::Vector4d across(0, doubted_y_ - y, x - doubted_x_, 1);
   covariance += square(doubt_) * across * across.transpose();
-  covariance += square(1 - std::cos(std::min(doubt_, std::numbers::pi))) * along * along.transpose();
+  const Eigen::Vector4d along(0, x - placed_x_, y - placed_y_, 0);
+  const double yaw = std::min(std::sqrt(covariance(kYaw, kYaw)), std::numbers::pi);
+  covariance += square(1 - std::cos(yaw)) * along * along.transpose();
   return covariance;
 }
 

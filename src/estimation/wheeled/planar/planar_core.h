@@ -18,12 +18,16 @@
 ///   radius   mean radius of the wheels, relative; it scales the path
 ///
 /// The Jacobian by β contains the turn of the wheels, because that of the gyro contains a bias. Turns below
-/// kSignificantTurn of their deviations do not show β. Wheels that a turn drags do not measure the heading: load and
-/// floor change ε and β as much as a gyro errs. Their blocks correct τ, ε and β alone, and the gyro's turn shows β.
-/// An innovation counts with at most kHuber deviations. On wheels that no turn drags, it widens its own to that. Beyond
-/// kGate deviations wheels and gyro contradict each other. The heading then follows the gyro. Its doubt, a deviation
-/// beside P, grows by the angle between both. Wheels that are dragged may turn the robot by three quarters of their own
-/// turn. Each block in which both agree takes kAgreement of the doubt. Turns that drag wheels triple that.
+/// kSignificantTurn of their deviations do not show β. Wheels that a turn drags do not move the heading: load and floor
+/// change ε and β as much as a gyro errs. Their blocks correct τ, ε and β alone, and the gyro's turn shows β. The
+/// corrections of x, y, ψ, ψ₀ and b are held back as δ. P is what is known then, and δ is how far the state is from it.
+/// The deviation of a state is that of P + δ δᵀ. A first rest measures b. It applies δ to the pose if that of the
+/// heading exceeds kSignificant deviations of P, which hold the walk of the bias and the noise of the rest.
+///
+/// An innovation beyond kHuber deviations widens its own to that. Beyond kGate deviations wheels and gyro contradict
+/// each other. The heading then follows the gyro. Its doubt, a deviation beside P, grows by the angle between both.
+/// Wheels that are dragged may turn the robot by any part of their own turn. Each block in which both agree takes
+/// kAgreement of the doubt. Turns that drag wheels triple that.
 /// ε and β walk in proportion to the slip noise (wheel_noise.h). The blocks that follow check them. If the
 /// values of the start predict better, by a nis of kSignificant², ε and β begin again from these.
 
@@ -47,7 +51,7 @@ struct PlanarCoreParams {
   double wheel_base = 0.5;                ///< m, effective
   double gyro_noise = 2.44e-4;            ///< rad/s/√Hz
   double gyro_bias_walk = 8.7e-6;         ///< rad/s/√s
-  double gyro_bias_initial = 0.05;        ///< rad/s
+  double gyro_bias_initial = 0.0175;      ///< rad/s
   double gyro_scale = 5.8e-4;             ///< standard deviation
   double encoder = 4.4e-5;                ///< m, of one reading
   double slip_least = 8e-5;               ///< m/√m, of the best floor
@@ -62,6 +66,7 @@ struct PlanarCoreParams {
 class PlanarCore {
  public:
   enum Index : int { kOffset, kX, kY, kYaw, kAnchor, kBias, kRatio, kBase, kScale, kIcr, kRadius, kSize };
+  static constexpr int kHeld = 5;        ///< the states from x to the bias, whose corrections may be held back
   static constexpr int kConsidered = 3;  ///< the last states, which are considered and not corrected
   using Matrix = Eigen::Matrix<double, kSize, kSize>;
   using Vector = Eigen::Matrix<double, kSize, 1>;
@@ -118,16 +123,18 @@ class PlanarCore {
     return {1 + ratio(), 1 + base(), deviation(kRatio), deviation(kBase)};
   }
 
-  const Stored<Matrix>& covariance() const noexcept { return covariance_; }  ///< P, without the doubt
+  const Stored<Matrix>& covariance() const noexcept { return covariance_; }  ///< P, without doubt and held corrections
   Eigen::Matrix4d pose_covariance() const noexcept;  ///< covariance of τ, x, y, yaw, with the doubt
-  double deviation(int i) const noexcept { return std::sqrt(std::max(0.0, (*covariance_)(i, i))); }
-  double bias_variance() const noexcept { return (*covariance_)(kBias, kBias); }  ///< (rad/s)²
+  double variance(int i) const noexcept { return std::max(0.0, (*covariance_)(i, i)) + square((*held_)[i]); }
+  double deviation(int i) const noexcept { return std::sqrt(variance(i)); }
+  double bias_variance() const noexcept { return variance(kBias); }  ///< (rad/s)²
 
  private:
   void add(int to, double factor, int from) noexcept;
   void forget(int first, int count) noexcept;
   void slide(double turned) noexcept;
-  void correct(Vector gain, const Vector& ph, double s, double innovation) noexcept;
+  void correct(Vector gain, const Vector& ph, double s, double innovation, int held) noexcept;
+  void apply_held(int first, int count) noexcept;
   void compare(double angle, double wheels, double usual, bool agree, bool stuck) noexcept;
   void check_calibration(double learned, double other, double variance) noexcept;
   void walk(int i, double variance) noexcept {  ///< A held value has no variance and does not walk.
@@ -137,11 +144,14 @@ class PlanarCore {
   PlanarCoreParams params_;
   Stored<Vector> state_;
   Stored<Matrix> covariance_;
+  Stored<Vector> held_;  ///< corrections that were not applied
+  bool turned_ = false;  ///< The first rest has corrected the pose.
   WheelNoise noise_;
   WheelCalibration start_;                ///< calibration at the start
   double worse_ = 0;                      ///< nis by which what was learned predicts worse than the start
   double doubt_ = 0, apart_ = 0;          ///< rad: largest |apart_|; sum of the contradictions
   double doubted_x_ = 0, doubted_y_ = 0;  ///< m, where the doubt began
+  double placed_x_ = 0, placed_y_ = 0;    ///< m, where the pose was set
   double anchor_x_ = 0, anchor_y_ = 0;    ///< m, where the block began
   double anchor_rate_ = 0;                ///< rad/s, at the beginning of the block
 };

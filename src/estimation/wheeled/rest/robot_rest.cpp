@@ -3,10 +3,12 @@
 #include <cmath>
 #include <utility>
 
+#include "estimation/common/tuning.h"
+
 namespace robot_control {
 
 RestWatch::Bias RobotRest::bias(const Input& input) const noexcept {
-  const bool known = bias_measured_ || !moved_ || input.bias_variance[2] < square(steady_);
+  const bool known = bias_measured_ || !moved_ || input.bias_variance[2] < square(steady_ / Tuning::kSignificant);
   RestWatch::Bias bias{.value = input.bias, .known = known};
   for (std::size_t i = 0; i < 3; ++i) {
     bias.deviation[i] = std::sqrt(input.mean_variance + (bias.known ? input.bias_variance[i] : input.mean_variance));
@@ -59,8 +61,8 @@ RobotRest::Output RobotRest::close(RestWindow window) noexcept {
 }
 
 RobotRest::Output RobotRest::learn(bool began) noexcept {
-  bias_measured_ = bias_measured_ || watch_.means().gyro;
-  return {.began = began, .means = watch_.means(), .bias_changed = watch_.bias_changed()};
+  const bool known = std::exchange(bias_measured_, bias_measured_ || watch_.means().gyro);
+  return {.began = began, .means = watch_.means(), .bias_changed = known && watch_.bias_changed()};
 }
 
 }  // namespace robot_control

@@ -48,7 +48,7 @@ class RobotRest {
     std::optional<HeldMotion> held{};         ///< The rest is over, and this motion is to be integrated.
     bool was_standing = false;                ///< The rest that is over was confirmed by a quiet window.
     std::optional<RestWatch::Means> means{};  ///< means of a quiet window, from which biases and tilt are learned
-    bool bias_changed = false;                ///< They show another bias of the gyro than the known one.
+    bool bias_changed = false;                ///< They show another bias of the gyro than an earlier rest.
   };
   Output step(const Input& input) noexcept;
 
