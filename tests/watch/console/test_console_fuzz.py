@@ -13,8 +13,8 @@ import pytest
 from robot_control.drive.path.waypoints import PathError, read_csv_text
 from robot_control.settings.files import SettingsError
 from robot_control.watch.console import authority, calls, messages, sessions, settings, users
-from support.mutants import mutants
 from served_console import served
+from support.mutants import mutants
 from support.timed import timed
 from support.topics import graph, surprises_of
 
