@@ -45,7 +45,7 @@ TEST_F(AnInputFile, CountsAsWhatItIsBehindALink) {
 
 TEST_F(AnInputFile, IsRefusedInTheSystemsWordsIfItIsNotThere) {
   EXPECT_EQ(read_input_file(folder_.path() / "absent", 10).problem, "file not found");
-  EXPECT_EQ(read_input_file(std::string(5000, 'a'), 10).problem, "File name too long");
+  EXPECT_EQ(read_input_file(std::string(5000, 'a'), 10).problem, "cannot be read: File name too long");
   EXPECT_THAT(read_input_file(std::string("a\0b", 3), 10).problem, HasSubstr("NUL"));
 }
 

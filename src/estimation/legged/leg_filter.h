@@ -89,6 +89,7 @@ class LegFilter {
   /// Returns whether two feet, known to this deviation [m] each, are as high as each other, within `gate` deviations.
   bool as_high(std::size_t foot, std::size_t other, double deviation, double gate) const noexcept;
   Eigen::Vector3d foot(std::size_t foot) const noexcept { return Eigen::Vector3d(state_.feet[foot].data()); }
+  double height(std::size_t foot) const noexcept { return state_.position[2] + state_.feet[foot][2]; }  ///< m
   /// Returns the largest variance of the velocity in m²/s².
   double speed_variance() const noexcept { return covariance().diagonal().segment<3>(kSpeed).maxCoeff(); }
   /// Returns the variance of roll and pitch together in rad².
@@ -105,7 +106,6 @@ class LegFilter {
   Eigen::Map<const Covariance, Eigen::Aligned16> covariance() const noexcept {
     return Eigen::Map<const Covariance, Eigen::Aligned16>(state_.covariance.data());
   }
-  double height(std::size_t foot) const noexcept { return state_.position[2] + state_.feet[foot][2]; }
   Column height_row(std::size_t foot) const noexcept;
   void measure(int entry, double error, double variance) noexcept;
   void correct(const Column& column, double innovation, double expected) noexcept;

@@ -165,6 +165,8 @@ bool LeggedEstimator::read(const SensorFrame& sensors, double dt) noexcept {
     joint += std::min(1.0, dt / kMeanTime) * (valid_velocity(sensors.joints[i]) - joint);
     moves = moves || std::abs(joint) > kRestRate;
   }
+  for (int axis = 0; moves && state_.still > kRestTime && axis < 3; ++axis)
+    leg_filter().set_variance(LegFilter::kSpeed + axis, kPlainSpeed * kPlainSpeed);
   state_.still = moves ? 0 : state_.still + dt;
   if (accelerometer) Map(state_.force.data()) = force;
   if (accelerometer && state_.begun == 0 && force.norm() > PlainLegs::kBand) {
@@ -183,17 +185,20 @@ bool LeggedEstimator::filter(const SensorFrame& sensors, const FeetMotion& feet,
   filter.predict(ConstMap(state_.rate.data()), ConstMap(state_.force.data()), feet.rolling, creep_, dt);
   const std::array<bool, kLegs> bear = feet_that_bear(sensors, state_);
   const bool lost = stand(bear, feet, filter);
+  const bool borne = bear != std::array<bool, kLegs>{} || feet_asked(sensors);
+  state_.lies = borne ? 0 : state_.lies + dt;
   const double once = std::sqrt(0.001 / dt);
   if (state_.still > kRestTime) {
     filter.rest(ConstMap(state_.rate.data()), kRestRate * once);
     filter.stop(kRestSpeed * once);
-  } else if (bear == std::array<bool, kLegs>{} && joints_have(sensors, kLegsJoints, kValidMotion) &&
-             !feet_asked(sensors)) {
+  } else if (!borne && joints_have(sensors, kLegsJoints, kValidMotion)) {
     filter.stop(kFallSpeed * once);
   }
   filter.finish();
-  if (bear == std::array<bool, kLegs>{} && !feet_asked(sensors) && state_.still > kRestTime)
+  if (std::min(state_.lies, state_.still) > kRestTime) {
     set_height(state_.ground.known != 0 ? state_.filter.ground - belly_ground_ : position()[2]);
+    state_.lay = state_.ground.known;
+  }
   return lost;
 }
 
@@ -212,6 +217,8 @@ bool LeggedEstimator::stand(const std::array<bool, kLegs>& bear, const FeetMotio
       filter.stand(leg, place);
     } else {
       filter.land(leg, place);
+      if (state_.lay != 0) set_height(position()[2] + state_.filter.ground - filter.height(leg));
+      state_.lay = 0;
       ground_.footfall(leg, footfall_, filter, state_.ground);
     }
   }

@@ -7,12 +7,14 @@
 ///              for kRestTime
 ///   filter     leg_filter.h: feet that stand are landmarks. A foot that bears stands once the velocity of the body that
 ///              it shows is that of the filter, within kStandGate deviations. Before, it still falls, rolls or slides.
-///              At rest the gyro measures its bias, and the velocity is zero. A robot whose feet neither bear nor are
+///              At rest the gyro measures its bias, and the velocity is zero. The end of a rest shows late, so that the
+///              velocity is hardly known then. A robot whose feet neither bear nor are
 ///              asked to lies, or falls on its body: its velocity vanishes
 ///   plain      plain_legs.h. Where feet bear, but none shows the filter's velocity for kDivergenceTime, the filter
 ///              begins again with roll, pitch and velocity of the plain estimate, and the state is degraded for
 ///              kDegraded
-///   height     ground.h. A robot that lies at rest has its belly on the plane
+///   height     ground.h. A robot that lies at rest for kRestTime has its belly on the plane, and
+///              the first foot that lands then is on it, too
 ///
 /// The deviations of a contact scale with the length l of a leg. A foot is known to kFootfall l. The ground is as rough
 /// as that, and foot and ground give way by as much. The foot creeps as far within √(l/g). While it stands, it moves
@@ -69,6 +71,8 @@ class LeggedEstimator {
     LegsValues mean_rates{};                    ///< rad/s, of the joints
     Ground::State ground;
     double still = 0;         ///< s since anything moved
+    double lies = 0;          ///< s for which no foot bears or is asked to
+    std::uint64_t lay = 0;    ///< 1: it lay at rest, and no foot has landed since
     double apart = 0;         ///< s for which no foot that bears shows the filter's velocity
     double degraded = 0;      ///< s left
     double distance = 0;      ///< m

@@ -193,7 +193,7 @@ class ConsoleAttackTest(RobotTestCase):
                 await first.send_json(TAKE)
                 await self.until(first, "authority", '"commander": ')
                 await second.send_json(TAKE)
-                await self.until(second, "said", "commands")
+                await self.until(second, "said", "has the command")
                 await second.send_json(DRIVE)
                 await self.until(second, "said", "does not have the command")
                 call = {"type": "call", "number": 1, "name": "reset", "arguments": {"key": "0" * 16}}
@@ -202,7 +202,7 @@ class ConsoleAttackTest(RobotTestCase):
                 await second.send_json({**call, "name": "reset_odometry", "arguments": {}})
                 self.assertIn("take the command", (await self.until(second, "answer"))["text"])
 
-        asyncio.run(whole())
+        asyncio.run(asyncio.wait_for(whole(), 60))
         self.alive()
 
     # what an operator may do

@@ -42,7 +42,7 @@ class DriverStartTest(DriverTestCase):
         status = Program("robot_status.py")
         self.addCleanup(status.end)
         began = time.monotonic()
-        self.wait_for("safety_status", lambda: "machine is starting" in " ".join(self.missing()))
+        self.wait_for("safety_status", lambda: "hardware is starting" in " ".join(self.missing()))
         self.wait_for("/diagnostics", lambda: LEFT in self.diagnostics)
         self.wait_for("robot_status", lambda: self.robot_status is not None and self.robot_status.mode == "starting")
         self.assertIn(LEFT, self.robot.nodes["driver"].output)

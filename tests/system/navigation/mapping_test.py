@@ -109,7 +109,7 @@ class MappingTest(RobotTestCase):
             bad = LaserScan(angle_min=-1.0, angle_increment=0.01, range_max=5.0, ranges=[1.0] * 100_000)
             bad.header.frame_id, bad.header.stamp = "laser_link", rospy.Time.now()
             other.publish(bad)
-            wait_for("the refusal", lambda: "scan has 100000 rays: 2 to 20000 are taken" in slam.output)
+            wait_for("the refusal", lambda: "scan has 100000 rays: allowed are 2 to 20000" in slam.output)
             self.assertTrue(slam.running)
         finally:
             other.unregister()

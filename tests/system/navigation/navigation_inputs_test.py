@@ -158,7 +158,7 @@ class NavigationInputsTest(unittest.TestCase):
             return scan
 
         wrong = {
-            "scan is silent": lambda _scan: None,
+            "no scan": lambda _scan: None,
             "has 0 rays": lambda scan: ranging(scan, []),
             "tf has no transform from the laser": foreign,
             "contradicts the map": lambda _scan: scan_of((-3.0, 5.0, -3.0, 3.0)),

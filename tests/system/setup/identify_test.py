@@ -127,4 +127,4 @@ class IdentifyTest(RobotTestCase):
         sender = Program("send_cmd.py", "--linear=0", "--angular=0")
         self.addCleanup(sender.end)
         wait_for("the sender", lambda: "cmd_vel 1" in sender.output)
-        self.assertIn("/send_cmd may send on cmd_vel", self.refused())
+        self.assertIn("/send_cmd may also send on cmd_vel", self.refused())
