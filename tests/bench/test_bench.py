@@ -84,7 +84,7 @@ def test_an_unknown_name_is_refused(capsys):
         bench.parse(["warp"])
     assert (
         "no benchmark warp; there are step, plant, lockstep, frames, stops, campaign, replay, driving, limiter, "
-        "release, drive, slopes, legs, odometry, hostile, tuning, bags" in capsys.readouterr().err
+        "release, drive, slopes, legs, odometry, recordings, hostile, tuning, bags" in capsys.readouterr().err
     )
 
 

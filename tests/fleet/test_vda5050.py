@@ -172,7 +172,7 @@ def test_rules_across_values_are_named_too(tmp_path):
     files = {"password_file": str(secret), "ca_file": str(tmp_path / "none.pem"), "key_file": str(secret)}
     with pytest.raises(SettingsError) as error:
         settings(tmp_path, localization=True, **files)
-    for words in ("needs map", "chmod 600", "none.pem: cannot be read", "needs certificate_file"):
+    for words in ("needs map", "chmod 600", "none.pem: file not found", "needs certificate_file"):
         assert words in str(error.value)
 
 

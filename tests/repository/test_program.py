@@ -105,7 +105,7 @@ def master(monkeypatch):
 def test_a_node_that_lives_is_not_replaced(master, monkeypatch):
     monkeypatch.setattr(ros_node.rospy, "init_node", None)  # it is not reached
     monkeypatch.setattr(sys, "argv", ["follow_path.py", "__ns:=/robot2"])
-    with pytest.raises(SystemExit, match=r"a node /robot2/follow_path runs already.*rosnode kill"):
+    with pytest.raises(SystemExit, match=r"a node /robot2/follow_path already runs.*rosnode kill"):
         ros_node.begin_node("follow_path")
 
 

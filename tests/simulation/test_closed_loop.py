@@ -216,7 +216,7 @@ INERTIAL = "<inertial><mass value='1'/><inertia ixx='1' iyy='1' izz='1' ixy='0' 
             DriverError,
             "no_such_type|keyw",
         ),
-        ("urdf", f"<robot name='r'><link name='base_link'>{INERTIAL}</link></robot>", RobotError, "left_wheel_joint"),
+        ("urdf", f"<robot name='r'><link name='base_link'>{INERTIAL}</link></robot>", RobotError, "no joint turns"),
         ("urdf", None, RobotError, r"given\.xml"),
     ],
 )

@@ -173,11 +173,11 @@ def test_a_file_that_is_no_queue_is_put_aside_and_all_is_compared_again(tmp_path
     received = system.far.received
     digest = f"{digest_of(text.encode())}\n" if text.startswith(("[", "3")) else ""
     system.queue.path.write_text(text := digest + text)
-    with pytest.raises(QueueError, match="is no queue"):
+    with pytest.raises(QueueError, match="is not a queue"):
         _print_status(QueueFile(system.queue.folder))
     assert system.queue.path.read_text() == text
     system.begin()
-    assert "is no queue" in system.queue.damage
+    assert "is not a queue" in system.queue.damage
     system.queue.lock()
     assert (system.queue.folder / "queue.json.damaged").read_text() == text
     system.finish()
@@ -466,7 +466,7 @@ def test_a_file_that_is_deleted_before_it_was_sent_is_named(tmp_path):
     ("text", "words"),
     [
         ("{}", "far_side is empty"),
-        ("far_side: [", "is no YAML"),
+        ("far_side: [", "is not YAML"),
         ("- a", "must hold keys"),
         ("far_side: /far\nbandwith: 1", "bandwith: is unknown; known are far_side,"),
         ("far_side: /far\nbandwidth: fast", "bandwidth = fast: must be a number from 0 to 1e+09"),
@@ -479,7 +479,7 @@ def test_a_file_that_is_deleted_before_it_was_sent_is_named(tmp_path):
         ("far_side: /far\nrobot: a/b", "robot = a/b: must be of letters"),
         ("far_side: -v", "begins with -"),
         ("far_side: x:y\nrclone_config: /none", "rclone_config = /none: file not found"),
-        ("far_side: /far\nca_file: /none", "ca_file = /none: cannot be read"),
+        ("far_side: /far\nca_file: /none", "ca_file = /none: file not found"),
     ],
     ids=str,
 )

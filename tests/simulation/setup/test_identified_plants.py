@@ -168,11 +168,11 @@ def test_what_it_writes_is_read_and_tracks_twice_as_well(robot, delay, tmp_path)
     assert after["angular"] < 0.6 * before["angular"]
 
 
-def test_gains_for_a_delay_that_the_derived_ones_do_not_bear_are_proposed_with_a_warning():
+def test_gains_for_a_delay_that_the_derived_ones_do_not_tolerate_are_proposed_with_a_warning():
     hidden = {"actuator_delay": 6, "motor_friction": 0.1}
     log, settings, _ = excited(DIFFBOT, hidden, DELAYED)
     outcome = evaluate(log, settings, None, "test")
-    assert any("bear" in sentence and "6 were measured" in sentence for sentence in outcome.warnings)
+    assert any("tolerate" in sentence and "6 were measured" in sentence for sentence in outcome.warnings)
     proposed = yaml.safe_load(outcome.yaml)["diff_drive_controller"]
     assert proposed["pid_kp"] < DELAYED["pid_kp"]
     loop = ClosedLoop({"mujoco_plant": {**ERRORS, **hidden}, "diff_drive_controller": proposed})

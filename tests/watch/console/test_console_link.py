@@ -96,7 +96,7 @@ def test_the_installed_settings_are_the_defaults(tmp_path):
         ("distance: .nan\nlink_gap: x", "link_gap = x: must be"),
         ("distanze: 1", "distanze: is unknown; known are distance, link_gap"),
         ("- 1", "must hold keys with values"),
-        ("a: [", "is no YAML"),
+        ("a: [", "is not YAML"),
     ],
 )
 def test_wrong_settings_are_refused_with_their_reason(tmp_path, text, words):

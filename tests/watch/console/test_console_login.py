@@ -153,7 +153,7 @@ def test_a_broken_file_is_refused(users, text):
     if text == "{}":
         assert users.all() == {}
         return
-    with pytest.raises(UsersError, match=r"is no file of console_users\.py"):
+    with pytest.raises(UsersError, match=r"is not a file of console_users\.py"):
         users.all()
 
 
