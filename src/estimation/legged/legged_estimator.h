@@ -48,7 +48,7 @@ class LeggedEstimator {
   static constexpr double kDegraded = 1.0;        ///< s
   static constexpr double kFootfall = 0.0125;     ///< of a leg's length
   static constexpr double kFootSpeed = 0.04;      ///< of √(l g)
-  static constexpr double kStandGate = 4;
+  static constexpr double kStandGate = 6;
 
   /// `period` is in s.
   LeggedEstimator(const LegModel& robot, double period);

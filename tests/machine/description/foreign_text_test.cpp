@@ -143,7 +143,7 @@ TEST_F(CyclicXacro, IncludesInACircleAreNamed) {
     const std::string path = folder_.path() / "part0.xacro";
     EXPECT_THAT(short_message_of([&] { expand_xacro(path); }),
                 AllOf(HasSubstr("part0.xacro"), HasSubstr("part" + std::to_string(length - 1) + ".xacro"),
-                      HasSubstr("circle")));
+                      HasSubstr("cycle")));
   }
 }
 
@@ -160,10 +160,10 @@ TEST_F(CyclicXacro, NamesForeignFilesThatItIncludes) {
 
 TEST_F(CyclicXacro, MacrosInACircleAreNamed) {
   EXPECT_THAT(reading("m.xacro", kHead + "<xacro:macro name=\"ring\"><xacro:ring/></xacro:macro><xacro:ring/></robot>"),
-              AllOf(HasSubstr("m.xacro"), HasSubstr("ring"), HasSubstr("circle")));
+              AllOf(HasSubstr("m.xacro"), HasSubstr("ring"), HasSubstr("cycle")));
   EXPECT_THAT(reading("two.xacro", kHead + "<xacro:macro name=\"ping\"><xacro:pong/></xacro:macro><xacro:macro "
                                            "name=\"pong\"><xacro:ping/></xacro:macro><xacro:ping/></robot>"),
-              AllOf(HasSubstr("ping"), HasSubstr("pong"), HasSubstr("circle")));
+              AllOf(HasSubstr("ping"), HasSubstr("pong"), HasSubstr("cycle")));
 }
 
 TEST_F(CyclicXacro, PropertiesInACircleAreNamed) {

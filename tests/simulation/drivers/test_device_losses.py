@@ -9,7 +9,7 @@ from robot_control.loop.drives import DRIVES
 
 from bench.devices.answer_trial import KINDS, STATED, AnswerTrial, time_to_rest
 from bench.devices.bench import ODOMETRY, RIPPLE
-from bench.devices.disturbed_drive import BUSES, DisturbedDrive, run_drive
+from bench.devices.disturbed_drive import BUSES, DisturbedDrive, run_drive, together
 from bench.devices.loss_trial import BOARD, DIALECTS, LATEST, ROBOCLAW, SERIAL_LATEST, LossTrial, run_trial
 from bench.devices.slope_trial import as_stated
 
@@ -50,13 +50,14 @@ def test_silence_on_a_slope_does_what_is_stated(dialect):
 
 
 @cache
-def undisturbed_drive(dialect, seconds):
-    return run_drive(DisturbedDrive(dialect, BUSES[0], seconds))
+def drives_on(dialect, bus, seconds):
+    """The figures of three robots together: the error of one is chance."""
+    return together([run_drive(DisturbedDrive(dialect, bus, seconds, seed)) for seed in (1, 2, 3)])
 
 
 def drives(dialect, bus, seconds):
-    """The figures of an undisturbed drive and of one on this bus."""
-    return undisturbed_drive(dialect, seconds), run_drive(DisturbedDrive(dialect, bus, seconds))
+    """The figures on an undisturbed bus and on this one."""
+    return drives_on(dialect, BUSES[0], seconds), drives_on(dialect, bus, seconds)
 
 
 @pytest.mark.parametrize("bus", DISTURBED)
