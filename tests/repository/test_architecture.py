@@ -611,9 +611,9 @@ MAX_FUNCTION = 60
 """lines, from the line of its name to its last brace; in Python without the docstring"""
 MAX_FUNCTION_IN = {SRC / "estimation": 40}
 """lines, in folders with a bound of their own; the innermost bound holds"""
-MAX_LINES = {SRC / "estimation": 3670, SRC / "estimation/legged": 1110}
+MAX_LINES = {SRC / "estimation": 3720, SRC / "estimation/legged": 1110}
 """lines of a whole folder, comments included; a folder below that is listed counts by itself"""
-MAX_TUNED_CONSTANTS = 12
+MAX_TUNED_CONSTANTS = 13
 """in src/estimation/common/tuning.h, before the conventions of statistics"""
 NO_CODE = re.compile(r'//[^\n]*|/\*.*?\*/|R"\w*\(.*?\)\w*"|"(?:\\.|[^"\\\n])*"|\'(?:\\.|[^\'\\\n])\'', re.DOTALL)
 FUNCTION_HEAD = re.compile(r"\)\s*(?:const\b|noexcept\b|override\b|final\b|->|:[^:]|$)")

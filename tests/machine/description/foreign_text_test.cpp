@@ -141,9 +141,9 @@ TEST_F(CyclicXacro, IncludesInACircleAreNamed) {
                     kHead + "<xacro:include filename=\"" + next + "\"/></robot>");
     }
     const std::string path = folder_.path() / "part0.xacro";
-    EXPECT_THAT(short_message_of([&] { expand_xacro(path); }),
-                AllOf(HasSubstr("part0.xacro"), HasSubstr("part" + std::to_string(length - 1) + ".xacro"),
-                      HasSubstr("cycle")));
+    EXPECT_THAT(
+        short_message_of([&] { expand_xacro(path); }),
+        AllOf(HasSubstr("part0.xacro"), HasSubstr("part" + std::to_string(length - 1) + ".xacro"), HasSubstr("cycle")));
   }
 }
 
