@@ -206,8 +206,8 @@ TEST_F(EstimatorFaultsTest, IsTheOdometryOfTheWheelsWithThemAlone) {
   EXPECT_TRUE(has(kStateValid));
   EXPECT_LT(yaw_error(), std::sqrt(state_.base.pose_covariance[35]));
   EXPECT_LT(position_error(), std::sqrt(state_.base.pose_covariance[0] + state_.base.pose_covariance[7]));
-  // The bound holds 3 % of an uncertain wheel base, 1 % of the radius ratio over 2.5 m, and twice the first noise of
-  // wheels that no gyro watches: 0.05 rad/√rad over 1 rad, and 5 mm/√m of either side.
+  // The bound holds 3 % of an uncertain wheel base and 1 % of the radius ratio over 2.5 m. No gyro watches the wheels,
+  // so their first noise counts twice: 0.05 rad/√rad over 1 rad, and 5 mm/√m of either side.
   EXPECT_LT(std::sqrt(state_.base.pose_covariance[35]), std::hypot(0.03, 0.05, std::hypot(0.1, 0.045)) * 1.01);
 }
 

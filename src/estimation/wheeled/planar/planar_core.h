@@ -22,7 +22,7 @@
 /// change ε and β as much as a gyro errs. Their blocks correct τ, ε and β alone, and the gyro's turn shows β. The
 /// corrections of x, y, ψ, ψ₀ and b are held back as δ. P is what is known then, and δ is how far the state is from it.
 /// The deviation of a state is that of P + δ δᵀ. A first rest measures b. It applies δ to the pose if that of the
-/// heading exceeds kSignificant deviations of P, which hold the walk of the bias and the noise of the rest.
+/// heading exceeds kSignificant deviations of P. These hold the walk of the bias and the noise of the rest.
 ///
 /// An innovation beyond kHuber deviations widens its own to that. Beyond kGate deviations wheels and gyro contradict
 /// each other. The heading then follows the gyro. Its doubt, a deviation beside P, grows by the angle between both.
