@@ -22,8 +22,17 @@ from numpy.typing import NDArray
 from robot_control import Estimator
 from robot_control.loop.estimator import FLAGS
 
-from bench.odometry.recordings import NAMES, FloatArray, Recording, aligned_rms, commanded_drives, recording
+from bench.odometry.recordings import (
+    NAMES,
+    FloatArray,
+    Recording,
+    aligned_errors,
+    aligned_rms,
+    commanded_drives,
+    recording,
+)
 from bench.odometry.recordings import simple_path as first_rest
+from bench.odometry.truth import wrapped
 from bench.rows import Row, Say, plain
 
 REST = 1.0  # s
@@ -140,14 +149,14 @@ def _errors(drive: Recording, path: FloatArray, ways: dict[str, FloatArray]) -> 
     rows = np.searchsorted(drive.time, time[seen]).clip(0, drive.time.size - 1)
     truth, moved = drive.truth[seen, 1:], time[seen] > drive.rest
     if truth.shape[1] < 3:
-        return _aligned(path[rows[moved], :2], truth[moved]), rows[moved], np.empty(0)
+        return aligned_errors(path[rows[moved], :2], truth[moved]), rows[moved], np.empty(0)
     start, turn = truth[~moved][-1], path[rows[~moved][-1], 2] - truth[~moved][-1, 2]
     kept = np.flatnonzero(_settled(drive)[rows] & moved)
     rows, truth = rows[kept], truth[kept]
     cos, sin = np.cos(turn), np.sin(turn)
     placed = (truth[:, :2] - start[:2]) @ np.array([[cos, sin], [-sin, cos]])
     off = path[rows, 2] - truth[:, 2] - turn
-    return path[rows, :2] - placed, rows, np.rad2deg(np.remainder(off + np.pi, 2 * np.pi) - np.pi)
+    return path[rows, :2] - placed, rows, np.rad2deg(wrapped(off))
 
 
 def _settled(drive: Recording) -> Rows:
@@ -155,13 +164,6 @@ def _settled(drive: Recording) -> Rows:
     rest = standing(drive)
     began = np.maximum.accumulate(np.where(rest, -np.inf, drive.time))
     return np.asarray(rest & (drive.time - began > SETTLED))
-
-
-def _aligned(path: FloatArray, truth: FloatArray) -> FloatArray:
-    a, b = path - path.mean(axis=0), truth - truth.mean(axis=0)
-    angle = np.arctan2(np.sum(b[:, 0] * a[:, 1] - b[:, 1] * a[:, 0]), np.sum(a * b))
-    turn = np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
-    return np.asarray(a - b @ turn.T)
 
 
 def _rms(drive: Recording, path: FloatArray, ways: dict[str, FloatArray]) -> float:
@@ -202,7 +204,7 @@ def judge_without_gyro(name: str, drive: Recording) -> WithoutGyro:
         first, last = (_pose_at(drive.truth, t) for t in (time[0], time[-1]))
         cos, sin = np.cos(first[2]), np.sin(first[2])
         true = np.array([[cos, sin], [-sin, cos]]) @ (last - first)[:2]
-        turned = np.remainder(out["yaw"][-1] - (last - first)[2] + np.pi, 2 * np.pi) - np.pi
+        turned = wrapped(out["yaw"][-1] - (last - first)[2])
         error = np.array([out["x"][-1], out["y"][-1]]) - true
         covariance = out["pose_covariance"][-1]
         raw = np.hypot(out["wheel_x"][-1] - true[0], out["wheel_y"][-1] - true[1])

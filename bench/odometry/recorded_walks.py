@@ -14,6 +14,7 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.spatial.transform import Rotation
 
 from bench.legs import quadruped_folder
 from bench.odometry.recordings import recordings_folder
@@ -52,8 +53,8 @@ def judge(time: FloatArray, estimate: FloatArray, truth: FloatArray, euler: Floa
     `rms` and `plain_rms` are those of the horizontal position, and `height` is the error at the end. `nees` is the mean
     of the pose's, by its dimension. `slope` is that of the horizontal speed over the true one, in means over STRIDE.
     """
-    turns = _matrices_of_quaternions(estimate[:, 3:7])
-    true_turns = _matrices_of_euler(euler)
+    turns = Rotation.from_quat(estimate[:, 3:7]).as_matrix()
+    true_turns = Rotation.from_euler("xyz", euler).as_matrix()
     yaw = euler[0, 2] - np.arctan2(turns[0, 1, 0], turns[0, 0, 0])
     cos, sin = np.cos(yaw), np.sin(yaw)
     aligned = np.array([[cos, -sin, 0], [sin, cos, 0], [0, 0, 1]])
@@ -77,26 +78,6 @@ def judge(time: FloatArray, estimate: FloatArray, truth: FloatArray, euler: Floa
         nees=float(nees.mean()),
         slope=float((speed * true_speed).sum() / (true_speed**2).sum()),
     )
-
-
-def _matrices_of_quaternions(quaternions: FloatArray) -> FloatArray:
-    """(n, 4) x y z w → (n, 3, 3)."""
-    x, y, z, w = quaternions.T
-    rows = [
-        [1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)],
-        [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)],
-        [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)],
-    ]
-    return np.moveaxis(np.array(rows), 2, 0)
-
-
-def _matrices_of_euler(euler: FloatArray) -> FloatArray:
-    """(n, 3) roll, pitch, yaw about fixed axes → (n, 3, 3)."""
-    half = euler / 2
-    (cr, cp, cy), (sr, sp, sy) = np.cos(half).T, np.sin(half).T
-    w, x = cr * cp * cy + sr * sp * sy, sr * cp * cy - cr * sp * sy
-    y, z = cr * sp * cy + sr * cp * sy, cr * cp * sy - sr * sp * cy
-    return _matrices_of_quaternions(np.column_stack([x, y, z, w]))
 
 
 def bench(say: Say, program: Callable[..., Any], file: Path | None = None) -> tuple[list[str], list[Row]]:

@@ -284,9 +284,14 @@ def simple_path(drive: Recording) -> FloatArray:
     return np.column_stack([np.cumsum(steps * np.cos(middle)), np.cumsum(steps * np.sin(middle)), yaw])
 
 
+def aligned_errors(path: FloatArray, reference: FloatArray) -> FloatArray:
+    """(n, 2) m, in the axes of the path: path (n, 2) less reference (n, 2) after its best rigid motion of the plane."""
+    a, b = path - path.mean(axis=0), reference - reference.mean(axis=0)
+    angle = np.arctan2(np.sum(b[:, 0] * a[:, 1] - b[:, 1] * a[:, 0]), np.sum(a * b))
+    turn = np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
+    return np.asarray(a - b @ turn.T)
+
+
 def aligned_rms(path: FloatArray, reference: FloatArray) -> float:
     """m: (n, 2) against (n, 2) after the best rigid motion of the plane."""
-    a, b = path - path.mean(axis=0), reference - reference.mean(axis=0)
-    angle = np.arctan2(np.sum(a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]), np.sum(a * b))
-    turn = np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
-    return float(np.sqrt(np.mean(np.sum((a @ turn.T - b) ** 2, axis=1))))
+    return float(np.sqrt(np.mean(np.sum(aligned_errors(path, reference) ** 2, axis=1))))

@@ -175,8 +175,7 @@ std::string unstable_message(const Loop& loop, const Loop& derived, const std::s
   if (part <= 0) {
     return problem +
            "No smaller gains of this proportion are stable. Reduce pid_ki or pid_kd against pid_kp, or remove pid_kp "
-           "and "
-           "pid_ki: then they are derived from the robot.";
+           "and pid_ki: then they are derived from the robot.";
   }
   return problem + formatted(
                        "Set at most pid_kp %.3g, pid_ki %.3g, pid_kd %.3g, or remove pid_kp and pid_ki: then they are "

@@ -2,8 +2,7 @@
 /// The ground below the feet: its normal, and a level plane of known height (LegFilter::State::ground).
 ///
 /// normal   n of the diagonals between the last footfalls of all legs, with the mean over kFootfalls of them. A ball
-/// foot
-///          rolls along the ground, not along the horizon
+///          foot rolls along the ground, not along the horizon
 /// level    the ground is level where n is vertical, and where a footfall is as high as those of the other legs, all
 ///          within kLevelGate deviations
 /// plane    a footfall on level ground shows the height of the body if it is within kPlaneGate deviations of the plane.

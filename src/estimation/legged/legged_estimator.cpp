@@ -165,8 +165,9 @@ bool LeggedEstimator::read(const SensorFrame& sensors, double dt) noexcept {
     joint += std::min(1.0, dt / kMeanTime) * (valid_velocity(sensors.joints[i]) - joint);
     moves = moves || std::abs(joint) > kRestRate;
   }
-  for (int axis = 0; moves && state_.still > kRestTime && axis < 3; ++axis)
-    leg_filter().set_variance(LegFilter::kSpeed + axis, kPlainSpeed * kPlainSpeed);
+  if (moves && state_.still > kRestTime) {
+    for (int axis = 0; axis < 3; ++axis) leg_filter().set_variance(LegFilter::kSpeed + axis, kPlainSpeed * kPlainSpeed);
+  }
   state_.still = moves ? 0 : state_.still + dt;
   if (accelerometer) Map(state_.force.data()) = force;
   if (accelerometer && state_.begun == 0 && force.norm() > PlainLegs::kBand) {

@@ -8,13 +8,13 @@
 ///   filter     leg_filter.h: feet that stand are landmarks. A foot that bears stands once the velocity of the body that
 ///              it shows is that of the filter, within kStandGate deviations. Before, it still falls, rolls or slides.
 ///              At rest the gyro measures its bias, and the velocity is zero. The end of a rest shows late, so that the
-///              velocity is hardly known then. A robot whose feet neither bear nor are
-///              asked to lies, or falls on its body: its velocity vanishes
+///              velocity is hardly known then. A robot whose feet neither bear nor are asked to lies, or falls on its
+///              body: its velocity vanishes
 ///   plain      plain_legs.h. Where feet bear, but none shows the filter's velocity for kDivergenceTime, the filter
 ///              begins again with roll, pitch and velocity of the plain estimate, and the state is degraded for
 ///              kDegraded
-///   height     ground.h. A robot that lies at rest for kRestTime has its belly on the plane, and
-///              the first foot that lands then is on it, too
+///   height     ground.h. A robot that lies at rest for kRestTime has its belly on the plane, and the first foot
+///              that lands then is on it, too
 ///
 /// The deviations of a contact scale with the length l of a leg. A foot is known to kFootfall l. The ground is as rough
 /// as that, and foot and ground give way by as much. The foot creeps as far within √(l/g). While it stands, it moves
