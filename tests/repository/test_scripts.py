@@ -189,3 +189,8 @@ def test_a_build_without_tests_switches_them_off_in_catkin(arguments, testing, t
 def test_continuous_integration_refuses_an_unknown_argument():
     done = shell(str(SCRIPTS.parent / ".ci" / "run"), "--warp")
     assert (done.returncode, done.stdout) == (2, "")
+
+
+def test_continuous_integration_builds_and_tests_the_navigation_programs():
+    of_a_change, of_a_night = re.findall(r"sections=\(([^)]+)\)", (SCRIPTS.parent / ".ci/run").read_text())
+    assert {"console", "browser", "navigation"} <= set(of_a_change.split()) < set(of_a_night.split())
