@@ -64,15 +64,15 @@ def test_paths_are_passed_as_given_with_the_callers_folder(launch, monkeypatch):
         assert config.params["/telemetry/directory"].value == "~/.ros/robot_control"
 
 
-def test_a_word_alone_is_a_shipped_scene_or_robot():
+def test_a_single_word_is_an_included_scene_or_robot():
     def scene(value):
         return config_of("sim.launch", f"scene:={value}").params["/mujoco_plant/scene"].value
 
     assert scene("slope_5deg").endswith("/urdf/scenes/slope_5deg.xml")
     assert scene("mine.xml") == "mine.xml"
     assert scene("worlds/mine") == "worlds/mine"
-    shipped = config_of("sim.launch", "robot:=quadbot").params["/robot/urdf"].value
-    assert shipped.endswith("/urdf/quadbot.urdf")
+    included = config_of("sim.launch", "robot:=quadbot").params["/robot/urdf"].value
+    assert included.endswith("/urdf/quadbot.urdf")
     assert config_of("sim.launch", "robot:=quadbot", "urdf:=my.urdf").params["/robot/urdf"].value == "my.urdf"
 
 
