@@ -4,6 +4,7 @@ import re
 import subprocess
 from pathlib import Path
 
+from language import cpp_texts
 from sentences import MAX_WORDS, WORD, sentences
 
 ROOT = Path(__file__).parents[2]
@@ -87,3 +88,8 @@ def test_no_message_has_words_of_this_project_alone():
             texts = re.findall(r'"(?:[^"\\]|\\.)*"', re.sub(r'^\s*(//|#|""").*|"""[^"]*"""', "", line))
             found += [f"{path}:{number}: {text}" for text in texts if PRIVATE.search(text)]
     assert found == []
+
+
+def test_a_latch_file_that_is_not_writable_is_named_before_what_it_costs():
+    texts = [text for _, text in cpp_texts((ROOT / "src/ros/nodes/monitor_node.cpp").read_text())]
+    assert "latch_file is not writable: a stop would be lost after a reboot: " in texts
