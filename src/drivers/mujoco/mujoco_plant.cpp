@@ -51,6 +51,7 @@ MujocoPlant::MujocoPlant(const MachineModel& robot, const MujocoPlantParameters&
       sensor_errors_(model_.robot, rims_of(model_.robot), parameters, period),
       sensor_faults_(model_.robot, parameters.seed),
       period_(period),
+      contacts_(std::min(model_.robot.drive_wheels > 0 ? wheels_.count() : bodies_.count(), kMaxContacts)),
       actuator_delay_(checked_delay("actuator_delay", parameters.actuator_delay)) {
   const double step = model_.model->opt.timestep;
   for (const std::size_t joint : model_.actuated) {
@@ -183,7 +184,7 @@ void MujocoPlant::read(SensorFrame& sensors) noexcept {
   sensors.driver_state = state_;
   sensors.faults = faults_;
   if (!read_) {
-    copy_readings(brakes_.size(), contacts(), measured_, handed_out_);
+    copy_readings(brakes_.size(), contacts_, measured_, handed_out_);
     lost_ = sensor_faults_.step(injected_, cycle_, handed_out_);
     read_ = true;
   }
@@ -191,8 +192,8 @@ void MujocoPlant::read(SensorFrame& sensors) noexcept {
   sensors.joint_count = brakes_.size();
   copy_first(brakes_.size(), handed_out_.joints, sensors.joints);
   sensors.imu = handed_out_.imu;
-  sensors.contact_count = parameters_.contact_sensors ? contacts() : 0;
-  copy_first(contacts(), handed_out_.contacts, sensors.contacts);
+  sensors.contact_count = parameters_.contact_sensors ? contacts_ : 0;
+  copy_first(contacts_, handed_out_.contacts, sensors.contacts);
   if (!good) {
     set_joints_valid(sensors, 0);
     for (ContactSample& contact : sensors.contacts) contact.valid = 0;
@@ -201,11 +202,6 @@ void MujocoPlant::read(SensorFrame& sensors) noexcept {
   sensors.battery_voltage = handed_out_.battery.voltage;
   sensors.battery_current = handed_out_.battery.current;
   sensors.injected = injected_;
-}
-
-/// Returns the number of bodies whose contact forces can be measured.
-std::size_t MujocoPlant::contacts() const noexcept {
-  return std::min(model_.robot.drive_wheels > 0 ? wheels_.count() : bodies_.count(), kMaxContacts);
 }
 
 std::uint64_t MujocoPlant::equipped() const noexcept {
@@ -252,8 +248,8 @@ void MujocoPlant::truth(TruthFrame& truth) noexcept {
   truth.twist_base = truth_.twist_base;
   copy_first(brakes_.size(), truth_.joints, truth.joints);
   truth.contact_count = truth_.contact_count;
-  copy_first(contacts(), truth_.normal_force, truth.normal_force);
-  copy_first(contacts(), truth_.slip, truth.slip);
+  copy_first(contacts_, truth_.normal_force, truth.normal_force);
+  copy_first(contacts_, truth_.slip, truth.slip);
 }
 
 std::uint64_t MujocoPlant::scan_cycles() const noexcept {
@@ -299,7 +295,7 @@ bool MujocoPlant::advance(std::span<const JointCommand> commands) noexcept {
   wheels_.observe(*data_);
   specific_force_sum_ += specific_force_.step(*data_);
   const bool on_wheels = model_.robot.drive_wheels > 0;
-  for (std::size_t i = 0; i < contacts(); ++i) {
+  for (std::size_t i = 0; i < contacts_; ++i) {
     normal_force_sum_[i] += on_wheels ? wheels_.normal_force(i) : bodies_.normal_force(i);
     if (parameters_.contact_sensors) force_sum_[i] += on_wheels ? wheels_.force(i) : bodies_.force(i);
   }
@@ -329,7 +325,7 @@ void MujocoPlant::collect() noexcept {
   std::copy_n(data_->sensordata + model_.gyro, 3, exact_.imu.angular_velocity.begin());
   Eigen::Map<Eigen::Vector3d>(exact_.imu.linear_acceleration.data()) = specific_force_sum_ / model_.substeps;
   if (parameters_.contact_sensors) {
-    for (std::size_t i = 0; i < contacts(); ++i) {
+    for (std::size_t i = 0; i < contacts_; ++i) {
       Eigen::Map<Eigen::Vector3d>(exact_.contacts[i].force.data()) = force_sum_[i] / model_.substeps;
       exact_.contacts[i].valid = 1;
     }
@@ -342,7 +338,7 @@ void MujocoPlant::collect() noexcept {
 }
 
 void MujocoPlant::measure() noexcept {
-  copy_readings(brakes_.size(), contacts(), exact_, measured_);
+  copy_readings(brakes_.size(), contacts_, exact_, measured_);
   sensor_errors_.step(measured_);
   for (std::size_t i = 0; i < drives_.size(); ++i) {
     measured_.joints[i].effort = std::numeric_limits<double>::quiet_NaN();
@@ -370,23 +366,22 @@ void MujocoPlant::collect_truth() noexcept {
   std::copy_n(velocity + 3, 3, truth_.twist_base.angular.begin());
 
   copy_first(brakes_.size(), exact_.joints, truth_.joints);
-  truth_.contact_count = contacts();
-  for (std::size_t i = 0; i < contacts(); ++i) {
+  truth_.contact_count = contacts_;
+  for (std::size_t i = 0; i < contacts_; ++i) {
     truth_.normal_force[i] = normal_force_sum_[i] / model_.substeps;
     truth_.slip[i] = model_.robot.drive_wheels > 0 ? wheels_.slip(i) : bodies_.slip(i);
   }
 }
 
+/// MuJoCo checks positions and velocities: a bad one is a warning.
 bool MujocoPlant::finite() const noexcept {
   double zero = 0;  // NaN as soon as one number is NaN or infinite
   const auto add = [&zero](const double* values, std::size_t count) {
     for (std::size_t i = 0; i < count; ++i) zero += 0 * values[i];
   };
-  add(data_->qpos, static_cast<std::size_t>(model_.model->nq));
-  add(data_->qvel, static_cast<std::size_t>(model_.model->nv));
   add(data_->sensordata, static_cast<std::size_t>(model_.model->nsensordata));
   add(specific_force_sum_.data(), 3);
-  add(normal_force_sum_.data(), contacts());
+  add(normal_force_sum_.data(), contacts_);
   return zero == 0;
 }
 

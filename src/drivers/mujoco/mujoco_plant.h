@@ -106,7 +106,6 @@ class MujocoPlant final : public Simulator {
   void collect_truth() noexcept;
   void measure() noexcept;
   bool finite() const noexcept;
-  std::size_t contacts() const noexcept;
   std::uint64_t equipped() const noexcept;
   void fail(std::uint64_t fault, const char* message) noexcept;
 
@@ -128,6 +127,7 @@ class MujocoPlant final : public Simulator {
   std::array<double, 3> push_{};    ///< N, world axes
   std::shared_ptr<Laser> laser_;    ///< null: there is none, or not yet started
   double period_;                   ///< s
+  std::size_t contacts_;            ///< number of bodies whose contact forces can be measured
   bool settled_ = false;
   bool has_rested_ = false;
   std::string unloaded_;
