@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "drivers/mujoco/model/mjcf.h"
+#include "drivers/mujoco/model/point_velocity.h"
 
 namespace robot_control {
 namespace {
@@ -49,15 +50,10 @@ void BodyContacts::add(Body& body, const mjData& data, int index, double side) c
   body.normal_force += force[0];
   body.force += side * axes.transpose() * Vector(force);
   const int first = model_->geom_bodyid[contact.geom1], second = model_->geom_bodyid[contact.geom2];
-  const Eigen::Vector3d sliding = velocity(data, first, contact.pos) - velocity(data, second, contact.pos);
+  const Eigen::Vector3d sliding =
+      point_velocity(*model_, data, first, contact.pos) - point_velocity(*model_, data, second, contact.pos);
   const Vector normal(contact.frame);
   if (force[0] > 0) body.slip = std::max(body.slip, (sliding - sliding.dot(normal) * normal).norm());
-}
-
-// cvel has the angular, then the linear velocity at the centre of mass of the body's whole tree.
-Eigen::Vector3d BodyContacts::velocity(const mjData& data, int body, const mjtNum* point) const noexcept {
-  const Vector angular(data.cvel + 6 * body), linear(data.cvel + 6 * body + 3);
-  return linear + angular.cross(Vector(point) - Vector(data.subtree_com + 3 * model_->body_rootid[body]));
 }
 
 }  // namespace robot_control

@@ -41,7 +41,6 @@ class BodyContacts {
     double slip = 0;
   };
   void add(Body& body, const mjData& data, int contact, double side) const noexcept;
-  Eigen::Vector3d velocity(const mjData& data, int body, const mjtNum* point) const noexcept;
 
   const mjModel* model_;
   int base_body_;

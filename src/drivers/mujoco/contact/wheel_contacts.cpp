@@ -5,6 +5,7 @@
 #include <cstring>
 
 #include "drivers/driver.h"
+#include "drivers/mujoco/model/point_velocity.h"
 #include "machine/gravity.h"
 
 namespace robot_control {
@@ -163,10 +164,10 @@ void WheelContacts::observe(Wheel& wheel, const mjData& data, int index) noexcep
   const int ground = model_->geom_bodyid[other];
   TyreInput& input = slot->input;
   input.normal = Vector(contact.frame);
-  input.velocity = velocity(data, wheel.body, contact.pos);
+  input.velocity = point_velocity(*model_, data, wheel.body, contact.pos);
   input.turn_rate = Vector(data.cvel + 6 * wheel.body).dot(input.normal);
   if (model_->body_weldid[ground] != 0) {
-    input.velocity -= velocity(data, ground, contact.pos);
+    input.velocity -= point_velocity(*model_, data, ground, contact.pos);
     input.turn_rate -= Vector(data.cvel + 6 * ground).dot(input.normal);
   }
   if (wheel.side) input.velocity += added_speed(wheel, data, contact.pos);
@@ -198,13 +199,6 @@ double WheelContacts::friction(const mjData& data, const mjContact& contact, int
     if (inside(*model_, data, region, contact.pos)) return model_->geom_friction[3 * region];
   }
   return ground_friction_.value_or(model_->geom_friction[3 * other]);
-}
-
-// cvel has the angular, then the linear velocity at the centre of mass of the body's whole tree.
-Eigen::Vector3d WheelContacts::velocity(const mjData& data, int body, const mjtNum* point) const noexcept {
-  const Vector angular(data.cvel + 6 * body), linear(data.cvel + 6 * body + 3);
-  const Vector centre(data.subtree_com + 3 * model_->body_rootid[body]);
-  return linear + angular.cross(Vector(point) - centre);
 }
 
 // Adds Jᵀ f for the dofs that move the body, by their motion axes. It does the same as mj_applyFT at a fraction of the

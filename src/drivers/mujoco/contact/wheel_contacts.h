@@ -121,7 +121,6 @@ class WheelContacts {
   Eigen::Vector3d added_speed(const Wheel& wheel, const mjData& data, const mjtNum* point) const noexcept;
   void let_slide_aside(const Wheel& wheel, const mjData& data, Contact& contact) const noexcept;
   double friction(const mjData& data, const mjContact& contact, int other) const noexcept;
-  Eigen::Vector3d velocity(const mjData& data, int body, const mjtNum* point) const noexcept;
   void push(mjData& data, int body, const mjtNum* point, const Eigen::Vector3d& force,
             const Eigen::Vector3d& torque) const noexcept;
   void sense(Wheel& wheel, const mjData& data) const noexcept;

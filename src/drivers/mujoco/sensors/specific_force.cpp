@@ -1,13 +1,13 @@
 #include "drivers/mujoco/sensors/specific_force.h"
 
+#include "drivers/mujoco/model/point_velocity.h"
+
 namespace robot_control {
 
 SpecificForce::SpecificForce(const MujocoModel& model) : model_(model.model.get()), site_(model.imu) {}
 
 void SpecificForce::reset(const mjData& data) noexcept {
-  mjtNum motion[6];  // angular, then linear velocity, world axes
-  mj_objectVelocity(model_, &data, mjOBJ_SITE, site_, motion, 0);
-  velocity_ = Eigen::Map<const Eigen::Vector3d>(motion + 3);
+  velocity_ = point_velocity(*model_, data, model_->site_bodyid[site_], data.site_xpos + 3 * site_);
   orientation_ = Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(data.site_xmat + 9 * site_);
 }
 
