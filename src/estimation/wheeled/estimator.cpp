@@ -132,7 +132,8 @@ void Estimator::integrate_wheels() noexcept {
   const Planar chord = chord_of(motion, odometry.yaw);
   odometry.x += chord.x;
   odometry.y += chord.y;
-  odometry.yaw = std::remainder(odometry.yaw + motion.turn, 2 * std::numbers::pi);
+  odometry.yaw += motion.turn;
+  if (std::abs(odometry.yaw) > std::numbers::pi) odometry.yaw = std::remainder(odometry.yaw, 2 * std::numbers::pi);
   const Motion velocity = geometry_.base_motion(wheels.mean_speed(), wheel_rate());
   odometry.linear = velocity.forward;
   odometry.angular = velocity.turn;
