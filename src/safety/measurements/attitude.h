@@ -56,6 +56,9 @@ class Attitude {
   /// rad, 0 … π, between u and the base's z axis.
   double tilt() const noexcept;
 
+  /// Returns true only if `tilt` does not exceed `angle`, rad: no angle exceeds its tangent.
+  bool surely_within(double angle) const noexcept { return horizontal_ < angle * (*up_).z(); }
+
   /// rad/s, its derivative by the gyro: (ω_x u_y − ω_y u_x)/√(u_x² + u_y²); 0 upright or without a gyro.
   double tilt_rate() const noexcept { return tilt_rate_; }
 

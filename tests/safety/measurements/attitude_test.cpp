@@ -72,6 +72,18 @@ TEST_F(AttitudeTest, DoesNotBeginWithAShock) {
   EXPECT_FALSE(fresh.known());
 }
 
+TEST_F(AttitudeTest, IsSurelyWithinNoAngleThatTheTiltExceeds) {
+  for (const double lean : {0.0, 1e-7, 0.1, 0.5, 1.5, 1.7, 3.0}) {
+    Attitude leans;
+    const Vector3d rate(0, 0, 0), force = kGravity * Vector3d(std::sin(lean), 0, std::cos(lean));
+    leans.step(&rate, &force, kStep);
+    for (double angle = 0; angle < 3.2; angle += 0.01) {
+      EXPECT_FALSE(leans.surely_within(angle) && leans.tilt() > angle) << lean << ' ' << angle;
+    }
+  }
+  EXPECT_TRUE(attitude_.surely_within(0.01));
+}
+
 TEST_F(AttitudeTest, FollowsATiltingBody) {
   for (int i = 1; i <= 500; ++i) {  // nose up about −y: up leans to +x, so does the specific force
     const double angle = 0.6 * kStep * i;

@@ -38,8 +38,10 @@ struct BodyMeasurements {
 
 struct BodyLaws {
   static ConditionMeasurement tilt(const BodyMeasurements& now, const ConditionWatch& watch) noexcept {
-    const double tilt = now.body.attitude().tilt(), limit = std::max(watch.limit(), now.least_tilt);
-    return now.body.attitude().known() ? beyond(kMaxJoints, tilt, limit) : kNothingMeasured;
+    const Attitude& attitude = now.body.attitude();
+    const double limit = std::max(watch.limit(), now.least_tilt);
+    if (!attitude.known() || attitude.surely_within(limit)) return kNothingMeasured;
+    return beyond(kMaxJoints, attitude.tilt(), limit);
   }
   static ConditionMeasurement free_fall(const BodyMeasurements& now, const ConditionWatch& watch) noexcept {
     return now.body.felt() ? below(now.body.force(), watch.limit()) : kNothingMeasured;
