@@ -181,7 +181,7 @@ def stopped_by(*causes, namespace="/"):
 
 def test_a_refused_reset_names_the_command_that_takes_back_the_topic_of_an_ended_node():
     answer = Answer("e_stop_reset", accepted=False, text="refused: a cause of the stop persists")
-    level = Cause("e_stop_topic", "the topic e_stop received true", active=True)
+    level = Cause("e_stop_topic", "an emergency stop is requested on the topic e_stop", active=True)
     text = in_words(answer, stopped_by(level, namespace="/robot2"))
     assert "rostopic pub -1 /robot2/e_stop std_msgs/Bool false, then call the reset again" in text
     assert len(text) <= 3 * 70
@@ -190,7 +190,9 @@ def test_a_refused_reset_names_the_command_that_takes_back_the_topic_of_an_ended
 @pytest.mark.parametrize("cause", ["e_stop_input", "e_stop_service"])
 def test_another_refusal_is_the_services_own_text(cause):
     answer = Answer("e_stop_reset", accepted=False, text="refused: the robot still moves")
-    robot = stopped_by(Cause(cause, "a stop", active=True), Cause("e_stop_topic", "the topic e_stop received true"))
+    robot = stopped_by(
+        Cause(cause, "a stop", active=True), Cause("e_stop_topic", "an emergency stop is requested on the topic e_stop")
+    )
     assert in_words(answer, robot) == "reset REFUSED: refused: the robot still moves"
 
 

@@ -42,9 +42,15 @@ def test_of_a_robot_on_legs_it_shows_the_speed_sideways():
 
 
 def test_it_shows_state_causes_and_remedy():
-    cause = Cause("e_stop_topic", "the topic e_stop received true", "publish false", "operator", first=True)
+    cause = Cause(
+        "e_stop_topic", "an emergency stop is requested on the topic e_stop", "publish false", "operator", first=True
+    )
     text = screen(facts(safety=Safety("STOPPED", "brake", causes=(cause,))))
-    for words in ("STOPPED, permit: brake", "Stopped: the topic e_stop received true", "operator: publish false"):
+    for words in (
+        "STOPPED, permit: brake",
+        "Stopped: an emergency stop is requested on the topic e_stop",
+        "operator: publish false",
+    ):
         assert words in text
 
 

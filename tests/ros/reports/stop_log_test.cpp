@@ -98,10 +98,10 @@ TEST_F(StopLogTest, EveryCauseOfTheTableGivesOneLineWithItsRemedyAndTheReset) {
 TEST_F(StopLogTest, SeveralCausesAtOnceAreOneLineWithTheFirstInFront) {
   permit_.first_cause = kCauseStall;
   permit_.causes = kCauseStall | kCauseEmergencyStopService;
-  EXPECT_EQ(enter(SupervisorState::kStopped),
-            "W STOPPED: stall: a wheel does not turn although motion is commanded; e_stop_service: e_stop_trigger was "
-            "called. To "
-            "drive again: check for a blocked wheel, then motor and encoder, then call e_stop_reset\n");
+  EXPECT_EQ(
+      enter(SupervisorState::kStopped),
+      "W STOPPED: stall: a wheel does not turn although motion is commanded; e_stop_service: an emergency stop "
+      "was requested. To drive again: check for a blocked wheel, then motor and encoder, then call e_stop_reset\n");
 }
 
 TEST_F(StopLogTest, ACauseThatLatchesLaterHasALineOfItsOwn) {

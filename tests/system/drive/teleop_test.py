@@ -77,7 +77,7 @@ class TeleopTest(RobotTestCase):
         self.terminal.type("!")
         wait_for("the stop", lambda: "e_stop_service" in self.robot.causes)
         self.await_rest()
-        wait_for("its cause on the screen", lambda: "e_stop_trigger was called" in self.terminal.screen)
+        wait_for("its cause on the screen", lambda: "an emergency stop was requested" in self.terminal.screen)
         self.terminal.type("y")
         wait_for("the release by two keys", lambda: not self.robot.causes, every=self.request_reset)
         wait_for("the answer", lambda: "reset accepted" in self.terminal.screen)

@@ -12,7 +12,7 @@ from robot_control.watch.why.screen import Layout, render
 
 E_STOP = Cause(
     "e_stop_topic",
-    "the topic e_stop received true",
+    "an emergency stop is requested on the topic e_stop",
     "publish false on e_stop",
     "operator",
     first=True,

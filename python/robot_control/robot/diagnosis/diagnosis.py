@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator
 
-from robot_control.robot.diagnosis.answer import Answer, Verdict
+from robot_control.robot.diagnosis.answer import RESET, THEN_RESET, Answer, Verdict
 from robot_control.robot.diagnosis.lateness import ACTOR, REMEDY, SENTENCE, late
 from robot_control.robot.diagnosis.legs import execution
 from robot_control.robot.diagnosis.state import Cause, Facts, speeds
@@ -136,7 +136,7 @@ def _actions(facts: Facts, causes: list[Cause], absent: tuple[str, ...]) -> Iter
     requested = _requested(facts)
     if requested and facts.commanders():
         yield "operator", f"stop {', '.join(facts.commanders())}: a reset is refused while motion is requested"
-    yield "operator", "then call e_stop_reset" if named or absent or requested else "call e_stop_reset"
+    yield "operator", THEN_RESET if named or absent or requested else RESET
 
 
 def _commands(facts: Facts, causes: list[Cause], absent: tuple[str, ...]) -> Iterator[str]:
