@@ -134,7 +134,7 @@ class ConsoleAttackTest(RobotTestCase):
             "/api/mesh/0",
             "/index.html",
             "/main.js",
-            "/lib/chart.js/chart.mjs",
+            "/lib/three/build/three.module.js",
         ):
             self.assertIn(status(origin + path), (401, 403), path)
             self.assertEqual(status(origin + path, Cookie="console=guess", Origin=origin), 401, path)
@@ -193,14 +193,14 @@ class ConsoleAttackTest(RobotTestCase):
                 await first.send_json(TAKE)
                 await self.until(first, "authority", '"commander": ')
                 await second.send_json(TAKE)
-                await self.until(second, "said", "has the command")
+                await self.until(second, "said", "has control")
                 await second.send_json(DRIVE)
-                await self.until(second, "said", "does not have the command")
+                await self.until(second, "said", "does not have control")
                 call = {"type": "call", "number": 1, "name": "reset", "arguments": {"key": "0" * 16}}
                 await first.send_json(call)
                 self.assertFalse((await self.until(first, "answer"))["accepted"])
                 await second.send_json({**call, "name": "reset_odometry", "arguments": {}})
-                self.assertIn("take the command", (await self.until(second, "answer"))["text"])
+                self.assertIn("take control", (await self.until(second, "answer"))["text"])
 
         asyncio.run(asyncio.wait_for(whole(), 60))
         self.alive()
@@ -214,7 +214,7 @@ class ConsoleAttackTest(RobotTestCase):
             return answer["accepted"], answer["text"]
 
         async def play(page: Any) -> None:
-            self.assertEqual(await call(page, "reset_odometry"), (False, "take the command first"))
+            self.assertEqual(await call(page, "reset_odometry"), (False, "take control first"))
             await page.send_json(TAKE)
             while (authority := await self.until(page, "authority"))["commander"] != authority["you"] or authority[
                 "against"
@@ -388,7 +388,7 @@ class ConsoleAttackTest(RobotTestCase):
             await self.until(page, "said", "watch does not drive")
             for _ in range(5):
                 await page.send_json(DRIVE)
-            await self.until(page, "said", "does not have the command")
+            await self.until(page, "said", "does not have control")
             await page.send_json({"type": "call", "number": 1, "name": "step", "arguments": {"cycles": 1}})
             self.assertIn("needs the role maintain", (await self.until(page, "answer"))["text"])
             self.assertEqual(

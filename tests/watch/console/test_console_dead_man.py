@@ -210,12 +210,12 @@ def test_a_hold_of_max_hold_ends(page):
 def test_one_page_commands_and_another_moves_nothing(page):
     other = Page(page.authority, name="berta")
     other.now = page.now
-    with pytest.raises(RefusedError, match=r"anna .* has the command"):
+    with pytest.raises(RefusedError, match=r"anna .* has control"):
         other.authority.take(other.page, other.now)
-    with pytest.raises(RefusedError, match=r"anna .* has the command"):
+    with pytest.raises(RefusedError, match=r"anna .* has control"):
         other.authority.take(other.page, other.now, force=True)
     other.press()
-    with pytest.raises(RefusedError, match="does not have the command"):
+    with pytest.raises(RefusedError, match="does not have control"):
         other.send()
     assert not moves(page.run(0.5))
 
@@ -225,7 +225,7 @@ def test_a_watcher_cannot_take_the_command(page):
     page.authority.give_back(page.page, page.now)
     with pytest.raises(RefusedError, match="watch"):
         page.authority.take(watcher.page, 0.0, force=True)
-    with pytest.raises(RefusedError, match="take the command first"):
+    with pytest.raises(RefusedError, match="take control first"):
         page.authority.hand_over(watcher.page, 1, 0.0)
 
 

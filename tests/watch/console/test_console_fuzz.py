@@ -40,7 +40,8 @@ ARGUMENTS = {
 }
 DRIVE = {"type": "drive", "number": 7, "sent": 1.5, "held": True, "linear": 1.0, "angular": 0.5, "lateral": 0.0}
 SPEEDS = {"type": "speeds", "linear": 0.5, "angular": 1.0, "lateral": 0.3}
-OTHERS = [{"type": "take", "force": True}, {"type": "pong", "name": "ab"}, {"type": "hand_over", "to": 1}]
+PLAY = {"type": "play", "at": 2.5, "speed": 0.5}
+OTHERS = [PLAY, {"type": "take", "force": True}, {"type": "pong", "name": "ab"}, {"type": "hand_over", "to": 1}]
 CALLS = [
     {"type": "call", "number": 3, "name": name, "arguments": {field: ARGUMENTS[field] for field in call.fields}}
     for name, call in calls.CALLS.items()

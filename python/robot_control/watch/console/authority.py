@@ -85,8 +85,8 @@ class Authority:
         if self.commander is page:
             return
         if self.commander is not None and not (force and page.role >= Role.MAINTAIN):
-            raise RefusedError(f"{self.commander} has the command; only the role maintain can take it")
-        self._give(page, now, f"{page} has taken the command")
+            raise RefusedError(f"{self.commander} has control; only the role maintain can take it")
+        self._give(page, now, f"{page} has taken control")
 
     def hand_over(self, page: Page, to: int, now: float) -> None:
         """Hands the command over. Raises RefusedError."""
@@ -94,24 +94,24 @@ class Authority:
         other = self.pages.get(to)
         if other is None or other.role < Role.OPERATE:
             raise RefusedError(f"there is no page {to} that may drive")
-        self._give(other, now, f"the command was handed over to {other}")
+        self._give(other, now, f"control was handed over to {other}")
 
     def give_back(self, page: Page, now: float) -> None:
         """Ends the command. Raises RefusedError."""
         self.require(page)
-        self._give(None, now, "the command was returned")
+        self._give(None, now, "control was released")
 
     def require(self, page: Page) -> None:
         """Raises RefusedError unless the page commands."""
         if self.commander is not page:
-            raise RefusedError(f"{self.commander or 'no page'} has the command: take the command first")
+            raise RefusedError(f"{self.commander or 'no page'} has control: take control first")
 
     def receive(self, page: Page, drive: Drive, now: float) -> None:
         """Receives the state of a page; without the command it moves nothing. Raises RefusedError."""
         if self.commander is page:
             page.dead_man.receive(drive, now)
         elif drive.held:
-            raise RefusedError("this page does not have the command: take the command first")
+            raise RefusedError("this page does not have control: take control first")
 
     def interrupt(self, now: float, why: str) -> None:
         """Ends the motion after a stop, or after a pause of this program (interruptions.py)."""

@@ -12,10 +12,12 @@ from robot_control.drive.speed_limits import SpeedLimits
 from robot_control.robot.command import Pace
 from robot_control.robot.command_topic import CommandTopic
 from robot_control.robot.diagnosis.listener import Listener
+from robot_control.robot.diagnosis.state import Facts
 from robot_control.robot.robot_kind import running_kind
 from robot_control.robot.safety_watch import SafetyWatch
+from robot_control.robot.server_values import server_description
 from robot_control.robot.services import AGAIN, E_STOP, Answer, Services, in_words
-from robot_control.watch.console.authority import Authority, Page
+from robot_control.watch.console.authority import Authority, Page, RefusedError
 from robot_control.watch.console.calls import CALLS, Calls, against
 from robot_control.watch.console.settings import Settings
 from robot_control.watch.console.view import View, rounded
@@ -30,6 +32,8 @@ NOT_ANSWERED = Answer(E_STOP, accepted=False, text="the console could not send i
 
 class Backend:
     """One robot, and the pages that look at it."""
+
+    live = True  # a page may command
 
     def __init__(self, settings: Settings) -> None:
         self.authority = Authority(settings)
@@ -65,7 +69,7 @@ class Backend:
         if beats and now - self._beat_at >= HEARTBEAT_PERIOD:
             self._beat_at = now
             self._heartbeat.publish(Empty())
-        self.said += [in_words(answer, self.listener.facts()) for answer in answers]
+        self.said += [_line(answer, self.listener.facts()) for answer in answers]
 
     async def e_stop(self) -> Answer:
         """Requests the emergency stop; whether the robot has confirmed it, or why not."""
@@ -84,11 +88,19 @@ class Backend:
 
     def fast(self) -> dict[str, Any]:
         """The values that every page shows in each frame."""
-        return self.view.fast(self._pace.last)
+        return self.view.fast()
 
     def slow(self) -> dict[str, Any]:
         """The robot's state for every page."""
         return self.view.slow(self.listener.facts())
+
+    def play(self, at: float, speed: float) -> None:
+        """Only a recording plays. Raises RefusedError."""
+        raise RefusedError(f"only a recording plays: this robot does not play from {at:g} s at {speed:g} times")
+
+    def description(self) -> str:
+        """The URDF of the running robot. Raises ServerValueError, OSError, ROSException."""
+        return server_description()
 
     def authority_of(self, page: Page) -> dict[str, Any]:
         """The values that this page shows of itself and of the others."""
@@ -123,3 +135,9 @@ class Backend:
 
     def _note_services(self) -> None:
         self.available = None if self.listener.facts().forgotten else self.listener.services()
+
+
+def _line(answer: Answer, facts: Facts) -> str:
+    """The answer for an operator, who has a button for the reset."""
+    stopped = answer.service == E_STOP and answer.accepted
+    return "emergency stop confirmed" if stopped else in_words(answer, facts)

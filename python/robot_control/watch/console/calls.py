@@ -99,7 +99,7 @@ def against(name: str, page: Page, authority: Authority, services: set[str] | No
     if page.role < call.role:
         return f"needs the role {call.role}"
     if authority.commander is not page:
-        return "take the command first"
+        return "take control first"
     if service and services is None:
         return "the ROS master was restarted and does not know the robot: restart the nodes of the robot"
     if service and services is not None and service not in services:

@@ -19,6 +19,7 @@ from robot_control.watch.console.backend import Backend
 from robot_control.watch.console.calls import against, check_call
 from robot_control.watch.console.dead_man import Drive
 from robot_control.watch.console.messages import MAX_SIZE, MessageError, Rate, parse
+from robot_control.watch.console.replay.replay import REFUSAL, Replay
 from robot_control.watch.console.sessions import Session, Sessions
 
 FRAME, SLOW = 0.05, 5
@@ -46,7 +47,7 @@ class Frames:
         self.number = self.slow_number = 0
         self.writers: set[asyncio.Event] = set()  # of the pages; set whenever there is something to send
 
-    def make(self, backend: Backend) -> None:
+    def make(self, backend: Backend | Replay) -> None:
         """Makes the next frame."""
         self.fast = json.dumps(backend.fast())
         if self.number % SLOW == 0:
@@ -59,7 +60,9 @@ class Frames:
 class Client:
     """One page."""
 
-    def __init__(self, backend: Backend, frames: Frames, page: Page, session: Session, sessions: Sessions) -> None:
+    def __init__(
+        self, backend: Backend | Replay, frames: Frames, page: Page, session: Session, sessions: Sessions
+    ) -> None:
         """`session`: the login of the page, one of `sessions`."""
         self._backend, self._frames, self._sessions, self._who = backend, frames, sessions, session.user
         self.page, self.session = page, session
@@ -137,6 +140,11 @@ class Client:
     def _receive(self, message: dict[str, Any], now: float) -> None:
         kind = message.pop("type")
         authority, page = self._backend.authority, self.page
+        if kind == "play":
+            self._backend.play(**message)
+            return
+        if not self._backend.live and kind != "pong":
+            raise RefusedError(REFUSAL)
         if kind in LOGGED:
             journal.info("%s: %s %s", self._who, kind, json.dumps(message))
         if kind == "drive":

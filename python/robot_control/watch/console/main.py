@@ -17,6 +17,7 @@ from pathlib import Path
 import rospy
 from aiohttp import web
 
+from robot_control.data.run_log import LogError
 from robot_control.files.files import fit_for_message, given_path, in_words
 from robot_control.installed_files import share_file
 from robot_control.robot.boundary import boundary
@@ -33,6 +34,7 @@ from robot_control.settings.addresses import (
 from robot_control.settings.files import SettingsError
 from robot_control.watch.console.backend import Backend
 from robot_control.watch.console.client import FRAME
+from robot_control.watch.console.replay.replay import Replay
 from robot_control.watch.console.server import Server
 from robot_control.watch.console.settings import Settings, read_settings
 from robot_control.watch.console.tls import TlsError, context_of, fingerprint, self_made
@@ -75,6 +77,7 @@ def arguments(given: list[str]) -> argparse.Namespace:
     add("--origin", action="append", default=[], help="further address of the page, as https://console.example")
     add("--config", type=given_path, help="YAML, overrides config/console.yaml")
     add("--runs", type=given_path, default=FOLDER, help="folder of recorded runs (default %(default)s)")
+    add("--bag", type=given_path, help="run.bag to play instead of a robot; nothing can be commanded")
     add("--read-only", action="store_true", help="only the emergency stop works")
     return parser.parse_args(given)
 
@@ -84,7 +87,7 @@ def setup_of(given: argparse.Namespace) -> Setup:
     overlay = [given.config] if given.config else []
     settings = read_settings(Path(share_file("config/console.yaml")), *overlay)
     users, context = Users(), None
-    has_users, tls = bool(users.all()), bool(given.tls or given.cert)
+    has_users, tls = not given.bag and bool(users.all()), bool(given.tls or given.cert)
     require_protection(given.address, users=has_users, tls=tls)
     if tls:
         names = ["localhost", "127.0.0.1", socket.gethostname(), given.address]
@@ -111,7 +114,7 @@ def open_journal(path: Path) -> None:
 
 async def serve(given: argparse.Namespace, setup: Setup, signals: Signals) -> None:
     """Serves until a signal arrives."""
-    backend = Backend(setup.settings)
+    backend = Replay(given.bag, setup.settings) if given.bag else Backend(setup.settings)
     server = Server(backend, setup.origins, setup.users, given.runs, port=given.port, read_only=given.read_only)
     runner = web.AppRunner(server.app, access_log=None, keepalive_timeout=KEPT, handle_signals=False)
     await runner.setup()
@@ -143,7 +146,7 @@ async def serve(given: argparse.Namespace, setup: Setup, signals: Signals) -> No
         await asyncio.wait_for(runner.cleanup(), 2.0)
 
 
-async def _frames(server: Server, backend: Backend) -> None:
+async def _frames(server: Server, backend: Backend | Replay) -> None:
     while True:
         with boundary.crossing("the frames of the pages"):
             server.frames.make(backend)
@@ -163,9 +166,12 @@ def main() -> int:
         return 2
     hard = resource.getrlimit(resource.RLIMIT_NOFILE)[1]
     resource.setrlimit(resource.RLIMIT_NOFILE, (min(hard, 65536) if hard > 0 else 65536, hard))
-    with running_node("console") as signals:
+    with contextlib.nullcontext(Signals()) if given.bag else running_node("console") as signals:
         try:
             asyncio.run(serve(given, setup, signals))
+        except LogError as error:
+            print(f"console.py: {error}", file=sys.stderr)
+            return 2
         except OSError as error:  # the port is in use, or the address is not this machine's
             print(f"console.py: {given.address}:{given.port}: {error.strerror or error}", file=sys.stderr)
             return 2

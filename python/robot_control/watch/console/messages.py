@@ -42,6 +42,7 @@ TYPES: Mapping[str, Fields] = {
     "give_back": {},
     "speeds": dict.fromkeys(AXES, SPEED),
     "heartbeat": {"on": flag},
+    "play": {"at": in_range(0.0, 1e7), "speed": in_range(0.0, 10.0)},
     "call": {"number": COUNT, "name": text(32), "arguments": lambda value: isinstance(value, dict)},
 }
 """Type → its fields; those of `arguments` stand in calls.py"""

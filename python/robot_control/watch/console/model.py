@@ -5,6 +5,7 @@ A mesh has an id, made of its name; the page asks for the id, and only files of 
 
 import hashlib
 import xml.etree.ElementTree as ET
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 from urllib.parse import unquote
@@ -14,7 +15,7 @@ import rospkg
 import rospy
 
 from robot_control.files.files import InputFileError, check_input
-from robot_control.robot.server_values import ServerValueError, server_description
+from robot_control.robot.server_values import ServerValueError
 
 MAX_DESCRIPTION, MAX_PARTS, MAX_MESH = 4 << 20, 2000, 64 << 20
 """bytes, links and joints, bytes"""
@@ -30,13 +31,15 @@ class ModelError(ValueError):
 class Model:
     """The newest description."""
 
-    def __init__(self) -> None:
+    def __init__(self, description: Callable[[], str]) -> None:
+        """`description`: returns the URDF of this moment."""
+        self._description = description
         self._meshes: dict[str, str] = {}  # id → name in the URDF
 
     def read(self) -> dict[str, Any]:
         """The URDF, and the id of each mesh's name. Raises ModelError."""
         try:
-            description = server_description()
+            description = self._description()
         except (ServerValueError, OSError, rospy.ROSException) as error:
             raise ModelError(f"robot_description: {error}") from None
         if not description:

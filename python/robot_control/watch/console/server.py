@@ -23,6 +23,7 @@ from robot_control.watch.console.messages import MAX_SIZE
 from robot_control.watch.console.model import Model, ModelError
 from robot_control.watch.console.navigation import NoGridError
 from robot_control.watch.console.pending_connections import PendingConnections
+from robot_control.watch.console.replay.replay import REFUSAL, Replay
 from robot_control.watch.console.room import gives_way
 from robot_control.watch.console.runs import Runs, RunsError
 from robot_control.watch.console.sessions import Session, Sessions, Tries, digest
@@ -32,7 +33,7 @@ from robot_control.watch.words.words import LANGUAGES, pairs_in
 MAX_PAGES = 20
 BODY_TIME = 10.0
 """s within which the body of a request has to arrive"""
-PUBLIC = frozenset({"/login", "/api/login", "/style.css", "/login.js", "/icon.svg", "/words.js"})
+PUBLIC = frozenset({"/login", "/api/login", "/tokens.css", "/style.css", "/login.js", "/icon.svg", "/words.js"})
 """Paths that are served without a login"""
 LOCAL_USER = "local"
 """Name of the user who has opened the page with the token"""
@@ -44,12 +45,19 @@ class Server:
     """All routes."""
 
     def __init__(
-        self, backend: Backend, origins: Origins, users: Users | None, runs: Path, *, port: int, read_only: bool
+        self,
+        backend: Backend | Replay,
+        origins: Origins,
+        users: Users | None,
+        runs: Path,
+        *,
+        port: int,
+        read_only: bool,
     ) -> None:
         """`users`: None where the token alone opens."""
         self._backend, self._origins, self._users, self._read_only = backend, origins, users, read_only
         self.sessions, self._tries = Sessions(), Tries()
-        self._runs, self._model, self._doctor_run = Runs(runs), Model(), DoctorRun()
+        self._runs, self._model, self._doctor_run = Runs(runs), Model(backend.description), DoctorRun()
         self.pending, self.frames = PendingConnections(), Frames()
         self._clients: list[Client] = []
         self._hashing = asyncio.Semaphore(1)
@@ -114,6 +122,8 @@ class Server:
             raise self._refusal(request, web.HTTPMisdirectedRequest, "this host is not the console's")
         if (request.method != hdrs.METH_GET or request.path == "/ws") and not self._origins.origin_is_own(origin, host):
             raise self._refusal(request, web.HTTPForbidden, "this origin is not the console's")
+        if request.method != hdrs.METH_GET and not self._backend.live:
+            raise self._refusal(request, web.HTTPForbidden, REFUSAL)
         session = self.sessions.of(request.cookies.get(self._cookie), time.time())
         request["session"] = session
         if session is not None:
@@ -198,7 +208,7 @@ class Server:
         session: Session = request["session"]
         self._make_room(request, session)
         authority = self._backend.authority
-        page = authority.join(session.user, Role.WATCH if self._read_only else session.role)
+        page = authority.join(session.user, session.role if self._backend.live and not self._read_only else Role.WATCH)
         who = f"{request.remote}: {session.user}"
         journal.info("%s: page %d begins as %s", who, page.number, page.role)
         client = Client(self._backend, self.frames, page, session, self.sessions)
@@ -229,7 +239,9 @@ class Server:
     # files
 
     async def _file(self, request: web.Request) -> web.StreamResponse:
-        return page_file({"": "index.html", "login": "login.html"}.get(path := request.match_info["path"], path))
+        name = {"": "index.html", "login": "login.html"}.get(path := request.match_info["path"], path)
+        packed = "gzip" in request.headers.get(hdrs.ACCEPT_ENCODING, "")
+        return await asyncio.to_thread(page_file, name, packed=packed)
 
     async def _words(self, request: web.Request) -> web.StreamResponse:
         language = request.match_info["language"]
