@@ -29,7 +29,7 @@ SWITCHES = (
 )
 NEEDED = (
     ("browser", ("selenium",), ("bin/chromedriver", "bin/chromium")),
-    ("console", ("aiohttp",), ("share/javascript/three/build/three.module.js", "share/javascript/chart.js/chart.mjs")),
+    ("console", ("aiohttp",), ("share/javascript/three/build/three.module.js",)),
 )
 """Sections of scripts/shell/dependencies.txt with their modules, and files below /usr."""
 
@@ -57,7 +57,7 @@ class Browser:
         options.set_capability("goog:loggingPrefs", {"browser": "ALL"})
         self._service = Service("/usr/bin/chromedriver")
         self.driver = webdriver.Chrome(service=self._service, options=options)
-        self.driver.set_script_timeout(20)
+        self.driver.set_script_timeout(60)
         self.screen(width, height)
 
     def _modest(self) -> str:
@@ -140,6 +140,10 @@ class Browser:
     def click(self, element: str) -> None:
         """Clicks on an element, by id."""
         self.run("document.getElementById(arguments[0]).click()", element)
+
+    def tab(self, name: str) -> None:
+        """Opens a part of the console: drive, map, plots, logs or setup."""
+        self.run("document.querySelector(`#tabs [data-tab=${arguments[0]}]`).click()", name)
 
     def key(self, code: str, kind: str = "keyDown") -> None:
         """A real key of the browser: keyDown or keyUp."""

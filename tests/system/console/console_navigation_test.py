@@ -6,7 +6,6 @@ import tempfile
 import unittest
 from pathlib import Path
 
-import numpy as np
 import rospy
 from geometry_msgs.msg import PoseStamped, PoseWithCovarianceStamped
 from robot_control._navigation import write_map
@@ -21,11 +20,8 @@ from system.system_support import Latest, Program, again_after_a_stall, wait_for
 from bench.console.browser import Browser
 from bench.navigation.scene_map import read_scene, true_map
 
-EYE, LOOK = np.array([-1.3, -1.3, 1.2]), np.array([0.0, 0.0, 0.1])
-"""m from the robot: the page's camera, and what it looks at"""
-HALF_VIEW = math.tan(math.radians(25))
 CLICKED = 0.05
-"""m on the map: six pixels of 8 mm, in the direction in which the camera sees the floor most obliquely"""
+"""m on the map: some pixels of 4 mm, from above"""
 AT_GOAL = CLICKED + 0.05 + 0.05
 """m in odometry: the click, the end of a path, and what localization corrects on the way"""
 REASON = missing_mrpt() or missing()
@@ -63,15 +59,10 @@ class ConsoleNavigationTest(ConsoleTestCase):
 
     def pixel(self, browser: Browser, ahead: float) -> tuple[float, float]:
         """The pixel of the place so far ahead of the robot, which looks along x."""
-        left, top, width, height = browser.run(
-            "const b = document.querySelector('#scene').getBoundingClientRect();"
-            " return [b.left, b.top, b.width, b.height]"
-        )
-        forward = (LOOK - EYE) / np.linalg.norm(LOOK - EYE)
-        right = np.cross(forward, [0, 0, 1]) / np.linalg.norm(np.cross(forward, [0, 0, 1]))
-        to = np.array([ahead, 0, 0]) - EYE
-        x, y = (float(to @ axis / (to @ forward) / HALF_VIEW) for axis in (right, np.cross(right, forward)))
-        return left + width / 2 + x * height / 2, top + (1 - y) * height / 2
+        script = "const [x, y, done] = arguments; import('/scene.js').then((m) => done(m.toScreen(x, y)))"
+        here = self.robot.pose
+        x, y = browser.driver.execute_async_script(script, here.x + ahead, here.y)
+        return float(x), float(y)
 
     def stroke(self, browser: Browser, button: str, ahead: float) -> None:
         """Presses the button, then the map so far ahead of the robot, and drags along x."""
@@ -103,7 +94,7 @@ class ConsoleNavigationTest(ConsoleTestCase):
         browser.screen(1300, 900)
         browser.open(self.address)
         self.await_link(browser)
-        browser.run("document.getElementById('navigation').open = true")
+        browser.tab("map")
         wait_for("the place's button", lambda: not browser.run("return document.getElementById('set-place').title"))
         start = self.robot.pose
         wait_for("a robot without a place", lambda: self.state.message is not None)

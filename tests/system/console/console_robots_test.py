@@ -74,11 +74,6 @@ class ConsoleRobotsTest(unittest.TestCase):
         wait_for("the model", lambda: self.browser.run("return 'model' in document.body.dataset"))
         return self.browser
 
-    def picture(self, browser: Browser, name: str) -> None:
-        folder = os.environ.get("CONSOLE_PICTURES")
-        if folder:
-            browser.picture(Path(folder, f"console_{name}.png"))
-
     def test_meshes_are_shown_and_what_is_missing_or_broken_is_a_box_with_a_note(self) -> None:
         folder = tempfile.TemporaryDirectory()
         self.addCleanup(folder.cleanup)
@@ -116,4 +111,3 @@ class ConsoleRobotsTest(unittest.TestCase):
                 browser = self.show(path.read_text())
                 self.assertEqual(browser.text("scene-note"), "")
                 self.assertEqual(browser.problems(), [])
-                self.picture(browser, name)

@@ -1,11 +1,9 @@
 """A robot and a console behind a proxy that all cases of a class share, and a browser for each case."""
 
-import os
 import signal
 import time
 from collections.abc import Callable
 from functools import partial
-from pathlib import Path
 
 import rospy
 from geometry_msgs.msg import TwistStamped
@@ -96,13 +94,6 @@ class ConsoleTestCase(RobotTestCase):
         browser.open(self.address)
         browser.rest()
         self.await_link(browser)
-
-    def picture(self, browser: Browser, name: str) -> None:
-        """CONSOLE_PICTURES=FOLDER keeps the pictures of docs/console.md, to be looked at."""
-        folder = os.environ.get("CONSOLE_PICTURES")
-        if folder:
-            time.sleep(1.0)
-            browser.picture(Path(folder, f"console_{name}.png"))
 
     def await_link(self, browser: Browser) -> None:
         wait_for("frames", lambda: browser.data("link") == "open" and browser.data("state"))

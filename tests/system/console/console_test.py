@@ -1,7 +1,6 @@
 """The console in a real browser: the page on a screen and on a phone, and every way to let go, once."""
 
 import signal
-import time
 
 from system.console.console_support import SPEED, ConsoleTestCase
 from system.system_support import again_after_a_stall, wait_for
@@ -22,7 +21,6 @@ class ConsoleTest(ConsoleTestCase):
         browser.screen(1300, 900)
         browser.driver.get(f"{self.console.origin}/login")
         self.assertIn("Log in", browser.text("login"))
-        self.picture(browser, "login")
         usable = browser.load(self.address)
         self.assertEqual((browser.data("state"), browser.data("model")), ("READY", "diffbot"))
         print(f"usable after {usable:.2f} s")
@@ -30,29 +28,22 @@ class ConsoleTest(ConsoleTestCase):
         browser.command(SPEED)
         self.drive(browser)
         wait_for("the verdict", lambda: browser.data("verdict") == "moving")
-        self.picture(browser, "desktop")
         browser.run("const began = performance.now(); while (performance.now() < began + 600);")
         wait_for("why it no longer drives", lambda: "This page stood still for" in browser.text("dead-man"))
         browser.click("e-stop")
         wait_for("the stop", lambda: browser.data("state") == "STOPPED")
         wait_for("its cause", lambda: "e_stop" in browser.text("causes"))
-        self.picture(browser, "stopped")
         browser.key("KeyW", "keyUp")
         wait_for("standstill", self.robot.rests)
         self.reset(browser)
-        browser.run("document.querySelectorAll('details').forEach((each) => { each.open = true; })")
+        browser.click("examine")
         wait_for("the findings of doctor.py", lambda: "preemption" in browser.text("finding-list"))
-        browser.run("document.getElementById('plots').scrollIntoView()")
-        self.picture(browser, "plots")
         browser.screen(400, 850, dark=True)
-        browser.run("document.querySelectorAll('details').forEach((each) => { each.open = false; }); scrollTo(0, 0)")
-        self.picture(browser, "phone")
         wait_for("a page as wide as the phone", lambda: browser.run(WIDTH) <= 400)
         self.assertEqual(browser.problems(), [])
         browser.screen(1300, 900, dark=True)
         self.console.process.send_signal(signal.SIGSTOP)
         wait_for("the banner", lambda: "No connection" in browser.text("banner"))
-        self.picture(browser, "disconnected")
         self.console.process.send_signal(signal.SIGCONT)
         wait_for("frames again", lambda: browser.data("link") == "open")
         browser.screen(1300, 900)
@@ -62,7 +53,7 @@ class ConsoleTest(ConsoleTestCase):
         for attempt in range(RESETS):
             browser.click("reset")
             wait_for("the second step", lambda: not browser.run("return document.getElementById('confirm').hidden"))
-            time.sleep(0.6)
+            wait_for("its button", lambda: not browser.run("return document.getElementById('confirm-reset').disabled"))
             browser.click("confirm-reset")
             try:
                 self.waits_for(browser, "the end of the stop", lambda: browser.data("state") in MOBILE, 10.0)

@@ -11,12 +11,14 @@ const MOTIONS = {        // forward, turning to the left, sideways to the left
   KeyD: [0, -1], ArrowRight: [0, -1], KeyQ: [1, 1], KeyE: [1, -1], KeyZ: [-1, -1], KeyC: [-1, 1],
   KeyJ: [0, 0, 1], KeyL: [0, 0, -1],
 };
-const keys = new Set(), stick = { pointer: null, x: 0, y: 0, sideways: false };
+const keys = new Set();
 const offset = () => Date.now() - performance.now();
 /** Why this page released what an operator still holds; empty once that is let go, or something is held again. */
 export let released = "";
 let padBlocked = true, commands = false, number = 0, passed = performance.now(), awake = offset(), isHeld = false;
-const area = document.getElementById("pad"), knob = document.getElementById("stick");
+const by = (id) => document.getElementById(id);
+const stick = (id) => ({ area: by(id), knob: by(id).querySelector("div"), pointer: null, x: 0, y: 0, sideways: false });
+const left = stick("pad"), right = stick("pad-turn"), sticks = [left, right];
 const clamp = (value) => Math.max(-1, Math.min(1, value || 0));
 
 function pad() {
@@ -27,8 +29,12 @@ function pad() {
   return pressed && !padBlocked ? [-found.axes[1], -found.axes[0], -found.axes[2]] : null;
 }
 
+const two = () => right.area.offsetParent !== null;  // on a phone on its side the right one turns
+
 function held() {
-  if (stick.pointer !== null) return stick.sideways ? [-stick.y, 0, -stick.x] : [-stick.y, -stick.x, 0];
+  if (sticks.some(({ pointer }) => pointer !== null)) {
+    return left.sideways || two() ? [-left.y, -right.x, -left.x] : [-left.y, -left.x, 0];
+  }
   if (keys.size) return [0, 1, 2].map((axis) => [...keys].reduce((sum, key) => sum + (MOTIONS[key][axis] ?? 0), 0));
   return pad();
 }
@@ -45,21 +51,27 @@ function report() {
 /** Releases everything; what is still held has to be released and pressed again. */
 export function release() {
   keys.clear();
-  stick.pointer = null;
-  stick.x = stick.y = 0;
-  knob.style.transform = "";
+  sticks.forEach(centre);
   padBlocked = true;
   report();
 }
 
+function centre(one) {
+  Object.assign(one, { pointer: null, x: 0, y: 0 });
+  one.knob.style.transform = "";
+}
+
 /** True if this page commands; else the page says what is missing. */
 function mayDrive() {
-  if (!commands) document.getElementById("dead-man").textContent = words("Take the command first.");
+  if (!commands) by("dead-man").textContent = words("Take control first.");
   return commands;
 }
 
+// What is open over the stage takes Esc first, but only while the robot is known to stand.
+const closes = () => document.body.dataset.moving === "false" && document.querySelector("#help:not([hidden]), #view.drawing");
+
 addEventListener("keydown", (event) => {
-  if (event.code === "Escape") document.getElementById("e-stop").click();
+  if (event.code === "Escape" && !closes()) by("e-stop").click();
   const typing = event.ctrlKey || event.altKey || event.metaKey || event.target.closest?.("input, textarea, select");
   if (typing || event.repeat) return;
   if (event.code === "Space" && event.target.tagName !== "BUTTON") { event.preventDefault(); release(); }
@@ -69,25 +81,32 @@ addEventListener("keydown", (event) => {
 });
 addEventListener("keyup", (event) => { if (keys.delete(event.code)) report(); });
 
-area.addEventListener("pointerdown", (event) => {
-  if (stick.pointer !== null || !mayDrive()) return;
-  area.setPointerCapture(event.pointerId);
-  stick.pointer = event.pointerId;
-  move(event);
-  report();
-});
-area.addEventListener("pointermove", move);
-for (const end of ["pointerup", "pointercancel", "lostpointercapture"]) {
-  area.addEventListener(end, (event) => { if (event.pointerId === stick.pointer) release(); });
+for (const one of sticks) {
+  one.area.addEventListener("pointerdown", (event) => {
+    if (one.pointer !== null || event.target.tagName === "BUTTON" || !mayDrive()) return;
+    one.area.setPointerCapture(event.pointerId);
+    one.pointer = event.pointerId;
+    move(one, event);
+    report();
+  });
+  one.area.addEventListener("pointermove", (event) => move(one, event));
+  for (const end of ["pointerup", "pointercancel", "lostpointercapture"]) {
+    one.area.addEventListener(end, (event) => {
+      if (event.pointerId !== one.pointer) return;
+      if (end !== "pointerup") return release();
+      centre(one);
+      report();
+    });
+  }
 }
-function move(event) {
-  if (event.pointerId !== stick.pointer) return;
-  const box = area.getBoundingClientRect(), radius = box.width / 2;
+function move(one, event) {
+  if (event.pointerId !== one.pointer) return;
+  const box = one.area.getBoundingClientRect(), radius = box.width / 2;
   const x = (event.clientX - box.left) / radius - 1, y = (event.clientY - box.top) / radius - 1;
-  const length = Math.max(1, Math.hypot(x, y));
-  const sideways = event.shiftKey || document.getElementById("sideways").checked;
-  Object.assign(stick, { x: x / length, y: y / length, sideways });
-  knob.style.transform = `translate(${stick.x * radius}px, ${stick.y * radius}px)`;
+  const length = Math.max(1, Math.hypot(x, y)), reach = 0.6 * radius;
+  const sideways = event.shiftKey || by("sideways").checked;
+  Object.assign(one, { x: x / length, y: y / length, sideways });
+  one.knob.style.transform = `translate(${one.x * reach}px, ${one.y * reach}px)`;
 }
 
 for (const end of ["keyup", "pointerup"]) addEventListener(end, () => { released = ""; });

@@ -1,70 +1,121 @@
-// The grids of map and costmap as flat pictures, the scan, the particles, and the way that was planned on the map.
+// The map from above: grids as flat pictures, scan, particles, the way that was planned and its goal; a switch for each.
 import * as THREE from "/lib/three/build/three.module.js";
+import { by, make, put } from "/dom.js";
 import { on } from "/link.js";
-import { fill, polyline, redraw, scene } from "/scene.js";
+import { fill, lay, polyline, ribbon } from "/marks.js";
+import { recoloured, redraw, scene } from "/scene.js";
+import { openTab, tab } from "/tabs.js";
+import { commands } from "/why.js";
+import { words } from "/words.js";
 
-const HEIGHTS = { map: -0.004, costmap: -0.002 };  // m; below the lines of the grid and the paths
+const KEY = "console-layers", START = "roslaunch robot_control navigation.launch";
+const HEIGHTS = { map: -0.006, costmap: -0.004 };  // m; below the paths
+const WALL = 65;                                   // occupied from here on, as navigate has it
 const COLOURS = {
-  map: (cell) => cell < 0 ? [128, 128, 128, 60] : [255 - 2.3 * cell, 255 - 2.3 * cell, 255 - 2 * cell, 230],
-  costmap: (cell) => cell >= 99 ? [220, 60, 60, 120] : [220, 140, 40, Math.max(0, cell)],
+  map: (cell) => cell < 0 ? [128, 134, 142, 150] : cell >= WALL ? [22, 26, 33, 255] : [248 - cell, 250 - cell, 252 - cell, 235],
+  costmap: (cell) => cell >= 99 ? [214, 40, 57, 150] : [230, 140, 30, Math.max(0, 1.3 * cell)],
 };
-const map = new THREE.Group(), layers = {}, marks = {};
-const wanted = polyline(0xd97706, 2000, true), scan = dots(0xdb2777, 1000, 0.02), cloud = dots(0x7c3aed, 300, 0.02);
-let pose = null;
+const LAYERS = { map: "map", costmap: "cost", scan: "scan", cloud: "particles", planned: "planned way and goal" };
+const map = new THREE.Group(), grids = {}, marks = {};
+const planned = polyline("limited", 2000, true), flag = ribbon("goal", 2, { head: true });
+const scan = dots("goal", 1000), cloud = dots("asked", 300);
+let pose = null, shown = { costmap: false };
 scene.add(map);
-map.add(wanted, cloud);
+map.add(planned, flag, cloud);
 map.visible = false;
 
-function dots(colour, size, height) {
-  const geometry = new THREE.BufferGeometry();
+function dots(token, size) {
+  const geometry = new THREE.BufferGeometry(), style = { size: 3, sizeAttenuation: false, fog: false };
   geometry.setAttribute("position", new THREE.BufferAttribute(new Float32Array(3 * size), 3));
-  const points = new THREE.Points(geometry, new THREE.PointsMaterial({ color: colour, size: 3, sizeAttenuation: false }));
+  const points = new THREE.Points(geometry, new THREE.PointsMaterial(style));
   points.frustumCulled = false;
-  points.userData.height = height;
+  points.userData.token = token;
   scene.add(points);
   return points;
 }
 
-async function show(name) {
+async function load(name) {
   const answer = await fetch(`/api/grids/${name}`).catch(() => null);
   if (!answer?.ok) return;
   const { x, y, yaw, resolution, columns, cells } = await answer.json();
-  const values = Int8Array.from(atob(cells), (sign) => sign.charCodeAt(0)), rows = values.length / columns;
+  const values = Int8Array.from(atob(cells), (sign) => sign.charCodeAt(0)), height = values.length / columns;
   const pixels = new Uint8Array(4 * values.length);
   values.forEach((cell, i) => pixels.set(COLOURS[name](cell), 4 * i));
-  const texture = new THREE.DataTexture(pixels, columns, rows, THREE.RGBAFormat);
+  const texture = new THREE.DataTexture(pixels, columns, height, THREE.RGBAFormat);
   texture.needsUpdate = true;
-  const width = columns * resolution, height = rows * resolution;
-  const plane = new THREE.PlaneGeometry(width, height).translate(width / 2, height / 2, 0);
-  const layer = new THREE.Mesh(plane, new THREE.MeshBasicMaterial({ map: texture, transparent: true, depthWrite: false }));
+  const [w, h] = [columns * resolution, height * resolution];
+  const plane = new THREE.PlaneGeometry(w, h).translate(w / 2, h / 2, 0);
+  const layer = new THREE.Mesh(plane, new THREE.MeshBasicMaterial({ map: texture, transparent: true, depthWrite: false, fog: false }));
   layer.position.set(x, y, HEIGHTS[name]);
   layer.rotation.z = yaw;
-  if (layers[name]) {
-    map.remove(layers[name]);
-    layers[name].material.map.dispose();
-    layers[name].material.dispose();
-    layers[name].geometry.dispose();
+  layer.renderOrder = -1;
+  if (grids[name]) {
+    map.remove(grids[name]);
+    grids[name].material.map.dispose();
+    grids[name].material.dispose();
+    grids[name].geometry.dispose();
   }
-  map.add(layers[name] = layer);
+  map.add(grids[name] = layer);
   document.body.dataset[name] = String(Number(document.body.dataset[name] ?? 0) + 1);
-  redraw();
+  apply();
 }
 
-on("slow", ({ navigation }) => {
+on("slow", ({ navigation, goal }) => {
   pose = navigation.map ?? null;
   map.visible = Boolean(pose);
+  by("map-tools").hidden = !pose;
+  by("no-map").hidden = Boolean(pose);
+  by("go-here").hidden = !pose || !goal || tab() !== "drive";
+  put("goal-state", goal ? `goal: ${goal}` : "navigate does not run");
   if (pose) {
     map.position.set(pose[0], pose[1], 0);
     map.rotation.z = pose[2];
   }
   for (const [name, mark] of Object.entries(navigation.grids)) {
-    if (marks[name] !== mark) show(name);
+    if (marks[name] !== mark) load(name);
     marks[name] = mark;
   }
-  fill(scan, navigation.scan ?? [], scan.userData.height);
-  fill(cloud, navigation.particles ?? [], cloud.userData.height);
+  fill(scan, navigation.scan ?? [], 0.02);
+  fill(cloud, navigation.particles ?? [], 0.02);
 });
-on("wanted", ({ points, frame }) => fill(wanted, frame === "map" ? points : [], 0.006));
+on("wanted", ({ points, frame }) => {
+  const way = frame === "map" ? points : [], goal = way[way.length - 1], before = way[way.length - 2];
+  fill(planned, way, 0.006);
+  const length = before ? Math.hypot(goal[0] - before[0], goal[1] - before[1]) || 1 : 1;
+  const tail = before && [goal[0] - 0.25 * (goal[0] - before[0]) / length, goal[1] - 0.25 * (goal[1] - before[1]) / length];
+  lay(flag, before ? [tail, goal] : [], 0.01, 0.1);
+  redraw();
+});
+
+by("go-here").addEventListener("click", () => {
+  openTab("map");
+  by("set-goal").click();
+});
+
+// layers
+
+const parts = { scan: [scan], cloud: [cloud], planned: [planned, flag] };
+function apply() {
+  for (const name of Object.keys(LAYERS)) {
+    for (const part of parts[name] ?? [grids[name]]) if (part) part.visible = shown[name] !== false;
+  }
+  redraw();
+}
+try { shown = { ...shown, ...JSON.parse(localStorage.getItem(KEY)) }; } catch { /* what is stored is none */ }
+for (const [name, label] of Object.entries(LAYERS)) {
+  const box = make("input", { type: "checkbox", checked: shown[name] !== false, id: `layer-${name}` });
+  box.addEventListener("change", () => {
+    shown[name] = box.checked;
+    try { localStorage.setItem(KEY, JSON.stringify(shown)); } catch { /* forgotten with the page */ }
+    apply();
+  });
+  by("layers").append(make("label", {}, box, make("span", { textContent: words(label) })));
+}
+apply();
+recoloured();
+const start = make("div");
+commands(start, [START]);
+by("no-map").append(words("There is no map. Start navigation:"), start);
 
 /** Returns the place `from` in the map's frame, with the heading towards `to`; both are in odom. */
 export function onMap(from, to) {

@@ -1,15 +1,15 @@
 // A URDF → a group of three.js that moves with its joints. A mesh that is missing or broken is a box with a note.
 import * as THREE from "/lib/three/build/three.module.js";
-import { STLLoader } from "/lib/three/examples/jsm/loaders/STLLoader.js";
-import { ColladaLoader } from "/lib/three/examples/jsm/loaders/ColladaLoader.js";
 
-const LOADERS = {
-  stl: (data) => {
+const LOADERS = {  // loaded where a robot needs them
+  stl: async (data) => {
+    const { STLLoader } = await import("/lib/three/examples/jsm/loaders/STLLoader.js");
     const geometry = new STLLoader().parse(data);
     geometry.computeVertexNormals();  // those of the file are often zero
     return new THREE.Mesh(geometry);
   },
-  dae: (data) => {
+  dae: async (data) => {
+    const { ColladaLoader } = await import("/lib/three/examples/jsm/loaders/ColladaLoader.js");
     const textures = /<texture\b[^>]*?(\/>|>[\s\S]*?<\/texture>)/g;  // their pictures are not served
     const model = new ColladaLoader().parse(new TextDecoder().decode(data).replace(textures, ""), "/").scene;
     model.quaternion.set(0, 0, 0, 1);  // as RViz: the axes of the file are those of the link
@@ -56,7 +56,7 @@ function materialOf(visual, root) {
 async function mesh(file, id, scale, { material, given }) {
   const format = file.split(".").pop().toLowerCase(), answer = await fetch(`/api/mesh/${id}`);
   if (!answer.ok) throw new Error(await answer.text());
-  const object = LOADERS[format](await answer.arrayBuffer());
+  const object = await LOADERS[format](await answer.arrayBuffer());
   let corners = 0;
   object.traverse((part) => {
     if (!part.isMesh) return;
@@ -69,7 +69,7 @@ async function mesh(file, id, scale, { material, given }) {
   return object;
 }
 
-/** Resolves with {name, group, joints} once every mesh is there; `say` takes a note. */
+/** Resolves with {name, group, joints, links, supports} once every mesh is there; `say` takes a note. */
 export async function build({ urdf, meshes }, say) {
   const root = new DOMParser().parseFromString(urdf, "application/xml").documentElement, pending = [];
   function visualOf(visual) {
@@ -100,13 +100,48 @@ export async function build({ urdf, meshes }, say) {
     if (["floating", "planar"].includes(joint.getAttribute("type"))) continue;  // the child is the base
     children.add(name);
     const moving = new THREE.Group().add(child);
-    parent.add(placeAt(new THREE.Group(), joint).add(moving));
+    const place = placeAt(new THREE.Group(), joint).add(moving);
+    place.userData.joint = true;
+    parent.add(place);
     const axis = new THREE.Vector3(...numbers(text(joint, "axis", "xyz"), [1, 0, 0])).normalize();
     joints.set(joint.getAttribute("name"), { moving, axis, slides: joint.getAttribute("type") === "prismatic" });
   }
   for (const [name, link] of links) if (!children.has(name)) group.add(link);
   await Promise.all(pending);
-  return { name: root.getAttribute("name") ?? "", group, joints };
+  group.traverse((part) => { part.castShadow = part.isMesh; });
+  return { name: root.getAttribute("name") ?? "", group, joints, links, supports: supportsOf(links.values()) };
+}
+
+const DIRECTIONS = Array.from({ length: 200 }, (_, i) => {  // spread evenly over a sphere
+  const z = 1 - (2 * i + 1) / 200, turn = i * Math.PI * (3 - Math.sqrt(5)), r = Math.sqrt(1 - z * z);
+  return new THREE.Vector3(r * Math.cos(turn), r * Math.sin(turn), z);
+});
+
+/** For each link its outermost vertices, in its own frame: the lowest point of the robot is one of them. */
+function supportsOf(links) {
+  return [...links].map((link) => {
+    const points = [], inverse = new THREE.Matrix4();
+    link.updateMatrixWorld(true);
+    inverse.getInverse(link.matrixWorld);
+    for (const visual of link.children.filter((child) => !child.userData.joint)) {
+      visual.traverse(({ geometry, matrixWorld }) => {
+        const at = geometry?.attributes?.position, to = new THREE.Matrix4().multiplyMatrices(inverse, matrixWorld);
+        for (let i = 0; i < (at?.count ?? 0); ++i) points.push(new THREE.Vector3().fromBufferAttribute(at, i).applyMatrix4(to));
+      });
+    }
+    if (points.length <= DIRECTIONS.length) return { link, points };
+    const outermost = DIRECTIONS.map((d) => points.reduce((best, point) => point.dot(d) > best.dot(d) ? point : best));
+    return { link, points: [...new Set(outermost)] };
+  }).filter(({ points }) => points.length);
+}
+
+/** m above the ground of the lowest of these points; the matrices of the links are those of now. */
+export function lowestOf(supports) {
+  let least = Infinity;
+  for (const { link: { matrixWorld: { elements: m } }, points } of supports) {
+    for (const { x, y, z } of points) least = Math.min(least, m[2] * x + m[6] * y + m[10] * z + m[14]);
+  }
+  return least;
 }
 
 /** Moves the joints to these positions. */

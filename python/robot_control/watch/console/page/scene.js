@@ -1,152 +1,303 @@
-// The robot on a grid: the path driven and wanted, the covariance and the truth; and a path drawn with the pointer.
+// The stage: the robot as the odometry has it, on the ground, with camera, marks, and a stroke that the pointer draws.
 import * as THREE from "/lib/three/build/three.module.js";
 import { OrbitControls } from "/lib/three/examples/jsm/controls/OrbitControls.js";
+import { by, put } from "/dom.js";
+import { follow, haze, recolour, shadows, surroundings } from "/ground.js";
 import { on } from "/link.js";
-import { build, pose } from "/robot.js";
+import { arcOf, ellipseOf, feet, fill, lay, marks, polyline, ribbon, ring } from "/marks.js";
+import { build, lowestOf, pose } from "/robot.js";
+import { onTab, tab } from "/tabs.js";
 import { words } from "/words.js";
 
-const MAX_POINTS = 5000, STEP = 0.05;   // of the path driven; m between two of them
+const TRAIL = 1500, STEP = 0.05;        // points of the way driven; m between two of them
 const MAX_NOTES = 6;                    // of meshes that cannot be shown
-const SIGMAS = 2.448;                   // 95 % of a normal distribution in the plane
 const FRAME = 50;                       // ms between two pictures
-const LATE = 40, RESTING = 250;         // ms; a browser that is so late rests so long, because driving comes first
-const HALF = 20, SQUARE = 0.5, PIECE = 1;    // m; a software renderer loses long lines that begin behind the camera
-const view = document.getElementById("view"), note = document.getElementById("scene-note");
-const canvas = document.getElementById("scene"), notes = new Set();
+const SLOW = 90, RESTING = 250;         // ms of a picture that is too slow; ms of rest, because driving comes first
+const SHARE = 0.46;                     // of the free part of the window that the robot takes
+const CHASE = { side: 0.55, height: 0.33 };  // rad beside and above the line behind the robot
+const SCALES = [0.05, 0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50], BAR = 56;  // m; px at least
+const COVERED = ["plots", "logs", "setup"];  // parts that lie over the whole stage
+const view = by("view"), canvas = by("scene"), notes = new Set();
+const calm = matchMedia("(prefers-reduced-motion: reduce)"), scheme = matchMedia("(prefers-color-scheme: dark)");
 export const scene = new THREE.Scene();
-const camera = new THREE.PerspectiveCamera(50, 1, 0.05, 500);
-let robot = new THREE.Group(), joints = new Map(), lift = 0, trail = [];
+const camera = new THREE.PerspectiveCamera(38, 1, 0.05, 300);
 camera.up.set(0, 0, 1);
 const controls = new OrbitControls(camera, canvas);
-let renderer = null, dirty = true, placed = false, called = 0, due = 0;
+let renderer = null, dirty = true, due = 0, began = 0, slow = 0, quality = 2, resting = false, blind = false, pictures = 0;
+let robot = new THREE.Group(), joints = new Map(), links = new Map(), supports = [], radius = 0.4, trail = [];
+let at = { x: 0, y: 0, yaw: 0 }, mode = "chase", following = true, placed = false, scale = 1;
+
+const driven = ribbon("measured", TRAIL, { fades: true }), wanted = polyline("limited", 2000, true);
+const ellipse = polyline("lines", 65), truth = polyline("true", 66), drawn = polyline("goal", 1000);
+const asks = ribbon("asked", 17, { head: true }), moves = ribbon("measured", 17, { head: true });
+const nose = ribbon("ink", 2, { head: true });
 
 function say(text) {
   notes.add(text);
-  note.textContent = [...notes].slice(0, MAX_NOTES).join("; ");
-}
-
-export function polyline(colour, size, dashed) {
-  const geometry = new THREE.BufferGeometry();
-  geometry.setAttribute("position", new THREE.BufferAttribute(new Float32Array(3 * size), 3));
-  geometry.setDrawRange(0, 0);
-  const style = { color: colour, dashSize: 0.08, gapSize: 0.05 };
-  const Material = dashed ? THREE.LineDashedMaterial : THREE.LineBasicMaterial;
-  const line = new THREE.Line(geometry, new Material(dashed ? style : { color: colour }));
-  line.frustumCulled = false;
-  scene.add(line);
-  return line;
+  by("scene-note").textContent = [...notes].slice(0, MAX_NOTES).join("; ");
 }
 
 /** Something was changed: draws again. */
 export function redraw() { dirty = true; }
+export function recoloured() { recolour(scene); dirty = true; }
 
-export function fill(line, points, z) {
-  const attribute = line.geometry.attributes.position, count = Math.min(points.length, attribute.count);
-  points.slice(-count).forEach(([x, y], i) => attribute.setXYZ(i, x, y, z));
-  attribute.needsUpdate = true;
-  line.geometry.setDrawRange(0, count);
-  if (line.material.isLineDashedMaterial) line.computeLineDistances();
-  dirty = true;
-}
-
-const driven = polyline(0x3b82f6, MAX_POINTS), wanted = polyline(0xd97706, 2000, true);
-const ellipse = polyline(0x8894a2, 65), truth = polyline(0x10a35a, 66), drawn = polyline(0xd97706, 1000);
-
-function ring([x, y], a, b, angle) {
-  return Array.from({ length: 65 }, (_, i) => {
-    const u = a * Math.cos(i * Math.PI / 32), v = b * Math.sin(i * Math.PI / 32);
-    return [x + u * Math.cos(angle) - v * Math.sin(angle), y + u * Math.sin(angle) + v * Math.cos(angle)];
+/** Height of the lowest vertex that is drawn, m. */
+export function lowest() {
+  const place = new THREE.Vector3();
+  let least = Infinity;
+  robot.traverse(({ geometry, matrixWorld }) => {
+    const corners = geometry?.attributes?.position;
+    for (let i = 0; i < (corners?.count ?? 0); ++i) {
+      least = Math.min(least, place.fromBufferAttribute(corners, i).applyMatrix4(matrixWorld).z);
+    }
   });
+  return least;
 }
 
-function ellipseOf(centre, [xx, xy, yy]) {
-  const middle = (xx + yy) / 2, root = Math.hypot((xx - yy) / 2, xy);
-  const [a, b] = [middle + root, middle - root].map((value) => SIGMAS * Math.sqrt(Math.max(value, 0)));
-  return ring(centre, a, b, Math.atan2(2 * xy, xx - yy) / 2);
+// camera
+
+/** The part of the window that no card covers, as left, top, right, bottom, px. */
+function free() {
+  const { clientWidth: width, clientHeight: height } = view, box = (id) => by(id)?.getBoundingClientRect();
+  const seen = (id) => by(id)?.offsetParent ? box(id) : null, bar = box("bar"), tabs = box("tabs");
+  const side = [seen("side"), tab() === "map" ? seen("sheet") : null].find((each) => each?.width && each.left > 0.4 * width);
+  const below = [seen("sticks"), seen("pad"), box("replay"), seen("why"), tabs, tab() === "map" && !side ? seen("sheet") : null];
+  const middle = (each) => each?.height && each.top > 0.3 * height && each.left < 0.6 * width && each.right > 0.4 * width;
+  const upright = tabs.height > tabs.width, mini = seen("mini"), above = mini?.width > 0.5 * width ? mini : bar;
+  return [upright ? tabs.right : 0, above.bottom, side ? side.left : width,
+    Math.min(height, ...below.filter(middle).map((each) => each.top))];
 }
 
-// The renderer is made last: while it begins, which takes a second in software, the page already works.
-function begin() {
-  try {
-    renderer = new THREE.WebGLRenderer({ canvas, antialias: true, alpha: true });
-    render();
-  } catch {
-    say("this browser has no WebGL: no 3-D view");
+function frameUp() {
+  const { clientWidth: width, clientHeight: height } = view;
+  if (!width || !height) return;
+  const [left, top, right, bottom] = free(), before = scale;
+  camera.aspect = width / height;
+  const x = Math.round((left + right - width) / 2), y = Math.round((top + bottom - height) / 2);
+  camera.setViewOffset(width, height, -x, -y, width, height);
+  const size = Math.max(80, Math.min(bottom - top, (right - left) * 0.9));
+  scale = radius * height / (SHARE * size * Math.tan(camera.fov * Math.PI / 360));
+  if (before !== scale) {
+    camera.position.sub(controls.target).multiplyScalar(scale / before).add(controls.target);
+    dirty = true;
   }
 }
+
+/** chase: from behind; top: from above, what lies ahead is up; fit: as it is, and the robot as large as at the begin. */
+export function look(next) {
+  const offset = new THREE.Vector3().subVectors(camera.position, controls.target);
+  following = true;
+  controls.target.set(at.x, at.y, mapped() ? 0 : 0.7 * radius * (next === "top" ? 0 : 1));
+  if (next === "top") offset.set(-0.01 * Math.cos(at.yaw), -0.01 * Math.sin(at.yaw), 1).multiplyScalar(mapped() ? 4 : 1.6);
+  else if (next === "chase") {
+    const from = at.yaw + Math.PI + CHASE.side;
+    offset.set(Math.cos(from) * Math.cos(CHASE.height), Math.sin(from) * Math.cos(CHASE.height), Math.sin(CHASE.height));
+  } else offset.normalize();
+  if (next !== "fit") mode = next;
+  camera.position.copy(controls.target).addScaledVector(offset, scale);
+  for (const button of by("look").querySelectorAll("[data-look]")) {
+    button.setAttribute("aria-pressed", String(button.dataset.look === mode));
+  }
+  dirty = true;
+}
+const mapped = () => tab() === "map";
+by("look").addEventListener("click", ({ target }) => { if (target.dataset.look) look(target.dataset.look); });
+onTab((name) => {
+  const flat = name === "map";
+  controls.enableRotate = !flat;
+  controls.mouseButtons.LEFT = flat ? THREE.MOUSE.PAN : THREE.MOUSE.ROTATE;
+  controls.touches.ONE = flat ? THREE.TOUCH.PAN : THREE.TOUCH.ROTATE;
+  frameUp();
+  look(flat ? "top" : "chase");
+});
+canvas.addEventListener("pointerdown", () => { if (mapped()) following = false; });
+
+function carry(x, y, yaw) {
+  const turned = Math.atan2(Math.sin(yaw - at.yaw), Math.cos(yaw - at.yaw)), moved = new THREE.Vector3(x - at.x, y - at.y, 0);
+  at = { x, y, yaw };
+  if (!placed) {
+    placed = true;
+    return look(mapped() ? "top" : mode);
+  }
+  if (!following) return;
+  controls.target.add(moved);
+  camera.position.add(moved);
+  if (mode !== "chase" || mapped() || calm.matches) return;
+  camera.position.sub(controls.target).applyAxisAngle(camera.up, turned).add(controls.target);
+}
+
+/** The pixel of a place on the ground. */
+export function toScreen(x, y, z = 0) {
+  const place = new THREE.Vector3(x, y, z).project(camera), box = canvas.getBoundingClientRect();
+  return [box.left + (place.x + 1) * box.width / 2, box.top + (1 - place.y) * box.height / 2];
+}
+
+function showScale() {
+  const beside = new THREE.Vector3(1, 0, 0).applyQuaternion(camera.quaternion).add(controls.target);
+  const { x, y, z } = controls.target, from = toScreen(x, y, z), to = toScreen(beside.x, beside.y, beside.z);
+  const metre = Math.hypot(to[0] - from[0], to[1] - from[1]);
+  const length = SCALES.find((each) => each * metre >= BAR) ?? SCALES[SCALES.length - 1];
+  by("scale").firstChild.style.width = `${Math.round(length * metre)}px`;
+  put("scale-text", `${length} m`);
+}
+
+// the robot
 
 async function load() {
   const answer = await fetch("/api/model").catch(() => null);
   if (!answer?.ok) {
-    note.textContent = answer ? await answer.text() : "";
+    put("scene-note", answer ? await answer.text() : "");
     return void setTimeout(load, 3000);
   }
-  notes.clear(); note.textContent = "";
+  notes.clear();
+  put("scene-note", "");
   const made = await build(await answer.json(), say);
   scene.remove(robot);
-  ({ group: robot, joints } = made);
+  ({ group: robot, joints, links, supports } = made);
+  robot.rotation.order = "ZYX";
   robot.updateMatrixWorld(true);
-  const bottom = new THREE.Box3().setFromObject(robot).min.z;
-  lift = Number.isFinite(bottom) ? -bottom : 0;  // odom is at the height of the root link
-  robot.position.set(controls.target.x, controls.target.y, lift);
+  const box = new THREE.Box3().setFromObject(robot), size = box.getSize(new THREE.Vector3());
+  radius = Number.isFinite(size.x) ? Math.max(0.15, Math.hypot(size.x, size.y, Math.min(size.z, size.x)) / 2) : 0.4;
   scene.add(robot);
-  dirty = true;
-  if (!renderer) begin();
+  stand();
+  frameUp();
+  look(mapped() ? "top" : mode);
+  begin();
   document.title = words(`${made.name || "Robot"} console`);
   document.body.dataset.model = made.name;
+  by("robot-name").textContent = made.name || words("Robot");
+}
+
+/** Sets the robot on the ground: its lowest point touches it, whatever the height in odometry is. */
+function stand() {
+  robot.position.z = 0;
+  robot.updateMatrixWorld(true);
+  const bottom = lowestOf(supports);
+  robot.position.z = Number.isFinite(bottom) ? -bottom : 0;
+  robot.updateMatrixWorld(true);
+  follow(at.x, at.y, radius);
+}
+
+/** Foot → its place: the last link of the leg that bears its name. */
+function footPlaces(shown) {
+  const places = new Map();
+  for (const [name, link] of links) {
+    const foot = shown.find((each) => name.startsWith(each.name))?.name;
+    if (foot && link.children.length) places.set(foot, new THREE.Vector3().setFromMatrixPosition(link.matrixWorld));
+  }
+  return places;
 }
 
 on("open", load);
-on("trail", ({ points }) => { trail = points; fill(driven, trail, 0.004); });
-on("wanted", ({ points, frame }) => fill(wanted, frame === "odom" ? points : [], 0.006));
+on("trail", ({ points }) => { trail = points; lay(driven, trail, 0, 0.03); });
+on("wanted", ({ points, frame }) => { fill(wanted, frame === "odom" ? points : [], 0.006); dirty = true; });
 on("fast", (frame) => {
-  if (frame.pose) {
-    const [x, y, yaw] = frame.pose, moved = new THREE.Vector3(x - controls.target.x, y - controls.target.y, 0);
-    if (placed) camera.position.add(moved);
-    else camera.position.set(x - 1.3, y - 1.3, 1.2);
-    controls.target.add(moved);
-    placed = true;
-    robot.position.set(x, y, lift);
-    robot.rotation.set(0, 0, yaw);
+  const place = frame.pose && [frame.pose[0], frame.pose[1], frame.pose[5]];
+  pose(joints, frame.joints ?? {});
+  if (place) {
+    const [x, y, , roll, pitch, yaw] = frame.pose;
+    carry(x, y, yaw);
+    robot.position.set(x, y, robot.position.z);
+    robot.rotation.set(roll, pitch, yaw);
     const last = trail[trail.length - 1], step = last ? Math.hypot(x - last[0], y - last[1]) : Infinity;
     if (step >= STEP) {
       if (last && step > 1) trail = [];
       trail.push([x, y]);
-      if (trail.length > MAX_POINTS) trail = trail.filter((_, i) => i % 2);
-      fill(driven, trail, 0.004);
+      if (trail.length > TRAIL) trail.splice(0, trail.length - TRAIL);
+      lay(driven, trail, 0, 0.12 * radius);
     }
-    fill(ellipse, ellipseOf(frame.pose, frame.covariance), 0.008);
+    fill(ellipse, ellipseOf(place, frame.covariance), 0.008);
   }
-  fill(truth, frame.truth ? [...ring(frame.truth, 0.25, 0.25, frame.truth[2]), frame.truth] : [], 0.01);
-  pose(joints, frame.joints ?? {});
+  stand();
+  lay(asks, place ? arcOf(place, frame.asked) : [], 0.002, 0.16 * radius);
+  lay(moves, place ? arcOf(place, frame.measured) : [], 0.003, 0.1 * radius);
+  const ahead = (far) => [at.x + far * radius * Math.cos(at.yaw), at.y + far * radius * Math.sin(at.yaw)];
+  lay(nose, place ? [ahead(1.15), ahead(1.25)] : [], 0.004, 0.1 * radius);
+  fill(truth, frame.truth ? ring(frame.truth, radius, radius, frame.truth[2]) : [], 0.01);
+  feet(frame.legs?.feet ?? [], footPlaces(frame.legs?.feet ?? []));
   dirty = true;
 });
 
-function render() {
-  requestAnimationFrame(render);
-  const { clientWidth: width, clientHeight: height } = view, size = renderer.getSize(new THREE.Vector2());
-  if (size.x !== width || size.y !== height) {
-    renderer.setSize(width, height, false);
-    camera.aspect = width / height;
-    camera.updateProjectionMatrix();
-    dirty = true;
+// pictures
+
+// The renderer is made last: while it begins, which takes a second in software, the page already works.
+function begin() {
+  if (renderer || blind || !robot.children.length || !view.clientWidth) return;
+  try {
+    renderer = new THREE.WebGLRenderer({ canvas, antialias: !inSoftware() });
+    renderer.shadowMap.enabled = true;
+    renderer.shadowMap.type = THREE.PCFSoftShadowMap;
+    ease(quality);
+    render();
+  } catch {
+    blind = true;
+    say(words("this browser has no WebGL: no 3-D view"));
   }
-  const now = performance.now(), late = now - called;
-  called = now;
-  if (!dirty || !width || document.hidden || now < due) return;
-  dirty = false;
-  controls.update();
-  renderer.render(scene, camera);
-  due = now + (late > LATE ? RESTING : FRAME);
 }
 
-let finish = null, points = [];
-/** Resolves with the points in odom that the next stroke on the grid draws. */
+/** True where the processor draws, which has to drive as well: smooth edges cost it four times as much. */
+function inSoftware() {
+  const context = document.createElement("canvas").getContext("webgl"), info = context?.getExtension("WEBGL_debug_renderer_info");
+  const name = info ? context.getParameter(info.UNMASKED_RENDERER_WEBGL) : "";
+  context?.getExtension("WEBGL_lose_context")?.loseContext();
+  return /SwiftShader|llvmpipe|Software/i.test(name);
+}
+
+// The shadow, then fine pixels give way to the frame rate; at last the pictures rest.
+function ease(next) {
+  quality = next;
+  shadows(quality > 1);
+  renderer.setPixelRatio(quality > 0 ? Math.min(2, devicePixelRatio) : 1);
+  renderer.setSize(view.clientWidth, view.clientHeight, false);
+  document.body.dataset.quality = String(quality);
+}
+
+function render() {
+  requestAnimationFrame(render);
+  const now = performance.now(), { clientWidth: width, clientHeight: height } = view;
+  if (began) {  // the browser has drawn the last picture
+    const took = now - began;
+    began = 0;
+    slow = took > SLOW ? slow + 1 : Math.max(0, slow - 0.25);
+    resting = quality === 0 && slow > 8;
+    if (slow > 8 && quality > 0) { ease(quality - 1); slow = 0; }
+  }
+  const size = renderer.getSize(new THREE.Vector2());
+  const resized = width && (size.x !== width || size.y !== height);
+  if (resized) {
+    renderer.setSize(width, height, false);
+    frameUp();
+    dirty = true;
+  }
+  const hidden = document.hidden || (COVERED.includes(tab()) && !resized && pictures);  // a canvas of another size is empty
+  if (!dirty || !width || hidden || (now < due && !resized)) return;
+  dirty = false;
+  controls.update();
+  haze(scene.fog, camera.position.distanceTo(controls.target));
+  renderer.render(scene, camera);
+  ++pictures;
+  began = now;
+  due = now + (resting ? RESTING : FRAME - 8);  // a picture of the screen is earlier or later by half of one
+}
+
+// a stroke
+
+let finish = null, points = [], finger = null;
+/** Resolves with the points in odom that the next stroke on the ground draws; with none if it is cancelled. */
 export function draw() {
+  end([]);
   view.classList.add("drawing");
   controls.enabled = false;
   points = [];
   return new Promise((resolve) => { finish = resolve; });
+}
+function end(result) {
+  finish?.(result);
+  finish = finger = null;
+  view.classList.remove("drawing");
+  controls.enabled = true;
+  fill(drawn, [], 0);
+  dirty = true;
 }
 function ground(event) {
   const box = canvas.getBoundingClientRect(), ray = new THREE.Raycaster();
@@ -155,38 +306,34 @@ function ground(event) {
   return ray.ray.intersectPlane(new THREE.Plane(new THREE.Vector3(0, 0, 1), 0), new THREE.Vector3());
 }
 canvas.addEventListener("pointerdown", (event) => {
-  const at = finish && ground(event);
-  if (at) points.push([at.x, at.y]);
+  if (!finish) return;
+  if (finger !== null) return end([]);
+  const place = ground(event);
+  finger = event.pointerId;
+  if (place) points.push([place.x, place.y]);
 });
 canvas.addEventListener("pointermove", (event) => {
-  if (!finish || !event.buttons) return;
-  const at = ground(event), last = points[points.length - 1];
-  if (!at || points.length >= 1000 || (last && Math.hypot(at.x - last[0], at.y - last[1]) < 0.1)) return;
-  points.push([at.x, at.y]);
+  if (!finish || event.pointerId !== finger) return;
+  const place = ground(event), last = points[points.length - 1];
+  if (!place || points.length >= 1000 || (last && Math.hypot(place.x - last[0], place.y - last[1]) < 0.1)) return;
+  points.push([place.x, place.y]);
   fill(drawn, points, 0.01);
+  dirty = true;
 });
-canvas.addEventListener("pointerup", () => {
-  if (!finish) return;
-  view.classList.remove("drawing");
-  controls.enabled = true;
-  finish(points);
-  finish = null;
-  fill(drawn, [], 0);
-});
+canvas.addEventListener("pointerup", (event) => { if (event.pointerId === finger) end(points); });
+addEventListener("keydown", ({ code }) => { if (code === "Escape" && finish) end([]); });
 
-controls.target.set(0, 0, 0.1);
+controls.maxPolarAngle = 0.49 * Math.PI;
 controls.addEventListener("change", () => { dirty = true; });
 camera.position.set(-1.3, -1.3, 1.2);
-const squares = new THREE.BufferGeometry(), lines = [];
-for (let at = -HALF; at <= HALF; at += SQUARE) {
-  for (let from = -HALF; from < HALF; from += PIECE) {
-    lines.push(from, at, 0, from + PIECE, at, 0, at, from, 0, at, from + PIECE, 0);
-  }
-}
-squares.setAttribute("position", new THREE.Float32BufferAttribute(lines, 3));
-const faint = new THREE.LineBasicMaterial({ color: 0x8d99a6, transparent: true, opacity: 0.6 });
-const grid = new THREE.LineSegments(squares, faint);
-grid.frustumCulled = false;
-const sun = new THREE.DirectionalLight(0xffffff, 0.7);
-sun.position.set(-2, -3, 5);
-scene.add(grid, robot, new THREE.HemisphereLight(0xffffff, 0x777777, 0.7), sun);
+scene.add(...surroundings, marks, robot);
+recolour(scene);
+scheme.addEventListener("change", recoloured);
+addEventListener("resize", () => { frameUp(); dirty = true; });
+on("slow", () => {
+  begin();
+  frameUp();
+  showScale();
+  document.body.dataset.pictures = String(pictures);
+});
+look(mapped() ? "top" : "chase");
