@@ -1,4 +1,4 @@
-"""The film and the plot of README, made of the programs as they are: scripts/pictures."""
+"""The film and the plot of README, or the console's, made of the programs as they are: scripts/pictures."""
 
 from __future__ import annotations
 
@@ -28,6 +28,7 @@ from robot_control.ui.child import Child, children
 from robot_control.ui.program import run
 
 from bench.console.browser import Browser, missing
+from bench.console.pictures import main as console_pictures
 from bench.console.process import Console, wait_for
 
 DOCS = Path(__file__).resolve().parents[1] / "docs"
@@ -126,6 +127,7 @@ def draw_plot(folder: Path, path: Path) -> None:
 def main() -> int:
     """Entry point of scripts/pictures."""
     parser = argparse.ArgumentParser(prog="scripts/pictures", description=__doc__)
+    parser.add_argument("what", nargs="?", choices=("readme", "console"), default="readme", help="default readme")
     parser.add_argument("--out", type=Path, default=DOCS, help="folder (default docs)")
     given = parser.parse_args()
     if missing():
@@ -135,6 +137,8 @@ def main() -> int:
     with tempfile.TemporaryDirectory(prefix="pictures-") as name:
         folder = Path(name)
         os.environ["ROS_HOME"] = str(folder / "ros")
+        if given.what == "console":
+            return console_pictures(given.out, folder)
         draw_plot(folder, given.out / "first_plot.png")
         pictures = [*walk(folder), *mapping(folder)]
         write_film(folder, given.out / "film.gif")

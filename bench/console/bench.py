@@ -28,9 +28,20 @@ DELAYS = ((0.0, 0.0), (0.01, 0.0), (0.05, 0.02), (0.1, 0.05), (0.2, 0.0), (0.4, 
 """s each way, and jitter"""
 LOSSES = 7
 """of each kind and delay: 7 · 7 cuts and as many stalls of up to 5 s"""
-COST_SECONDS = 60.0
+COST_SECONDS, PICTURES_SECONDS, PAINTS = 60.0, 20.0, 5
+EMPTY = "data:text/html,<!doctype html><title>empty</title><p>empty"
+PAINT = "return performance.getEntriesByName('first-contentful-paint')[0]?.startTime ?? 0"
+WIRE = """
+return ["navigation", "resource"]
+  .flatMap((kind) => performance.getEntriesByType(kind)).map((each) => each.transferSize);
+"""
+"""Bytes of each answer with its headers; the first load finds nothing in the browser's memory"""
 BOUNDS = {
     "page usable": 3.0,
+    "page and libraries on the wire": 400.0,
+    "first paint": 3.0,
+    "between two pictures of the scene": 1000 / 15,
+    "server, one page": 6.0,
     "key to torque, median": 60.0,
     "key to torque, worst": 120.0,
     "speed cap beside its law, worst": 10.0,
@@ -53,6 +64,8 @@ def bench(share: float, say: Say) -> Result:
         say("key presses in the browser")
         usable, presses = _presses(console, robot, max(3, round(PRESSES * share)))
         found["page usable"] = usable, "s"
+        say("size, first paint, pictures of the scene")
+        found |= _page(console, PAINTS, PICTURES_SECONDS * share)
         say("bad links")
         found |= _links(console, proxy, robot, max(1, round(LOSSES * share)), say)
         say("cost")
@@ -74,6 +87,39 @@ def bench(share: float, say: Say) -> Result:
     return {"bench": "console", "rows": rows}, all(
         row["value"] <= row["reference"] for row in rows if row["name"] in BOUNDS
     )
+
+
+def _page(console: Console, paints: int, seconds: float) -> dict[str, tuple[float, str]]:
+    browser = Browser()
+    try:
+        browser.load(console.address)
+        size = sum(browser.run(WIRE))
+        paint = {}
+        for name, address in (("console", console.origin), ("empty", EMPTY)):
+            times = []
+            for _ in range(paints):
+                browser.driver.get(address)
+                wait_for("a paint", lambda: browser.run(PAINT))
+                times.append(float(browser.run(PAINT)))
+            paint[name] = statistics.median(times)
+        browser.load(console.address)
+        time.sleep(3.0)
+        used = cost_of(console.process.pid)[0]
+        before, began = int(browser.data("pictures") or 0), time.monotonic()
+        time.sleep(seconds)
+        pictures, elapsed = int(browser.data("pictures") or 0) - before, time.monotonic() - began
+        server = cost_of(console.process.pid)[0] - used
+        return {
+            "page and libraries on the wire": (size / 1000, "kB"),
+            "first paint": (paint["console"] / paint["empty"], f"times the {paint['empty']:.0f} ms of an empty page"),
+            "between two pictures of the scene": (
+                1000 * elapsed / max(1, pictures),
+                "ms, 1300 x 900, drawn in software",
+            ),
+            "server, one page": (100 * server / elapsed, "% of a core"),
+        }
+    finally:
+        browser.end()
 
 
 def _presses(console: Console, robot: Robot, count: int) -> tuple[float, list[int]]:
