@@ -86,6 +86,7 @@ NO_STATEMENT = {
 }  # fmt: skip
 CONSTANT = re.compile(
     r"\b(?:(?:inline|static) )?constexpr (?P<type>double|float|int|bool|std::u?int\d+_t|std::size_t) (?P<name>\w+)\s*="
+    r"(?=[^;,(]*(?:\([^;]*\)[^;,(]*)*;)"  # one name alone: several stay constants
 )
 
 

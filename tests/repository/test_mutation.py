@@ -2,7 +2,7 @@
 
 import subprocess
 
-from mutation.mutate import Source
+from mutation.mutate import CONSTANT, Source
 
 SAMPLE = """\
 #include <cstdio>
@@ -32,6 +32,11 @@ def sample() -> Source:
 
 def test_changes_stand_neither_in_comments_and_texts_nor_in_what_the_compiler_evaluates():
     assert {change.line for change in sample().changes} == {7, 9, 10, 11, 12, 16, 17}
+
+
+def test_constants_that_share_a_declaration_stay_constants():
+    text = "constexpr int kOne = larger(1, 2);\nconstexpr int kTwo = 1, kThree = 4;\n"
+    assert [match["name"] for match in CONSTANT.finditer(text)] == ["kOne"]
 
 
 def test_of_a_line_each_operator_number_and_condition_is_changed():
