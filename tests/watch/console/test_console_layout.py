@@ -268,10 +268,14 @@ def test_esc_closes_what_is_open_on_a_robot_at_rest_and_stops_one_that_moves(bro
     browser.run(escape)
     assert browser.run("return window.pressed") == 2, "whether it moves is not known"
     robot.silent, robot.fast = set(), lambda: {"type": "fast", "ages": {}, "joints": {}, "measured": (0.0, 0.0, 0.0)}
-    time.sleep(0.5)
-    browser.click("help-open")
-    browser.run(escape)
-    assert browser.run("return window.pressed") == 2
+
+    def closes_the_help():
+        before = browser.run("return window.pressed")
+        browser.click("help-open")
+        browser.run(escape)
+        return browser.run("return window.pressed") == before
+
+    wait_for("a page that knows that the robot stands", closes_the_help)
     assert browser.run("return document.getElementById('help').hidden")
     del robot.fast
 

@@ -76,20 +76,27 @@ def browser():
 
 
 def drives(person, browser, robot):
-    """Holds the stick forward for a second: the server receives it."""
-    dead_man, shares = robot.authority.commander.dead_man, []
+    """Holds the stick forward for a second: the server receives it. A page that a busy machine delays lets go, so that the
+    press is repeated; it counts once.
+    """
+    dead_man = robot.authority.commander.dead_man
     dead_man.pad.permit(True)
-    time.sleep(0.6)  # the release is seen
+
+    def holds():
+        time.sleep(0.6)  # the release is seen
+        shares = []
+        x, y = person.place("#pad")
+        person.pointer("mousePressed", x, y)
+        person.pointer("mouseMoved", x, y - 60)
+        for _ in range(20):
+            time.sleep(0.05)
+            shares.append(dead_man.share(time.monotonic()))
+        person.pointer("mouseReleased", x, y - 60)
+        wait_for("the release", lambda: browser.data("held") == "false")
+        return any(share.linear > 0.5 for share in shares if share)
+
     person.presses += 1
-    x, y = person.place("#pad")
-    person.pointer("mousePressed", x, y)
-    person.pointer("mouseMoved", x, y - 60)
-    for _ in range(20):
-        time.sleep(0.05)
-        shares.append(dead_man.share(time.monotonic()))
-    person.pointer("mouseReleased", x, y - 60)
-    assert max(share.linear for share in shares if share) > 0.5
-    wait_for("the release", lambda: browser.data("held") == "false")
+    wait_for("a stick that drives", holds)
 
 
 def sets_a_goal(person, browser, robot):
