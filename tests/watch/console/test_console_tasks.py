@@ -76,8 +76,8 @@ def browser():
 
 
 def drives(person, browser, robot):
-    """Holds the stick forward for a second: the server receives it. A page that a busy machine delays lets go, so that the
-    press is repeated; it counts once.
+    """Holds the stick forward for a second: the server receives it. A page that a busy machine delays lets go, so that
+    the press is repeated; it counts once.
     """
     dead_man = robot.authority.commander.dead_man
     dead_man.pad.permit(True)
@@ -102,7 +102,15 @@ def drives(person, browser, robot):
 def sets_a_goal(person, browser, robot):
     """Presses on the map and drags to the heading, which is upwards as the robot looks."""
     script = "const [done] = arguments; import('/scene.js').then((m) => done(m.toScreen(0.6, 0.2)))"
-    x, y = browser.driver.execute_async_script(script)
+    places = [browser.driver.execute_async_script(script)]
+
+    def settled():  # the view follows the robot
+        time.sleep(0.2)
+        places.append(browser.driver.execute_async_script(script))
+        return places[-1] == pytest.approx(places[-2], abs=0.5)
+
+    wait_for("a view that rests", settled)
+    x, y = places[-1]
     person.presses += 1
     person.pointer("mousePressed", x, y)
     person.pointer("mouseMoved", x, y - 40)
