@@ -30,12 +30,13 @@ from robot_control.ui.program import run
 from bench.console.browser import Browser, missing
 from bench.console.pictures import main as console_pictures
 from bench.console.process import Console, wait_for
+from bench.gif import write_gif
 
 DOCS = Path(__file__).resolve().parents[1] / "docs"
 SIZE = (720, 406)
 """px of the film"""
-RATE, PAGE_RATE = 10, 5
-"""pictures per second of the film, and of the page in it"""
+RATE, PAGE_RATE, COLOURS = 10, 5, 48
+"""pictures per second of the film, and of the page in it, and its colours"""
 WALK = slice(2.5, 9.5)
 """s of the walk that are shown, standing up included"""
 PLACES = (Pose(2.0, 0.0, 0.0), Pose(1.0, 2.0, math.pi / 2), Pose(2.2, 3.5, 0.0))
@@ -72,6 +73,8 @@ def mapping(folder: Path) -> Iterator[Path]:
         try:
             browser.open(console.address)
             wait_for("a map", lambda: browser.data("model") and goals.get_num_connections() > 0)
+            browser.click("hints-close")
+            browser.tab("map")
             rospy.wait_for_message("map", OccupancyGrid, LIMIT)
             number, shown = 0, Pose(math.inf, 0.0, 0.0)
             for place in PLACES:
@@ -103,18 +106,6 @@ def goal(place: Pose) -> PoseStamped:
     return message
 
 
-def write_film(folder: Path, path: Path) -> None:
-    """Writes a GIF of the pictures of both parts, one after the other."""
-    inputs = []
-    for part, rate in (("walk", RATE), ("page", PAGE_RATE)):
-        inputs += ["-framerate", str(rate), "-i", str(folder / f"{part}_%03d.png")]
-    size = f"fps={RATE},scale={SIZE[0]}:{SIZE[1]}:flags=lanczos,setsar=1"
-    joined = f"[0]{size}[a];[1]{size}[b];[a][b]concat=n=2,split[c][d]"
-    colours = "[c]palettegen=max_colors=64[p];[d][p]paletteuse=dither=none:diff_mode=rectangle"
-    command = ["ffmpeg", "-y", "-loglevel", "error", *inputs, "-filter_complex", f"{joined};{colours}", str(path)]
-    subprocess.run(command, check=True)
-
-
 def draw_plot(folder: Path, path: Path) -> None:
     """Runs the first program of README, and keeps the plot that it saves."""
     readme = (DOCS.parent / "README.md").read_text()
@@ -141,7 +132,8 @@ def main() -> int:
             return console_pictures(given.out, folder)
         draw_plot(folder, given.out / "first_plot.png")
         pictures = [*walk(folder), *mapping(folder)]
-        write_film(folder, given.out / "film.gif")
+        parts = [(folder / "walk_%03d.png", RATE), (folder / "page_%03d.png", PAGE_RATE)]
+        write_gif(given.out / "film.gif", parts, RATE, SIZE, COLOURS)
     size = (given.out / "film.gif").stat().st_size
     print(f"wrote {given.out / 'film.gif'}: {len(pictures)} pictures, {size / 1e6:.1f} MB")
     return 0

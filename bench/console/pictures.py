@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import subprocess
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -14,11 +13,12 @@ from robot_control.ui.child import Child, children
 
 from bench.console.browser import Browser
 from bench.console.process import Console, wait_for
+from bench.gif import write_gif
 
 SIZE, FILM_SIZE = (1300, 900), (720, 498)
 """px of the window, and of the film"""
-RATE, LENGTH = 5, 10.0
-"""pictures per second of the film, and its length, s"""
+RATE, LENGTH, COLOURS = 5, 10.0, 96
+"""pictures per second of the film, its length, s, and its colours"""
 PHONE = (390, 844)
 CLEAR = 1.5
 """s after which the page shows what was done"""
@@ -55,14 +55,6 @@ def film(browser: Browser, folder: Path) -> None:
     browser.key("KeyQ", "keyUp")
 
 
-def write_film(folder: Path, path: Path) -> None:
-    """Writes a GIF of the pictures."""
-    size = f"scale={FILM_SIZE[0]}:{FILM_SIZE[1]}:flags=lanczos,split=2[c][d]"
-    colours = "[c]palettegen=max_colors=96[p];[d][p]paletteuse=dither=none:diff_mode=rectangle"
-    command = ["ffmpeg", "-y", "-loglevel", "error", "-framerate", str(RATE), "-i", str(folder / "film_%03d.png")]
-    subprocess.run([*command, "-filter_complex", f"{size};{colours}", str(path)], check=True)
-
-
 def main(out: Path, folder: Path) -> int:
     """Writes them all; the exit code."""
 
@@ -72,7 +64,7 @@ def main(out: Path, folder: Path) -> int:
 
     with page_of(folder, "sim.launch") as browser:
         film(browser, folder)
-        write_film(folder, out / "console.gif")
+        write_gif(out / "console.gif", [(folder / "film_%03d.png", RATE)], RATE, FILM_SIZE, COLOURS)
         browser.hold("KeyW", "motion", lambda: browser.data("look") == "moving")
         browser.screen(*PHONE, dark=True)
         keep(browser, "phone")
