@@ -30,6 +30,14 @@ def rotation(quaternion: Sequence[float]) -> FloatArray:
     )
 
 
+def rpy(matrix: FloatArray) -> tuple[float, float, float]:
+    """Roll, pitch and yaw in rad, turned about the fixed axes x, y, z in this order; (3, 3)."""
+    pitch = math.asin(max(-1.0, min(1.0, -float(matrix[2, 0]))))
+    if abs(matrix[2, 0]) > 1 - 1e-9:
+        return 0.0, pitch, math.atan2(-float(matrix[0, 1]), float(matrix[1, 1]))
+    return math.atan2(matrix[2, 1], matrix[2, 2]), pitch, math.atan2(matrix[1, 0], matrix[0, 0])
+
+
 def yaw_of(q: Any) -> float:  # noqa: ANN401 (geometry_msgs/Quaternion, or its like)
     """rad, of a unit quaternion, for instance of geometry_msgs."""
     return math.atan2(2 * (q.w * q.z + q.x * q.y), 1 - 2 * (q.y * q.y + q.z * q.z))

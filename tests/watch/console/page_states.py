@@ -180,16 +180,9 @@ class MadeUp:
         )
 
     def authority_of(self, page: object) -> dict:
-        commander = self.authority.commander
         return rounded(
             {
-                "type": "authority",
-                "you": page.number,
-                "role": str(page.role),
-                "commander": None if commander is None else commander.number,
-                "pages": [
-                    {"number": p.number, "name": p.user, "role": str(p.role)} for p in self.authority.pages.values()
-                ],
+                **self.authority.seen_by(page),
                 "against": {},
                 "dead_man": "",
                 "chosen": (0.5, 1.0, 0.3),

@@ -7,9 +7,9 @@ import time
 from pathlib import Path
 
 import pytest
-from page_states import STATES, Served
+from page_states import STATES
 
-from bench.console.browser import Browser, missing
+from bench.console.browser import missing
 from bench.console.process import wait_for
 
 if missing():
@@ -77,20 +77,6 @@ for (const element of document.querySelectorAll("button, select, input, textarea
 }
 return [...new Set(found)];
 """
-
-
-@pytest.fixture(scope="module")
-def served(tmp_path_factory):
-    """One server, whose robot the cases change."""
-    return Served(tmp_path_factory.mktemp("runs"))
-
-
-@pytest.fixture(scope="module")
-def browser():
-    """One browser; its first page is the console's with its token."""
-    made = Browser(1300, 900)
-    yield made
-    made.end()
 
 
 def open_page(browser, served, state, size="desktop", *, dark=False, control=True):

@@ -5,7 +5,6 @@ from __future__ import annotations
 import time
 
 import pytest
-from page_states import Served
 
 from bench.console.browser import Browser, missing
 from bench.console.process import wait_for
@@ -61,18 +60,6 @@ class Person:
         print(f"{what}: {self.presses} presses")
         assert self.presses <= MOST, what
         self.presses = 0
-
-
-@pytest.fixture(scope="module")
-def served(tmp_path_factory):
-    return Served(tmp_path_factory.mktemp("runs"))
-
-
-@pytest.fixture(scope="module")
-def browser():
-    made = Browser(1300, 900)
-    yield made
-    made.end()
 
 
 def drives(person, browser, robot):

@@ -15,6 +15,7 @@ from scipy.spatial.transform import Rotation
 
 from robot_control.data.estimate.samples import FloatArray
 from robot_control.data.estimate.streams import Streams
+from robot_control.robot.pose import rpy
 
 GRAVITY = 9.80665  # m/s²
 BLOCK = 0.5  # s
@@ -65,7 +66,7 @@ def fitting(streams: Streams, gravity: FloatArray) -> list[Mounting]:
     for matrix in np.round(Rotation.create_group("O").as_matrix()):
         if matrix[2] @ gravity >= math.cos(OBLIQUE) * float(np.linalg.norm(gravity)):
             plain, mirrored = _agreements(streams, motion, matrix)
-            found += [Mounting(_rpy(matrix), False, plain), Mounting(_rpy(matrix), True, mirrored)]  # noqa: FBT003
+            found += [Mounting(rpy(matrix), False, plain), Mounting(rpy(matrix), True, mirrored)]  # noqa: FBT003
     return sorted(found, key=lambda mounting: -mounting.agreement)
 
 
@@ -109,10 +110,3 @@ def _agreements(
     ahead, sideways = float(gained[:, 0] @ faster), float(gained[:, 1] @ aside)
     scale = math.sqrt(float((faster @ faster + aside @ aside) * np.sum(gained**2))) or 1.0
     return (ahead + sideways) / scale, (ahead - sideways) / scale
-
-
-def _rpy(matrix: FloatArray) -> tuple[float, float, float]:
-    pitch = math.asin(max(-1.0, min(1.0, -float(matrix[2, 0]))))
-    if abs(matrix[2, 0]) > 1 - 1e-9:
-        return 0.0, pitch, math.atan2(-float(matrix[0, 1]), float(matrix[1, 1]))
-    return math.atan2(matrix[2, 1], matrix[2, 2]), pitch, math.atan2(matrix[1, 0], matrix[0, 0])

@@ -13,6 +13,7 @@ The same factor holds for all axes, so the curve stays. On wheels the lateral sp
 import math
 from dataclasses import dataclass
 from enum import IntEnum
+from typing import Any
 
 from robot_control.drive.keys.operator import ZEROS, Limits
 from robot_control.drive.pad_law import PadParameters
@@ -77,6 +78,18 @@ class Authority:
         if self.commander is page:
             self._give(None, now, "the page has ended")
         self.pages.pop(page.number, None)
+
+    def seen_by(self, page: Page) -> dict[str, Any]:
+        """The values that a page shows of itself and of the others."""
+        return {
+            "type": "authority",
+            "you": page.number,
+            "role": str(page.role),
+            "commander": None if self.commander is None else self.commander.number,
+            "pages": [
+                {"number": each.number, "name": each.user, "role": str(each.role)} for each in self.pages.values()
+            ],
+        }
 
     def take(self, page: Page, now: float, *, force: bool = False) -> None:
         """Takes the command; `force`: from another page. Raises RefusedError."""

@@ -108,13 +108,7 @@ class Backend:
         dead_man, limits = page.dead_man, self._limits.newest()
         return rounded(
             {
-                "type": "authority",
-                "you": page.number,
-                "role": str(page.role),
-                "commander": None if commander is None else commander.number,
-                "pages": [
-                    {"number": p.number, "name": p.user, "role": str(p.role)} for p in self.authority.pages.values()
-                ],
+                **self.authority.seen_by(page),
                 "against": {
                     name: against(name, page, self.authority, self.available, running_kind()) for name in CALLS
                 },

@@ -15,7 +15,7 @@ from robot_control.robot.boundary import Latest, boundary, subscribe
 from robot_control.robot.diagnosis.diagnosis import MOVING, judge, missing_nodes
 from robot_control.robot.diagnosis.listener import speeds_of
 from robot_control.robot.diagnosis.state import Facts, Speeds
-from robot_control.robot.pose import pose_of
+from robot_control.robot.pose import pose_of, rotation, rpy
 from robot_control.robot.view import SILENCES
 from robot_control.watch.console.navigation import NavigationView
 from robot_control.watch.console.requests import Requests
@@ -172,9 +172,7 @@ def _pose(odometry: Odometry) -> tuple[float, float, float]:
 def six_of(odometry: Odometry) -> tuple[float, ...]:
     """x, y, z [m], roll, pitch, yaw [rad]."""
     at, q = odometry.pose.pose.position, odometry.pose.pose.orientation
-    roll = math.atan2(2 * (q.w * q.x + q.y * q.z), 1 - 2 * (q.x * q.x + q.y * q.y))
-    pitch = math.asin(max(-1.0, min(1.0, 2 * (q.w * q.y - q.z * q.x))))
-    return at.x, at.y, at.z, roll, pitch, pose_of(odometry).yaw
+    return at.x, at.y, at.z, *rpy(rotation((q.x, q.y, q.z, q.w)))
 
 
 def legs_of(message: LegState) -> Values:

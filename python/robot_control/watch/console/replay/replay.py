@@ -111,15 +111,11 @@ class Replay:
 
     def authority_of(self, page: Page) -> Values:
         """The values of a page: it watches."""
-        trips, pages = page.dead_man.round_trips, self.authority.pages.values()
+        trips = page.dead_man.round_trips
         link = {"last": trips.last(), "p95": trips.percentile95(time.monotonic())}
         return rounded(
             {
-                "type": "authority",
-                "you": page.number,
-                "role": str(page.role),
-                "commander": None,
-                "pages": [{"number": each.number, "name": each.user, "role": str(each.role)} for each in pages],
+                **self.authority.seen_by(page),
                 "against": {},
                 "dead_man": "",
                 "link": link | {"gaps": 0, "late": 0, "replayed": 0, "cap": 0.0},
