@@ -145,6 +145,12 @@ class Browser:
         """Opens a part of the console: drive, map, plots, logs or setup."""
         self.run("document.querySelector(`#tabs [data-tab=${arguments[0]}]`).click()", name)
 
+    def pixel(self, x: float, y: float) -> tuple[float, float]:
+        """The pixel of a place in odom, m."""
+        script = "const [x, y, done] = arguments; import('/scene.js').then((m) => done(m.toScreen(x, y)))"
+        across, down = self.driver.execute_async_script(script, x, y)
+        return float(across), float(down)
+
     def key(self, code: str, kind: str = "keyDown") -> None:
         """A real key of the browser: keyDown or keyUp."""
         self.driver.execute_cdp_cmd("Input.dispatchKeyEvent", {"type": kind, "code": code, "key": code[-1].lower()})

@@ -57,19 +57,13 @@ class ConsoleNavigationTest(ConsoleTestCase):
         self.addCleanup(Program("localization").end)
         self.state = Latest("localization_state", LocalizationState)
 
-    def pixel(self, browser: Browser, ahead: float) -> tuple[float, float]:
-        """The pixel of the place so far ahead of the robot, which looks along x."""
-        script = "const [x, y, done] = arguments; import('/scene.js').then((m) => done(m.toScreen(x, y)))"
-        here = self.robot.pose
-        x, y = browser.driver.execute_async_script(script, here.x + ahead, here.y)
-        return float(x), float(y)
-
     def stroke(self, browser: Browser, button: str, ahead: float) -> None:
         """Presses the button, then the map so far ahead of the robot, and drags along x."""
         browser.click(button)
         drawing = "return document.getElementById('view').classList.contains('drawing')"
         wait_for("a map to press on", lambda: browser.run(drawing))
-        begin, end = self.pixel(browser, ahead), self.pixel(browser, ahead + 0.4)
+        here = self.robot.pose
+        begin, end = (browser.pixel(here.x + way, here.y) for way in (ahead, ahead + 0.4))
         for kind, (x, y), held in (("mousePressed", begin, 1), ("mouseMoved", end, 1), ("mouseReleased", end, 0)):
             event = {"type": kind, "x": x, "y": y, "button": "left", "buttons": held, "clickCount": 1}
             browser.driver.execute_cdp_cmd("Input.dispatchMouseEvent", event)

@@ -88,16 +88,7 @@ def drives(person, browser, robot):
 
 def sets_a_goal(person, browser, robot):
     """Presses on the map and drags to the heading, which is upwards as the robot looks."""
-    script = "const [done] = arguments; import('/scene.js').then((m) => done(m.toScreen(0.6, 0.2)))"
-    places = [browser.driver.execute_async_script(script)]
-
-    def settled():  # the view follows the robot
-        time.sleep(0.2)
-        places.append(browser.driver.execute_async_script(script))
-        return places[-1] == pytest.approx(places[-2], abs=0.5)
-
-    wait_for("a view that rests", settled)
-    x, y = places[-1]
+    x, y = browser.pixel(0.6, 0.2)
     person.presses += 1
     person.pointer("mousePressed", x, y)
     person.pointer("mouseMoved", x, y - 40)

@@ -126,9 +126,16 @@ function carry(x, y, yaw) {
   camera.position.sub(controls.target).applyAxisAngle(camera.up, turned).add(controls.target);
 }
 
+/** The camera as it is placed now, of which the last picture may know a part only. */
+function placedCamera() {
+  camera.lookAt(controls.target);
+  camera.updateMatrixWorld();
+  return camera;
+}
+
 /** The pixel of a place on the ground. */
 export function toScreen(x, y, z = 0) {
-  const place = new THREE.Vector3(x, y, z).project(camera), box = canvas.getBoundingClientRect();
+  const place = new THREE.Vector3(x, y, z).project(placedCamera()), box = canvas.getBoundingClientRect();
   return [box.left + (place.x + 1) * box.width / 2, box.top + (1 - place.y) * box.height / 2];
 }
 
@@ -302,7 +309,7 @@ function end(result) {
 function ground(event) {
   const box = canvas.getBoundingClientRect(), ray = new THREE.Raycaster();
   const x = 2 * (event.clientX - box.left) / box.width - 1, y = 1 - 2 * (event.clientY - box.top) / box.height;
-  ray.setFromCamera({ x, y }, camera);
+  ray.setFromCamera({ x, y }, placedCamera());
   return ray.ray.intersectPlane(new THREE.Plane(new THREE.Vector3(0, 0, 1), 0), new THREE.Vector3());
 }
 canvas.addEventListener("pointerdown", (event) => {
