@@ -3,7 +3,7 @@
 
 usage: count_tests.py FOLDER…
 
-The skipped cases stand above it by name, one line per reason. JUnit files of gtest, pytest and rosunit count case by
+The skipped cases stand above it by name, one line per reason, and after them the failed ones. JUnit files of gtest, pytest and rosunit count case by
 case. CTest's own Test.xml counts a whole entry, and only if it failed without a failed case in a JUnit file of its
 name. That is a program that crashed, hung or never started. The exit code is 0 if and only if something passed and
 nothing failed.
@@ -26,6 +26,11 @@ def outcome(case: ET.Element) -> str:
     return PASSED
 
 
+def full_name(case: ET.Element) -> str:
+    """Suite and name of one <testcase>."""
+    return f"{case.get('classname', '')}.{case.get('name', '')}".lstrip(".")
+
+
 def skips(root: ET.Element) -> list[tuple[str, str]]:
     """Reason and name of every skipped <testcase>. gtest writes the source's place into the message, a line before."""
     found = []
@@ -35,8 +40,7 @@ def skips(root: ET.Element) -> list[tuple[str, str]]:
         note = case.find("skipped")
         text = "" if note is None else note.get("message") or note.text or ""
         lines = [line.strip() for line in text.splitlines() if line.strip() and ".cpp:" not in line]
-        suite = case.get("classname", "")
-        found.append((" ".join(lines) or "no reason given", f"{suite}.{case.get('name', '')}".lstrip(".")))
+        found.append((" ".join(lines) or "no reason given", full_name(case)))
     return found
 
 
@@ -61,8 +65,9 @@ def ros_name(stem: str) -> str:
 
 
 def count(folders: list[Path]) -> tuple[Counter[str], list[str], dict[str, list[str]]]:
-    """All cases; the CTest entries and files that failed as a whole; names of the skipped cases by reason."""
+    """All cases; what failed, cases, CTest entries and files; names of the skipped cases by reason."""
     total: Counter[str] = Counter()
+    failed: list[str] = []
     wholly_failed: list[str] = []
     explained: set[str] = set()
     entries: set[str] = set()
@@ -82,6 +87,7 @@ def count(folders: list[Path]) -> tuple[Counter[str], list[str], dict[str, list[
         if is_summary_of_nodes(path):
             cases = Counter({FAILED: cases[FAILED]})
         else:
+            failed += [full_name(case) for case in root.iter("testcase") if outcome(case) == FAILED]
             for reason, name in skips(root):
                 skipped.setdefault(reason, []).append(name)
         if cases[FAILED]:
@@ -91,16 +97,16 @@ def count(folders: list[Path]) -> tuple[Counter[str], list[str], dict[str, list[
         entry for entry in sorted(entries) if not any(stem == entry or ros_name(stem) in entry for stem in explained)
     ]
     total[FAILED] += len(wholly_failed)
-    return total, wholly_failed, skipped
+    return total, failed + [f"{name}, as a whole" for name in wholly_failed], skipped
 
 
 def main(folders: list[str]) -> int:
-    """Prints the skipped cases, the failures of whole entries, then the last line."""
-    total, wholly_failed, skipped = count([Path(folder) for folder in folders])
+    """Prints the skipped cases, the failed ones, then the last line."""
+    total, failed, skipped = count([Path(folder) for folder in folders])
     for reason, names in sorted(skipped.items()):
         print(f"skipped: {reason}: {', '.join(sorted(set(names)))}")
-    for name in wholly_failed:
-        print(f"failed as a whole: {name}")
+    for name in failed:
+        print(f"failed: {name}")
     print(f"{total[PASSED]} passed, {total[FAILED]} failed, {total[SKIPPED]} skipped")
     return 0 if total[PASSED] > 0 and total[FAILED] == 0 else 1
 
