@@ -68,9 +68,15 @@ void Tilt::age() noexcept {
   turned_ = time_ = 0;
 }
 
+/// The gyro was wrong, which does not change the bias.
+void Tilt::open(const Eigen::Vector2d& off) noexcept {
+  (*covariance_).diagonal().head<2>().array() += off.squaredNorm();
+}
+
 void Tilt::correct(double along, double across, double dt, double deviation) noexcept {
   age();
-  const Eigen::Vector2d sum = (*up_).head<2>() + *bias_ + Eigen::Vector2d(along, across) / kGravity;
+  const Eigen::Vector2d off = Eigen::Vector2d(along, across) / kGravity, sum = (*up_).head<2>() + *bias_ + off;
+  if (off.norm() > Tuning::kSignificant * Tuning::kInitialTilt) open(off);
   update(sum, square(deviation / kGravity) * std::max(1.0, Tuning::kSlowTime / dt));
 }
 
@@ -84,7 +90,7 @@ void Tilt::rest(const Vector3& force, double dt) noexcept {
   const Eigen::Vector2d bound =
       square(Tuning::kSignificant) * Eigen::Vector2d(variance(0) + noise, variance(1) + noise);
   if ((off.array().square() > bound.array()).any()) {
-    (*covariance_).diagonal().head<2>().array() += off.squaredNorm();
+    open(off);
   }
   update(sum, noise);
   vertical_ += std::min(1.0, dt) * (norm - kGravity - vertical_);
