@@ -7,9 +7,9 @@
 /// The error state is u_x, u_y, β_x, β_y. One rest shows only their sums. Rests in two headings separate them, because
 /// gravity turns against the robot and the bias does not.
 ///
-/// A rest may contradict the tilt that the gyro measured since the last one by more than kSignificant deviations, a
-/// correction in motion by more than kSignificant of the steepest road's. Then the tilt is unknown. The bias keeps its
-/// variance, because a failing gyro does not change it.
+/// A rest may contradict the tilt that the gyro measured since the last one by more than kSignificant deviations. Then
+/// the tilt is unknown. The bias keeps its variance, because a failing gyro does not change it. A correction in motion
+/// that contradicts the tilt like that is not used, because any of the sensors may be wrong.
 ///
 /// The tilt walks by kSlowAcceleration/g, 2 mrad, per √s. It is bounded by kSteepest, because the robot stands on its
 /// wheels. The gyro's x and y count only after a first rest has shown their bias: a broken axis reads −31 °/s at rest.
@@ -65,6 +65,7 @@ class Tilt {
   void bound() noexcept;
   void open(const Eigen::Vector2d& off) noexcept;
   void update(const Eigen::Vector2d& sum, double noise) noexcept;
+  bool contradicts(const Eigen::Vector2d& sum, double noise) const noexcept;
   Eigen::Vector2d innovation(const Eigen::Vector2d& sum) const noexcept;
   double variance(int axis) const noexcept;  ///< variance of u + β
 
