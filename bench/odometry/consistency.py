@@ -2,8 +2,8 @@
 
 NEES    eᵀ P⁻¹ e of e = (x, y, yaw) and of e = (forward speed, yaw rate); ideal 3 and 2 (Bar-Shalom, Li &
         Kirubarajan, "Estimation with Applications to Tracking and Navigation", 2001, section 5.4)
-slip    of truth.py: SLIPPING, a wheel above 20 %, is to be flagged; ROLLING, all of them below 5 %, is
-        not; what lies between is no one's
+slip    of truth.py: SLIPPING is a wheel above 20 %, ROLLING all of them below 5 %, which is not to be flagged
+blocked all wheels turn and the robot stands; of more than BLOCKED s it is to be flagged
 """
 
 from __future__ import annotations
@@ -17,7 +17,9 @@ from bench.odometry.tested_estimator import Ours
 from bench.odometry.truth import Array, Truth, wrapped
 
 SLIPPING, ROLLING = 0.2, 0.05
-SPIN = 0.2  # s
+BLOCKED = 1.0  # s
+STANDS = 0.02  # m/s
+ALL = 0.8  # slip of a wheel that turns beside a ground that stands
 ROW = 0.01  # s, between two rows of truth
 
 
@@ -30,8 +32,8 @@ class Notice:
     rolling: int
     alarms: int  # of the rolling ones
     rows: int  # all of them
-    spins: int = 0  # slips of SPIN s or more
-    reported: int = 0  # number of the spins that were flagged at any time
+    blocked: int = 0  # spans of more than BLOCKED s
+    reported: int = 0  # number of these that were flagged before their end
 
 
 def pose_error(ours: Ours, truth: Truth) -> Array:
@@ -70,14 +72,15 @@ def notice(ours: Ours, truth: Truth) -> Notice:
     """Counts how long slip lasted, and how long it was reported."""
     slipping = (truth.slip > SLIPPING).any(axis=1)
     rolling = (truth.slip < ROLLING).all(axis=1)
-    edges = np.flatnonzero(np.diff(slipping.astype(int), prepend=0, append=0))
-    spins = [(begin, end) for begin, end in edges.reshape(-1, 2) if end - begin >= round(SPIN / ROW)]
+    stands = (truth.slip > ALL).all(axis=1) & (np.abs(truth.linear) < STANDS)
+    edges = np.flatnonzero(np.diff(stands.astype(int), prepend=0, append=0))
+    spans = [(begin, end) for begin, end in edges.reshape(-1, 2) if end - begin > round(BLOCKED / ROW)]
     return Notice(
         slipping=int(slipping.sum()),
         noticed=int((slipping & ours.slip).sum()),
         rolling=int(rolling.sum()),
         alarms=int((rolling & ours.slip).sum()),
         rows=len(rolling),
-        spins=len(spins),
-        reported=sum(bool(ours.slip[begin:end].any()) for begin, end in spins),
+        blocked=len(spans),
+        reported=sum(bool(ours.slip[begin:end].any()) for begin, end in spans),
     )

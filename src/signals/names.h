@@ -187,12 +187,9 @@ inline constexpr auto kDegradedReasonNames = std::to_array<BitName>({
 });
 
 inline constexpr auto kSlipReasonNames = std::to_array<BitName>({
-    {kSlipLeft, "left", "the left wheels do not roll", ""},
-    {kSlipRight, "right", "the right wheels do not roll", ""},
-    {kSlipSpinning, "spinning", "a wheel turns faster than the ground passes", "reduce the acceleration"},
-    {kSlipStalled, "stalled", "a wheel turns slower than the ground passes", "reduce the deceleration"},
-    {kSlipTurn, "turn", "the wheels' yaw rate contradicts the gyro", ""},
-    {kSlipSideways, "sideways", "the robot slides sideways", "reduce the turn rate"},
+    {kSlipSpinning, "spinning", "the wheels turn faster than the ground passes", "reduce the acceleration"},
+    {kSlipStalled, "stalled", "the wheels turn slower than the ground passes", "reduce the deceleration"},
+    {kSlipBlocked, "blocked", "the wheels turn, but the robot stands", "remove what blocks the robot"},
 });
 
 /// The names are in the order of SensorIndex.

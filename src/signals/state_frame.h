@@ -31,7 +31,7 @@ enum StateFlag : std::uint64_t {
 
 /// Bits of BaseState::degraded: why the pose is less certain.
 enum DegradedReason : std::uint64_t {
-  kDegradedPosition = 1u << 0,  ///< Wheels slip (estimation/wheeled/slip/wheel_slide.h).
+  kDegradedPosition = 1u << 0,  ///< Wheels slip (estimation/wheeled/slip/slip_watch.h).
   kDegradedHeading = 1u << 1,   ///< The gyro's bias was not measured at a rest yet, or the wheels contradict the gyro.
 };
 

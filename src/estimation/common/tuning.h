@@ -5,7 +5,6 @@
 /// The origin "recordings" means drives of real robots, or with their errors (bench/odometry/recordings.py,
 /// field_bench.py). The origin "faults" means sensors that fail shortly (test_short_faults.py).
 
-#include <array>
 #include <cstdint>
 
 namespace robot_control {
@@ -27,7 +26,6 @@ struct Tuning {
   // These constants of slip (slip/) were measured or chosen on drives.
 
   static constexpr double kPathSlip = 2e-3;  ///< m/√m, slip of rolling wheels in the path difference; recordings
-  static constexpr double kWindUp = 1.6e-3;  ///< rad/√(rad/s), wind-up of treads and gears; recordings
   static constexpr double kSlowAcceleration = 0.02;  ///< m/s², slow error: 2 mrad of tilt, a motor's hum; recordings
 
   // These constants are conventions of statistics.
@@ -45,8 +43,8 @@ struct Tuning {
 
   // These constants are time scales.
 
-  static constexpr std::array<double, 4> kResidualSpans{0.1, 0.2, 0.4, 0.8};  ///< s: T of slip_detector.h
-  static constexpr double kPointInterval = 0.05;  ///< s between two points of the differences: half the shortest T
+  static constexpr double kSlipSpan = 0.4;        ///< s: T of slip_watch.h
+  static constexpr double kPointInterval = 0.05;  ///< s between two points of the difference: an eighth of T
   static constexpr double kBlock = 1.0;           ///< s between comparisons of wheels and gyro; memory of confidences
   static constexpr std::uint64_t kMaxHeld = 4;    ///< cycles or readings, the life of a command (gate/gate.h)
   static constexpr double kMinHoldTime = 0.02;    ///< s for which a sample of an IMU holds at least: 50 Hz

@@ -86,7 +86,6 @@ void Estimator::advance(const SensorFrame& sensors, double dt) noexcept {
   if (!s.pose_set) return;
   place(*s.pose_set);
   s.rest.forget_held();
-  s.slip.begin_path();
 }
 
 void Estimator::read(const SensorFrame& sensors, double dt) noexcept {
@@ -108,7 +107,7 @@ void Estimator::read(const SensorFrame& sensors, double dt) noexcept {
     s.comparison.suspend();
     s.middle_travel.forget_credit(side);
     s.core.shift(0, 0, square(Tuning::kRestart));
-    restart_slip();
+    s.slip.restart();
     if (time <= Tuning::kMaxHoldTime) continue;
     s.middle_travel.forget_turn();
     if (!replaced) lose_travel(time);
@@ -155,13 +154,14 @@ void Estimator::move(double dt) noexcept {
   }
   s.yaw_rate = by_gyro ? s.imu.rate[2] - s.core.bias() : wheel_rate();
   const double turned = s.core.pose().yaw - before;
-  Planar path;
+  double travelled = 0;
   for (const auto& travel : s.middle_travel.step(s.wheels, turned, geometry_.wheel_base, s.core.ratio())) {
-    path = path + roll(travel);
+    roll(travel);
+    travelled += travel.distance;
   }
   s.core.shift(0, 0, s.wheels.travel_variance / 2);
   if (s.imu.gyro) turn_tilt(*s.imu.gyro, dt);
-  if (parameters_.slip_detection) watch_slip(dt, turned, path);
+  if (parameters_.slip_detection) watch_slip(dt, travelled);
   compare_turns(dt, by_gyro);
 }
 
@@ -172,9 +172,8 @@ void Estimator::turn_tilt(const Vector3& gyro, double dt) noexcept {
   state_.tilt.turn(array(rate), dt);
 }
 
-/// Slope and creep shorten the distance, which is laid along the heading that the robot had halfway. Returns the path
-/// in m, base axes at the end of the step.
-Planar Estimator::roll(const MiddleTravel::Travel& travel) noexcept {
+/// Slope and creep shorten the distance, which is laid along the heading that the robot had halfway.
+void Estimator::roll(const MiddleTravel::Travel& travel) noexcept {
   State& s = state_;
   const double sine = s.tilt.up()[0];
   const double level = travel.distance * std::sqrt(std::max(0.0, 1 - sine * sine));
@@ -186,7 +185,6 @@ Planar Estimator::roll(const MiddleTravel::Travel& travel) noexcept {
   s.core.roll(odom.x, odom.y, late_rate);
   s.height += travel.distance * sine;
   s.distance += std::abs(travel.distance);
-  return path;
 }
 
 /// Returns by how much less the robot travels than its treads roll, along and to the left, in m. A tyre under force
@@ -231,7 +229,7 @@ double Estimator::forward_speed() const noexcept {
   if (s.wheels.any_lost() && !s.wheels.both_lost()) {
     speed = s.wheels.lost[kLeft] ? s.wheels.speed[kRight] - faster : s.wheels.speed[kLeft] + faster;
   }
-  return speed - s.slide.excess_speed();
+  return speed;
 }
 
 double Estimator::wheel_rate() const noexcept {

@@ -3,12 +3,12 @@
 ///
 ///   encoders ─► travel of either side ─┬─► planar core ─► pose, calibration, covariance
 ///   gyro ──────────────────────────────┤        ▲ variance
-///   accelerometer, tilt filter ────────┴─► slip detector ─► slide
+///   accelerometer, tilt filter ────────┴─► slip watch
 ///
 /// The wheels give the distance. Gyro and wheels give the heading, weighed by their deviations from the first metre on
 /// (planar/planar_core.h). The accelerometer shortens the distance by parts of a percent: it shows the tilt and the
-/// creep of tyres. Slip is named and widens the covariance (slip/slip_detector.h); it moves the path only of a robot
-/// that is blocked (slip/wheel_slide.h).
+/// creep of tyres. Slip, and a robot that is blocked, are named and widen the covariance (slip/slip_watch.h). They move
+/// no path.
 ///
 /// At rest (rest/rest_watch.h) nothing is integrated: pose and covariance stay. The gyro's bias and the tilt
 /// (tilt/tilt.h) are learned. The first rest also corrects the pose. A run begins at rest. A window that turns out not
@@ -44,8 +44,7 @@
 #include "estimation/wheeled/planar/planar_core.h"
 #include "estimation/wheeled/planar/turn_comparison.h"
 #include "estimation/wheeled/rest/robot_rest.h"
-#include "estimation/wheeled/slip/slip_detector.h"
-#include "estimation/wheeled/slip/wheel_slide.h"
+#include "estimation/wheeled/slip/slip_watch.h"
 #include "estimation/wheeled/wheels/middle_travel.h"
 #include "estimation/wheeled/wheels/wheel_geometry.h"
 #include "estimation/wheeled/wheels/wheel_sides.h"
@@ -77,9 +76,7 @@ class Estimator {
     Tilt tilt;                              ///< tilt and the accelerometer's bias
     std::array<BiasEstimate, 2> gyro_bias;  ///< rad/s, about x and y
     RestNoise gyro_noise;
-    SlipDetector slip;
-    WheelSlide slide;
-    double slip_yaw = 0;  ///< rad, by the gyro alone
+    SlipWatch slip;
     RobotRest rest;
     double yaw_rate = 0;  ///< rad/s, in this step
     double height = 0;    ///< m
@@ -140,10 +137,8 @@ class Estimator {
   void integrate_wheels() noexcept;
   void move(double dt) noexcept;
   void turn_tilt(const Vector3& gyro, double dt) noexcept;
-  Planar roll(const MiddleTravel::Travel& travel) noexcept;
-  MotionDifference::Sample slip_sample(double dt, double turned, const Planar& path) const noexcept;
-  void watch_slip(double dt, double turned, const Planar& path) noexcept;
-  void restart_slip() noexcept;
+  void roll(const MiddleTravel::Travel& travel) noexcept;
+  void watch_slip(double dt, double travel) noexcept;
   void compare_turns(double dt, bool by_gyro) noexcept;
   void watch_rest(double dt) noexcept;
   void integrate(const HeldMotion& held, bool stood) noexcept;

@@ -115,7 +115,7 @@ void Estimator::fill_twist_covariance(double yaw_rate, BaseState& base) const no
     if (apart > square(Tuning::kSignificant) * turn) turn = apart;
   }
   if (state_.rest.resting()) wheel = turn = 0;
-  const double slides = state_.slide.active() ? square(state_.slide.speed_deviation()) : 0;
+  const double slides = state_.slip.slips() ? square(state_.slip.speed_deviation()) : 0;
   base.twist_covariance = {};
   base.twist_covariance[0] = wheel / 2 + slides + square(parameters_.wheel_radius_deviation * forward_speed()) +
                              square(geometry_.axle[1]) * turn;
@@ -139,18 +139,18 @@ void Estimator::fill_health(StateFrame& out) const noexcept {
   out.wheeled.odometry = state_.wheel_odometry;
   out.wheeled.nis = state_.nis;
   out.wheeled.rejected = state_.rejected;
-  out.wheeled.slip = state_.rest.resting() ? 0 : state_.slide.reasons();
+  out.wheeled.slip = state_.slip.reasons();
   out.wheeled.residual_level = state_.slip.level();
   out.base.distance = state_.distance;
   out.skipped = state_.skipped;
   const auto confidence = [&](SensorIndex sensor, bool used) {
     out.wheeled.confidence[sensor] = used ? 1 / std::max(1.0, out.wheeled.nis[sensor]) : 0;
   };
-  confidence(kLeftEncoder, state_.wheels.received[kLeft] && !state_.slide.slips(kLeft));
-  confidence(kRightEncoder, state_.wheels.received[kRight] && !state_.slide.slips(kRight));
+  confidence(kLeftEncoder, state_.wheels.received[kLeft] && !state_.slip.slips());
+  confidence(kRightEncoder, state_.wheels.received[kRight] && !state_.slip.slips());
   confidence(kGyro, state_.imu.gyro.has_value());
   confidence(kAccelerometer, state_.imu.accelerometer.has_value());
-  confidence(kLateralContact, !state_.slide.sideways());
+  confidence(kLateralContact, true);
   confidence(kVerticalContact, true);
   out.base.flags = state_.flags;
   if (!state_.wheels.any_lost() || (!state_.wheels.both_lost() && state_.imu.gyro)) out.base.flags |= kStateValid;
@@ -158,7 +158,7 @@ void Estimator::fill_health(StateFrame& out) const noexcept {
   if (state_.restarted) out.base.flags |= kStateRestarted;
   if (out.wheeled.slip != 0) out.base.flags |= kStateSlip;
   out.base.degraded = 0;
-  if (state_.slide.active()) out.base.degraded |= kDegradedPosition;
+  if (state_.slip.slips()) out.base.degraded |= kDegradedPosition;
   if (state_.core.contradicted()) out.base.degraded |= kDegradedHeading;
   const bool unknown_bias = state_.core.bias_variance() > square(Tuning::kUnknownBias);
   if (!state_.rest.resting() && state_.imu.gyro && unknown_bias) out.base.degraded |= kDegradedHeading;

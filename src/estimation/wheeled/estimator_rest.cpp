@@ -29,7 +29,7 @@ void Estimator::watch_rest(double dt) noexcept {
                    .bias_variance = array(gyro_bias_variance()),
                    .mean_variance = square(parameters_.gyro_noise) / parameters_.standstill_time});
   if (output.began) {
-    s.slide.end();
+    s.slip.restart();
     s.comparison.interrupt();
     s.middle_travel.forget_turn();
   }
@@ -50,10 +50,9 @@ void Estimator::integrate(const HeldMotion& held, bool stood) noexcept {
   roll({.distance = (held.left + held.right) / 2, .turn_since = (s.core.pose().yaw - before) / 2});
   s.middle_travel.forget_turn();
   if (stood) {
-    s.slide.end();
-    s.slip.restart_at_rest(s.slip_yaw, s.tilt.up(), rotated(held.velocity, s.slip_yaw));
+    s.slip.restart_at_rest(held.velocity.x);
   } else {
-    restart_slip();
+    s.slip.restart();
   }
   s.comparison.resume();
   if (!s.wheels.both_received()) return;

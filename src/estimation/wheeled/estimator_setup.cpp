@@ -87,8 +87,6 @@ SlipParams slip_params(const EstimatorParameters& parameters, const DriveTrain& 
   for (const WheelModel& wheel : robot.wheels) ground[2] -= wheel.radius / static_cast<double>(robot.wheels.size());
   return {.encoder = encoder_deviation(parameters, robot),
           .accelerometer = parameters.accelerometer_noise,
-          .wheel_base = robot.effective_wheel_base(),
-          .wheel_slip_noise = parameters.wheel_slip_noise,
           .imu_x = robot.imu_in_base.position[0] - ground[0],
           .imu_y = robot.imu_in_base.position[1] - ground[1],
           .imu_above_ground = robot.imu_in_base.position[2] - ground[2]};

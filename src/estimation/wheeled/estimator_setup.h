@@ -5,7 +5,7 @@
 #include "estimation/wheeled/estimator_parameters.h"
 #include "estimation/wheeled/planar/planar_core.h"
 #include "estimation/wheeled/rest/rest_watch.h"
-#include "estimation/wheeled/slip/motion_difference.h"
+#include "estimation/wheeled/slip/slip_watch.h"
 #include "machine/wheeled/drive_train.h"
 
 namespace robot_control {

@@ -1,8 +1,8 @@
 #pragma once
 /// slip_detection describes in words how WheeledState::residual_level affects the detection of slip.
 ///
-/// With an IMU such as the BMI088, slip above 0.025 m/s times the level is detected within 0.2 s
-/// (estimation/wheeled/slip/slip_detector.h). From kSlowDetection on this is 0.08 m/s, from kNoDetection on 1 m/s.
+/// With an IMU such as the BMI088, slip above 0.04 m/s times the level is detected within 0.4 s
+/// (estimation/wheeled/slip/slip_watch.h). From kSlowDetection on this is 0.12 m/s, from kNoDetection on 1.6 m/s.
 
 #include "signals/formatted_text.h"
 

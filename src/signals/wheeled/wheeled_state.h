@@ -8,7 +8,7 @@
 namespace robot_control {
 
 /// The values are indices of WheeledState::confidence, nis and rejected. The last two are assumptions about the contact
-/// with the ground. Wheels do not slide sideways. The robot neither sinks nor flies, which is always trusted.
+/// with the ground, which are always trusted. Wheels do not slide sideways, and the robot neither sinks nor flies.
 enum SensorIndex : std::size_t {
   kLeftEncoder = 0,
   kRightEncoder = 1,
@@ -19,14 +19,11 @@ enum SensorIndex : std::size_t {
 };
 inline constexpr std::size_t kWheeledSensors = 6;
 
-/// Bits of WheeledState::slip: the contact that is not trusted, and the contradicting measurement.
+/// Bits of WheeledState::slip: how the wheels contradict the accelerometer.
 enum SlipReason : std::uint64_t {
-  kSlipLeft = 1u << 0,      ///< The left wheels do not roll.
-  kSlipRight = 1u << 1,     ///< The right wheels do not roll.
-  kSlipSpinning = 1u << 2,  ///< A wheel turns faster than the ground passes.
-  kSlipStalled = 1u << 3,   ///< A wheel turns slower than the ground passes, or stands.
-  kSlipTurn = 1u << 4,      ///< The wheels' yaw rate contradicts the gyro.
-  kSlipSideways = 1u << 5,  ///< The robot slides sideways.
+  kSlipSpinning = 1u << 0,  ///< The wheels turn faster than the ground passes.
+  kSlipStalled = 1u << 1,   ///< The wheels turn slower than the ground passes, or stand.
+  kSlipBlocked = 1u << 2,   ///< The wheels turn, and the robot has stood for a second.
 };
 
 /// The estimated calibration of wheels and gyro relative to DriveTrain, with standard deviations.

@@ -10,11 +10,11 @@ namespace robot_control::tests {
 
 struct EstimatorSnapshotTest : EstimatorFixture {
   EstimatorSnapshotTest() { robot_.noise = {.gyro = 2.44e-4, .accelerometer = 2e-3, .counts = 4096}; }
-  /// The events are rest, drive, a wheel that spins, a gyro that is lost, and rest again.
+  /// The events are rest, drive, wheels that spin, a gyro that is lost, and rest again.
   void event(int cycle) {
     const bool moves = cycle > 1500 && cycle < 9000;
-    if (cycle == 5000) robot_.tread[0] = 1.2;
-    if (cycle == 5700) robot_.tread = {};
+    if (cycle == 5500) robot_.tread = {1.2, 1.2};
+    if (cycle == 6200) robot_.tread = {};
     if (cycle == 7000) robot_.frame().valid &= ~std::uint64_t{kValidGyro};
     if (cycle == 7400) robot_.frame().valid |= kValidGyro;
     robot_.drive(moves ? 0.4 : 0, moves ? 0.5 * std::sin(cycle * 1e-3) : 0);
@@ -40,7 +40,7 @@ TEST_F(EstimatorSnapshotTest, ARestoredEstimatorContinuesWithTheSameBits) {
 }
 
 TEST_F(EstimatorSnapshotTest, ANewRunIsThatOfANewEstimator) {
-  for (int cycle = 0; cycle < 5500; ++cycle) {
+  for (int cycle = 0; cycle < 6000; ++cycle) {
     event(cycle);
     observe();
   }

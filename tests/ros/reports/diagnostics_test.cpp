@@ -100,18 +100,19 @@ TEST_F(StateReport, GivesNoDeviationBeforeThereIsAState) {
 }
 
 TEST_F(StateReport, WarnsOfSlipInWordsAlsoOfAMoment) {
-  state_.wheeled.slip = kSlipLeft | kSlipSpinning;
-  EXPECT_THAT(report().message().message, HasSubstr("the left wheels do not roll; a wheel turns faster than the ground "
-                                                    "passes (reduce the acceleration)"));
-  EXPECT_EQ(value_of(report(), "slip"), "left spinning");
-  EXPECT_EQ(value_of(report(), "slip: spinning"), "a wheel turns faster than the ground passes");
+  state_.wheeled.slip = kSlipSpinning | kSlipBlocked;
+  EXPECT_THAT(report().message().message, HasSubstr("the wheels turn faster than the ground passes (reduce the "
+                                                    "acceleration); "
+                                                    "the wheels turn, but the robot stands"));
+  EXPECT_EQ(value_of(report(), "slip"), "spinning blocked");
+  EXPECT_EQ(value_of(report(), "slip: spinning"), "the wheels turn faster than the ground passes");
   EXPECT_EQ(value_of(report(), "slip remedy: spinning"), "reduce the acceleration");
-  EXPECT_EQ(value_of(report(), "slip remedy: left"), "(none)");
+  EXPECT_EQ(value_of(report(), "slip remedy: stalled"), "(none)");
   state_.wheeled.slip = 0;
-  EXPECT_EQ(report(kSlipSideways).message().level, static_cast<int>(diagnostic_msgs::DiagnosticStatus::WARN));
-  EXPECT_THAT(report(kSlipSideways).message().message, HasSubstr("the robot slides sideways"));
-  EXPECT_EQ(value_of(report(kSlipSideways), "slip"), "");
-  EXPECT_EQ(value_of(report(kSlipSideways), "slip_lately"), "sideways");
+  EXPECT_EQ(report(kSlipStalled).message().level, static_cast<int>(diagnostic_msgs::DiagnosticStatus::WARN));
+  EXPECT_THAT(report(kSlipStalled).message().message, HasSubstr("the wheels turn slower than the ground passes"));
+  EXPECT_EQ(value_of(report(kSlipStalled), "slip"), "");
+  EXPECT_EQ(value_of(report(kSlipStalled), "slip_lately"), "stalled");
 }
 
 TEST_F(StateReport, WarnsOfAPoseWhoseWheelsSlip) {

@@ -20,7 +20,7 @@ SCENE = (
 
 
 @pytest.mark.parametrize("seed", range(3))
-def test_wheels_that_spin_against_a_wall_for_five_seconds_hardly_move_the_path(seed):
+def test_wheels_that_spin_against_a_wall_for_five_seconds_are_named_and_widen_the_ellipse(seed):
     program = Program()
     program.stand(3.0)
     program.ramp(0.5, 0.0, 0.5)
@@ -32,5 +32,6 @@ def test_wheels_that_spin_against_a_wall_for_five_seconds_hardly_move_the_path(s
     truth, ours = truth_of(drive), estimate(drive)
     rolled = 0.1 * (drive.left[-1] - drive.left[0])
     assert rolled - truth.odom.x[-1] > 2.3, "raw"
-    assert np.hypot(ours.path.x[-1] - truth.odom.x[-1], ours.path.y[-1] - truth.odom.y[-1]) <= 0.3
+    off = ours.path.x[-1] - truth.odom.x[-1]
+    assert abs(off) <= 3 * np.sqrt(ours.pose_covariance[-1, 0, 0])
     assert ours.slip.any()

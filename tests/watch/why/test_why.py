@@ -509,11 +509,11 @@ def test_slip_is_shown_with_the_wheel_and_lost_sensors_by_what_is_left(driving):
         ESTIMATOR,
         flags="valid slip no_gyro",
         slip__left="the left wheels do not roll",
-        slip__spinning=("a wheel turns faster than the ground passes", "reduce the acceleration"),
+        slip__spinning=("the wheels turn faster than the ground passes", "reduce the acceleration"),
         estimate__no_gyro=("yaw is computed from the wheels only", "check the IMU"),
     )
     shown = text(facts)
-    assert "the left wheels do not roll; a wheel turns faster than the ground passes" in " ".join(shown.split())
+    assert "the left wheels do not roll; the wheels turn faster than the ground passes" in " ".join(shown.split())
     assert "yaw is computed from the wheels only" in shown
     assert "disagree" not in shown
 

@@ -30,6 +30,11 @@ Eigen::Vector2d Tilt::innovation(const Eigen::Vector2d& sum) const noexcept {
   return sum - (*up_).head<2>() - *bias_;
 }
 
+bool Tilt::contradicts(const Eigen::Vector2d& sum, double noise) const noexcept {
+  const Eigen::Array2d expected(variance(0) + noise, variance(1) + noise);
+  return (innovation(sum).array().square() > square(Tuning::kSignificant) * expected).any();
+}
+
 /// Applies a Kalman update by u + β, for one axis after the other.
 void Tilt::update(const Eigen::Vector2d& sum, double noise) noexcept {
   auto up = *up_;
@@ -68,10 +73,16 @@ void Tilt::age() noexcept {
   turned_ = time_ = 0;
 }
 
+/// The gyro was wrong, which does not change the bias.
+void Tilt::open(const Eigen::Vector2d& off) noexcept {
+  (*covariance_).diagonal().head<2>().array() += off.squaredNorm();
+}
+
 void Tilt::correct(double along, double across, double dt, double deviation) noexcept {
   age();
-  const Eigen::Vector2d sum = (*up_).head<2>() + *bias_ + Eigen::Vector2d(along, across) / kGravity;
-  update(sum, square(deviation / kGravity) * std::max(1.0, Tuning::kSlowTime / dt));
+  const Eigen::Vector2d off = Eigen::Vector2d(along, across) / kGravity, sum = (*up_).head<2>() + *bias_ + off;
+  const double noise = square(deviation / kGravity) * std::max(1.0, Tuning::kSlowTime / dt);
+  if (!contradicts(sum, noise)) update(sum, noise);
 }
 
 void Tilt::rest(const Vector3& force, double dt) noexcept {
@@ -80,12 +91,7 @@ void Tilt::rest(const Vector3& force, double dt) noexcept {
   age();
   const Eigen::Vector2d sum(force[0] / kGravity, force[1] / kGravity);
   const double noise = (square(params_.accelerometer) / dt + square(Tuning::kSlowAcceleration)) / square(kGravity);
-  const Eigen::Vector2d off = innovation(sum);
-  const Eigen::Vector2d bound =
-      square(Tuning::kSignificant) * Eigen::Vector2d(variance(0) + noise, variance(1) + noise);
-  if ((off.array().square() > bound.array()).any()) {
-    (*covariance_).diagonal().head<2>().array() += off.squaredNorm();
-  }
+  if (contradicts(sum, noise)) open(innovation(sum));
   update(sum, noise);
   vertical_ += std::min(1.0, dt) * (norm - kGravity - vertical_);
 }

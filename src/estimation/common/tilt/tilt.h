@@ -8,7 +8,8 @@
 /// gravity turns against the robot and the bias does not.
 ///
 /// A rest may contradict the tilt that the gyro measured since the last one by more than kSignificant deviations. Then
-/// the tilt is unknown. The bias keeps its variance, because a failing gyro does not change it.
+/// the tilt is unknown. The bias keeps its variance, because a failing gyro does not change it. A correction in motion
+/// that contradicts the tilt like that is not used, because any of the sensors may be wrong.
 ///
 /// The tilt walks by kSlowAcceleration/g, 2 mrad, per √s. It is bounded by kSteepest, because the robot stands on its
 /// wheels. The gyro's x and y count only after a first rest has shown their bias: a broken axis reads −31 °/s at rest.
@@ -62,7 +63,9 @@ class Tilt {
   using Covariance = Eigen::Matrix4d;
 
   void bound() noexcept;
+  void open(const Eigen::Vector2d& off) noexcept;
   void update(const Eigen::Vector2d& sum, double noise) noexcept;
+  bool contradicts(const Eigen::Vector2d& sum, double noise) const noexcept;
   Eigen::Vector2d innovation(const Eigen::Vector2d& sum) const noexcept;
   double variance(int axis) const noexcept;  ///< variance of u + β
 
