@@ -1,6 +1,6 @@
 """Each kind of fault of each sensor lasts 20 ms … 3 s, and leaves no error of speed and path after 20 s of rest.
 
-A gyro or accelerometer that fails in motion may leave a tilt: one rest shows its sum with the accelerometer's bias alone.
+A gyro or accelerometer that fails in motion may leave a tilt: one rest shows only its sum with the bias.
 
 One drive in lockstep is recorded, and its samples are spoiled afterwards. The controllers use no pose, so the sensors'
 data do not depend on the estimate. The reference is the same drive with healthy sensors.
