@@ -3,10 +3,10 @@
 
 usage: count_tests.py FOLDER…
 
-The skipped cases stand above it by name, one line per reason, and after them the failed ones. JUnit files of gtest, pytest and rosunit count case by
-case. CTest's own Test.xml counts a whole entry, and only if it failed without a failed case in a JUnit file of its
-name. That is a program that crashed, hung or never started. The exit code is 0 if and only if something passed and
-nothing failed.
+The skipped cases stand above it by name, one line per reason, and after them the failed ones. JUnit files of gtest,
+pytest and rosunit count case by case. CTest's own Test.xml counts a whole entry, and only if it failed without a failed
+case in a JUnit file of its name. That is a program that crashed, hung or never started. The exit code is 0 if and only
+if something passed and nothing failed.
 """
 
 import sys
