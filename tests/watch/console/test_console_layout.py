@@ -7,6 +7,7 @@ import time
 from pathlib import Path
 
 import pytest
+from matplotlib.image import imread
 from page_states import STATES
 
 from bench.console.browser import missing
@@ -237,6 +238,34 @@ def test_the_keys_alone_reach_everything_and_esc_is_the_stop(browser, served):
         ".filter((each) => each.offsetParent && each.tabIndex < 0 && !each.matches('#sheet')).map((each) => each.id)"
     )
     assert reached == []
+
+
+def test_a_robot_that_stands_is_drawn_once(browser, served):
+    robot = open_page(browser, served, "stopped", control=False)
+    robot.joints = {"left_wheel_joint": 0.0, "right_wheel_joint": 0.0}
+
+    def drawn(seconds):
+        time.sleep(1.5)
+        before = int(browser.data("pictures"))
+        time.sleep(seconds)
+        return int(browser.data("pictures")) - before
+
+    assert drawn(2.0) == 0
+    robot.pose = (0.002, 0.0, 0.1, 0.0, 0.0, 0.0)
+    wait_for("a new picture", lambda: drawn(0.0) == 0)
+    robot.joints = {}
+    assert drawn(2.0) > 4
+
+
+def test_the_one_picture_of_a_robot_that_stands_shows_its_joints_and_feet(browser, served, tmp_path):
+    open_page(browser, served, "legs", control=False)
+    time.sleep(1.5)
+    browser.picture(tmp_path / "drawn.png")
+    browser.run("import('/scene.js').then((module) => module.redraw())")
+    time.sleep(0.5)
+    browser.picture(tmp_path / "again.png")
+    drawn, again = (imread(tmp_path / f"{name}.png")[100:700, 120:950] for name in ("drawn", "again"))
+    assert abs(drawn - again).max() < 0.05
 
 
 def test_esc_closes_what_is_open_on_a_robot_at_rest_and_stops_one_that_moves(browser, served):

@@ -62,6 +62,7 @@ async function load(name) {
 
 on("slow", ({ navigation, goal }) => {
   pose = navigation.map ?? null;
+  if (pose || map.visible) redraw();
   map.visible = Boolean(pose);
   by("map-tools").hidden = !pose;
   by("no-map").hidden = Boolean(pose);

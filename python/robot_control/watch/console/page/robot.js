@@ -108,7 +108,6 @@ export async function build({ urdf, meshes }, say) {
   }
   for (const [name, link] of links) if (!children.has(name)) group.add(link);
   await Promise.all(pending);
-  group.traverse((part) => { part.castShadow = part.isMesh; });
   return { name: root.getAttribute("name") ?? "", group, joints, links, supports: supportsOf(links.values()) };
 }
 

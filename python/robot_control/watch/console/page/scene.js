@@ -2,7 +2,7 @@
 import * as THREE from "/lib/three/build/three.module.js";
 import { OrbitControls } from "/lib/three/examples/jsm/controls/OrbitControls.js";
 import { by, put } from "/dom.js";
-import { follow, haze, recolour, shadows, surroundings } from "/ground.js";
+import { cast, follow, haze, recolour, surroundings } from "/ground.js";
 import { on } from "/link.js";
 import { arcOf, ellipseOf, feet, fill, lay, marks, polyline, ribbon, ring } from "/marks.js";
 import { build, lowestOf, pose } from "/robot.js";
@@ -12,7 +12,9 @@ import { words } from "/words.js";
 const TRAIL = 1500, STEP = 0.05;        // points of the way driven; m between two of them
 const MAX_NOTES = 6;                    // of meshes that cannot be shown
 const FRAME = 50;                       // ms between two pictures
-const SLOW = 90, RESTING = 250;         // ms of a picture that is too slow; ms of rest, because driving comes first
+const SLOW = 1000 / 15, RESTING = 250;         // ms of a picture that is too slow; ms of rest, because driving comes first
+const VISIBLE = 0.001, LOAD = 5;        // m and rad, and N of a foot, that can be seen
+const ENOUGH = 1.2e6;                   // px of a picture where it has to be fast
 const SHARE = 0.46;                     // of the free part of the window that the robot takes
 const CHASE = { side: 0.55, height: 0.33 };  // rad beside and above the line behind the robot
 const SCALES = [0.05, 0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50], BAR = 56;  // m; px at least
@@ -23,9 +25,9 @@ export const scene = new THREE.Scene();
 const camera = new THREE.PerspectiveCamera(38, 1, 0.05, 300);
 camera.up.set(0, 0, 1);
 const controls = new OrbitControls(camera, canvas);
-let renderer = null, dirty = true, due = 0, began = 0, slow = 0, quality = 2, resting = false, blind = false, pictures = 0;
+let renderer = null, dirty = true, due = 0, began = 0, slow = 0, fine = true, resting = false, blind = false, pictures = 0;
 let robot = new THREE.Group(), joints = new Map(), links = new Map(), supports = [], radius = 0.4, trail = [];
-let at = { x: 0, y: 0, yaw: 0 }, mode = "chase", following = true, placed = false, scale = 1;
+let at = { x: 0, y: 0, yaw: 0 }, mode = "chase", following = true, placed = false, scale = 1, shown = "";
 
 const driven = ribbon("measured", TRAIL, { fades: true }), wanted = polyline("limited", 2000, true);
 const ellipse = polyline("lines", 65), truth = polyline("true", 66), drawn = polyline("goal", 1000);
@@ -74,6 +76,7 @@ function frameUp() {
   const [left, top, right, bottom] = free(), before = scale;
   camera.aspect = width / height;
   const x = Math.round((left + right - width) / 2), y = Math.round((top + bottom - height) / 2);
+  dirty ||= camera.view?.offsetX !== -x || camera.view.offsetY !== -y;
   camera.setViewOffset(width, height, -x, -y, width, height);
   const size = Math.max(80, Math.min(bottom - top, (right - left) * 0.9));
   scale = radius * height / (SHARE * size * Math.tan(camera.fov * Math.PI / 360));
@@ -166,6 +169,8 @@ async function load() {
   const box = new THREE.Box3().setFromObject(robot), size = box.getSize(new THREE.Vector3());
   radius = Number.isFinite(size.x) ? Math.max(0.15, Math.hypot(size.x, size.y, Math.min(size.z, size.x)) / 2) : 0.4;
   scene.add(robot);
+  cast(robot);
+  shown = "";
   stand();
   frameUp();
   look(mapped() ? "top" : mode);
@@ -182,7 +187,7 @@ function stand() {
   const bottom = lowestOf(supports);
   robot.position.z = Number.isFinite(bottom) ? -bottom : 0;
   robot.updateMatrixWorld(true);
-  follow(at.x, at.y, radius);
+  follow(at.x, at.y);
 }
 
 /** Foot → its place: the last link of the leg that bears its name. */
@@ -216,14 +221,25 @@ on("fast", (frame) => {
     fill(ellipse, ellipseOf(place, frame.covariance), 0.008);
   }
   stand();
-  lay(asks, place ? arcOf(place, frame.asked) : [], 0.002, 0.16 * radius);
-  lay(moves, place ? arcOf(place, frame.measured) : [], 0.003, 0.1 * radius);
+  const [request, motion] = [frame.asked, frame.measured].map((speeds) => place ? arcOf(place, speeds) : []);
+  lay(asks, request, 0.002, 0.16 * radius);
+  lay(moves, motion, 0.003, 0.1 * radius);
   const ahead = (far) => [at.x + far * radius * Math.cos(at.yaw), at.y + far * radius * Math.sin(at.yaw)];
   lay(nose, place ? [ahead(1.15), ahead(1.25)] : [], 0.004, 0.1 * radius);
   fill(truth, frame.truth ? ring(frame.truth, radius, radius, frame.truth[2]) : [], 0.01);
-  feet(frame.legs?.feet ?? [], footPlaces(frame.legs?.feet ?? []));
-  dirty = true;
+  const stands = frame.legs?.feet ?? [], deviations = frame.covariance?.map((each) => Math.sqrt(Math.abs(each)));
+  feet(stands, footPlaces(stands));
+  const loads = stands.map(({ bears, load }) => bears && Math.round(load / LOAD));
+  if (differs([frame.pose, frame.joints, request, motion, frame.truth, deviations, loads])) dirty = true;
 });
+
+/** True if these numbers are others than the last ones by what can be seen: a robot that stands needs no new picture. */
+function differs(numbers) {
+  const next = JSON.stringify(numbers, (_, value) => typeof value === "number" ? Math.round(value / VISIBLE) : value);
+  const before = shown;
+  shown = next;
+  return next !== before;
+}
 
 // pictures
 
@@ -232,9 +248,7 @@ function begin() {
   if (renderer || blind || !robot.children.length || !view.clientWidth) return;
   try {
     renderer = new THREE.WebGLRenderer({ canvas, antialias: !inSoftware() });
-    renderer.shadowMap.enabled = true;
-    renderer.shadowMap.type = THREE.PCFSoftShadowMap;
-    ease(quality);
+    resize();
     render();
   } catch {
     blind = true;
@@ -250,13 +264,11 @@ function inSoftware() {
   return /SwiftShader|llvmpipe|Software/i.test(name);
 }
 
-// The shadow, then fine pixels give way to the frame rate; at last the pictures rest.
-function ease(next) {
-  quality = next;
-  shadows(quality > 1);
-  renderer.setPixelRatio(quality > 0 ? Math.min(2, devicePixelRatio) : 1);
-  renderer.setSize(view.clientWidth, view.clientHeight, false);
-  document.body.dataset.quality = String(quality);
+// Fine pixels give way to the frame rate, down to ENOUGH of them; at last the pictures rest.
+function resize() {
+  const { clientWidth: width, clientHeight: height } = view, coarse = Math.min(1, Math.sqrt(ENOUGH / (width * height)));
+  renderer.setPixelRatio(fine ? Math.min(2, devicePixelRatio) : coarse);
+  renderer.setSize(width, height, false);
 }
 
 function render() {
@@ -266,13 +278,17 @@ function render() {
     const took = now - began;
     began = 0;
     slow = took > SLOW ? slow + 1 : Math.max(0, slow - 0.25);
-    resting = quality === 0 && slow > 8;
-    if (slow > 8 && quality > 0) { ease(quality - 1); slow = 0; }
+    resting = !fine && slow > 8;
+    if (slow > 8 && fine) {
+      fine = false;
+      slow = 0;
+      resize();
+    }
   }
   const size = renderer.getSize(new THREE.Vector2());
   const resized = width && (size.x !== width || size.y !== height);
   if (resized) {
-    renderer.setSize(width, height, false);
+    resize();
     frameUp();
     dirty = true;
   }
@@ -280,7 +296,7 @@ function render() {
   if (!dirty || !width || hidden || (now < due && !resized)) return;
   dirty = false;
   controls.update();
-  haze(scene.fog, camera.position.distanceTo(controls.target));
+  haze(scene.fog, camera, camera.position.distanceTo(controls.target));
   renderer.render(scene, camera);
   ++pictures;
   began = now;
