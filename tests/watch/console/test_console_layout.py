@@ -240,6 +240,22 @@ def test_the_keys_alone_reach_everything_and_esc_is_the_stop(browser, served):
     assert reached == []
 
 
+@pytest.mark.parametrize("tab", ["drive", "map"])
+def test_the_stick_shows_what_the_keys_hold_while_a_goal_is_driven(browser, served, tab):
+    open_page(browser, served, "navigation")
+    browser.tab(tab)
+    place = "const b = document.getElementById('stick').getBoundingClientRect(); return [b.x, b.y, b.width]"
+    x, y, width = browser.run(place)
+
+    def moved():
+        return [(now - then) / width for now, then in zip(browser.run(place), (x, y), strict=False)]
+
+    browser.key("KeyQ")
+    wait_for("a knob to the left, ahead", lambda: max(moved()) < -0.4)
+    browser.key("KeyQ", "keyUp")
+    wait_for("a knob in the middle", lambda: max(map(abs, moved())) < 0.02)
+
+
 def test_a_robot_that_stands_is_drawn_once(browser, served):
     robot = open_page(browser, served, "stopped", control=False)
     robot.joints = {"left_wheel_joint": 0.0, "right_wheel_joint": 0.0}

@@ -39,9 +39,20 @@ function held() {
   return pad();
 }
 
+/** The knobs show what is held, with whatever it is held. */
+function deflect([linear, angular, lateral]) {
+  const places = [[left, -(two() ? lateral : angular || lateral), -linear], [right, -angular, 0]];
+  for (const [{ knob }, x, y] of places) {
+    const length = Math.max(1, Math.hypot(x, y));
+    knob.style.setProperty("--x", x / length);
+    knob.style.setProperty("--y", y / length);
+  }
+}
+
 function report() {
   const motion = held(), [linear, angular, lateral] = (motion ?? [0, 0, 0]).map(clamp);
   isHeld = motion !== null;
+  deflect([linear, angular, lateral]);
   if (isHeld) released = "";
   document.body.dataset.held = String(isHeld && commands);
   const sent = performance.now() / 1000;
@@ -58,7 +69,6 @@ export function release() {
 
 function centre(one) {
   Object.assign(one, { pointer: null, x: 0, y: 0 });
-  one.knob.style.transform = "";
 }
 
 /** True if this page commands; else the page says what is missing. */
@@ -89,7 +99,10 @@ for (const one of sticks) {
     move(one, event);
     report();
   });
-  one.area.addEventListener("pointermove", (event) => move(one, event));
+  one.area.addEventListener("pointermove", (event) => {
+    move(one, event);
+    if (event.pointerId === one.pointer) deflect(held());
+  });
   for (const end of ["pointerup", "pointercancel", "lostpointercapture"]) {
     one.area.addEventListener(end, (event) => {
       if (event.pointerId !== one.pointer) return;
@@ -103,10 +116,9 @@ function move(one, event) {
   if (event.pointerId !== one.pointer) return;
   const box = one.area.getBoundingClientRect(), radius = box.width / 2;
   const x = (event.clientX - box.left) / radius - 1, y = (event.clientY - box.top) / radius - 1;
-  const length = Math.max(1, Math.hypot(x, y)), reach = 0.6 * radius;
+  const length = Math.max(1, Math.hypot(x, y));
   const sideways = event.shiftKey || by("sideways").checked;
   Object.assign(one, { x: x / length, y: y / length, sideways });
-  one.knob.style.transform = `translate(${one.x * reach}px, ${one.y * reach}px)`;
 }
 
 for (const end of ["keyup", "pointerup"]) addEventListener(end, () => { released = ""; });
