@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import os
 import time
 from pathlib import Path
@@ -240,6 +241,49 @@ def test_the_keys_alone_reach_everything_and_esc_is_the_stop(browser, served):
     assert reached == []
 
 
+def view_of(browser):
+    """Heading of the view, rad; height over width of a square on the ground; pixels of a metre on the ground."""
+    centre, ahead, left = (browser.pixel(x, y) for x, y in ((0.0, 0.0), (0.1, 0.0), (0.0, 0.1)))
+    (ax, ay), (lx, ly) = ((10 * (x - centre[0]), 10 * (y - centre[1])) for x, y in (ahead, left))
+    metre = math.sqrt(ax * ax + lx * lx)  # across the picture nothing is shortened
+    return math.atan2(-lx, ax), math.sqrt(ay * ay + ly * ly) / metre, metre
+
+
+def pressed(browser, key, code):
+    """The view after a press of this key."""
+    browser.run(
+        "const [key, code] = arguments;"
+        "document.body.dispatchEvent(new KeyboardEvent('keydown', {key, code, bubbles: true}))",
+        key,
+        code,
+    )
+    return view_of(browser)
+
+
+def test_the_keys_turn_tilt_and_zoom_the_view_and_the_help_says_which(browser, served):
+    robot = open_page(browser, served, "wheels", control=False)
+    robot.pose = (0.0, 0.0, 0.1, 0.0, 0.0, 0.0)
+    time.sleep(0.3)
+    before = view_of(browser)
+    for key, code, which, sign in (
+        (",", "Comma", 0, 1),
+        (".", "Period", 0, -1),
+        ("PageUp", "PageUp", 1, 1),
+        ("PageDown", "PageDown", 1, -1),
+        ("+", "BracketRight", 2, 1),
+        ("-", "Slash", 2, -1),
+    ):
+        after = pressed(browser, key, code)
+        assert sign * (after[which] - before[which]) > 0.02 * (1 if which == 0 else before[which]), key
+        before = after
+    for _ in range(60):
+        after = pressed(browser, "PageDown", "PageDown")
+    assert after[1] > 0.0, "the view stays above the ground"
+    browser.click("help-open")
+    terms = browser.run("return [...document.querySelectorAll('#help dt')].map((each) => each.textContent)")
+    assert {", .", "PageUp, PageDown", "+ -"} <= set(terms)
+
+
 @pytest.mark.parametrize("tab", ["drive", "map"])
 def test_the_stick_shows_what_the_keys_hold_while_a_goal_is_driven(browser, served, tab):
     open_page(browser, served, "navigation")
@@ -317,3 +361,5 @@ def test_the_labels_are_there_in_chinese(browser, served):
     wait_for("Chinese", lambda: "急停" in browser.text("e-stop"))
     wait_for("the state", lambda: browser.text("state") == "运动中")
     assert "跟随" in browser.text("look")
+    browser.click("help-open")
+    assert "旋转视角" in browser.text("help")

@@ -9,6 +9,7 @@ const KEYS = [
   ["j l, Shift", "sideways, on legs"],
   ["Space", "let go"],
   ["Esc", "emergency stop; at rest it first closes what is open"],
+  [", .", "turn the view"], ["PageUp, PageDown", "tilt the view"], ["+ -", "enlarge or reduce the view"],
   ["1 2 3 4 5", "Drive, Map, Plots, Logs, Setup"],
   ["?", "this help"],
 ];

@@ -5,6 +5,7 @@ import { by, put } from "/dom.js";
 import { cast, follow, haze, recolour, surroundings } from "/ground.js";
 import { on } from "/link.js";
 import { arcOf, ellipseOf, feet, fill, lay, marks, polyline, ribbon, ring } from "/marks.js";
+import { orbit } from "/orbit.js";
 import { build, lowestOf, pose } from "/robot.js";
 import { onTab, tab } from "/tabs.js";
 import { words } from "/words.js";
@@ -18,6 +19,7 @@ const ENOUGH = 1.2e6;                   // px of a picture where it has to be fa
 const SHARE = 0.46;                     // of the free part of the window that the robot takes
 const CHASE = { side: 0.55, height: 0.33 };  // rad beside and above the line behind the robot
 const SCALES = [0.05, 0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50], BAR = 56;  // m; px at least
+const NEAREST = 0.2, FARTHEST = 100;    // m of the camera from what it looks at
 const COVERED = ["plots", "logs", "setup"];  // parts that lie over the whole stage
 const view = by("view"), canvas = by("scene"), notes = new Set();
 const calm = matchMedia("(prefers-reduced-motion: reduce)"), scheme = matchMedia("(prefers-color-scheme: dark)");
@@ -114,6 +116,13 @@ onTab((name) => {
   look(flat ? "top" : "chase");
 });
 canvas.addEventListener("pointerdown", () => { if (mapped()) following = false; });
+addEventListener("keydown", (event) => {
+  const scrolls = event.code.startsWith("Page") ? ", #side, #sheet, #why, #help" : "";
+  const other = event.ctrlKey || event.altKey || event.metaKey || event.target.closest?.(`input, textarea, select${scrolls}`);
+  if (other || COVERED.includes(tab()) || !orbit(controls, event)) return;
+  event.preventDefault();
+  dirty = true;
+});
 
 function carry(x, y, yaw) {
   const turned = Math.atan2(Math.sin(yaw - at.yaw), Math.cos(yaw - at.yaw)), moved = new THREE.Vector3(x - at.x, y - at.y, 0);
@@ -347,6 +356,7 @@ canvas.addEventListener("pointerup", (event) => { if (event.pointerId === finger
 addEventListener("keydown", ({ code }) => { if (code === "Escape" && finish) end([]); });
 
 controls.maxPolarAngle = 0.49 * Math.PI;
+Object.assign(controls, { minDistance: NEAREST, maxDistance: FARTHEST });
 controls.addEventListener("change", () => { dirty = true; });
 camera.position.set(-1.3, -1.3, 1.2);
 scene.add(...surroundings, marks, robot);
