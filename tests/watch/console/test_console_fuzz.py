@@ -108,6 +108,22 @@ def test_wrong_links_block_no_first_login_of_another_link(monkeypatch, tmp_path)
     assert asyncio.run(whole()) == [403] * 6 + [200]
 
 
+def test_guesses_that_wait_for_their_turn_to_be_hashed_count_as_tries(monkeypatch, tmp_path):
+    known = users.Users(tmp_path / "users.json")
+    known.add("anna", authority.Role.WATCH, time.time())
+
+    async def status(client, number):
+        guess = json.dumps({"name": "anna", "link": "", "password": f"wrong guess {number}"})
+        async with client.post("/api/login", data=guess, headers=HEADERS) as answer:
+            return answer.status
+
+    async def at_once():
+        async with served(monkeypatch, known) as client:
+            return await asyncio.gather(*(status(client, number) for number in range(30)))
+
+    assert sorted(asyncio.run(at_once())) == [403] * sessions.TRIES_OF_USER + [429] * (30 - sessions.TRIES_OF_USER)
+
+
 def test_no_body_of_a_login_surprises_the_server(monkeypatch, tmp_path):
     surprises = surprises_of(monkeypatch)
     known = users.Users(tmp_path / "users.json")
