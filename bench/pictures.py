@@ -1,4 +1,4 @@
-"""The film and the plot of README, or the console's, made of the programs as they are: scripts/pictures."""
+"""The pictures of README, of the console or of legs, made of the programs as they are: scripts/pictures."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 import matplotlib.image
@@ -18,11 +18,11 @@ import rosgraph
 import rospy
 from geometry_msgs.msg import PoseStamped, Quaternion
 from nav_msgs.msg import OccupancyGrid, Odometry
+from robot_control import ClosedLoop
 from robot_control.data.demo.main import run_demo
-from robot_control.data.render.main import Film, arguments, model_of
+from robot_control.data.render.main import Film, arguments, scene_of
 from robot_control.data.render.mujoco import make_current
 from robot_control.data.render.run import read_moments
-from robot_control.data.render.scene import Scene
 from robot_control.robot.pose import Pose, pose_of, turned
 from robot_control.ui.child import Child, children
 from robot_control.ui.program import run
@@ -33,8 +33,8 @@ from bench.console.process import Console, wait_for
 from bench.gif import write_gif
 
 DOCS = Path(__file__).resolve().parents[1] / "docs"
-SIZE = (720, 406)
-"""px of the film"""
+SIZE, LEGS_SIZE = (720, 406), (360, 202)
+"""px of README's film, and of that of legs"""
 RATE, PAGE_RATE, COLOURS = 10, 5, 48
 """pictures per second of the film, and of the page in it, and its colours"""
 WALK = slice(2.5, 9.5)
@@ -47,18 +47,39 @@ LIMIT, PATIENCE = 120.0, 5.0
 """s for a goal; s without motion after which it is sent again"""
 
 
-def walk(folder: Path) -> Iterator[Path]:
-    """Pictures of quadbot that stands up and walks, in the demo's run."""
-    run_demo(6.0, folder / "demo", "quadbot")
-    given = [str(folder / "demo" / "run.bag"), "--urdf", "urdf/quadbot.urdf", "--size", f"{SIZE[0]}x{SIZE[1]}"]
-    options = arguments([*given, "--distance", "1.6"])
-    moments = [each for each in read_moments(options.run, 1 / RATE) if WALK.start <= each.time <= WALK.stop]
+def drawn(run: Path, span: slice) -> Iterator[Path]:
+    """Pictures of quadbot in these seconds of a log, beside it."""
+    options = arguments(
+        [str(run), "--urdf", "urdf/quadbot.urdf", "--size", f"{SIZE[0]}x{SIZE[1]}", "--distance", "1.6"]
+    )
+    moments = [each for each in read_moments(run, 1 / RATE) if span.start <= each.time <= span.stop]
     make_current()
-    film = Film(Scene(model_of(options)), moments, options)
+    film = Film(scene_of(options), moments, options)
     for number, picture in enumerate(film.pictures()):
-        path = folder / f"walk_{number:03}.png"
+        path = run.parent / f"walk_{number:03}.png"
         matplotlib.image.imsave(path, picture)
         yield path
+
+
+def walk(folder: Path) -> Iterator[Path]:
+    """Pictures of quadbot that stands up and walks, in the demo's run."""
+    run_demo(6.0, folder, "quadbot")
+    return drawn(folder / "run.bag", WALK)
+
+
+def legs(folder: Path) -> Iterator[Path]:
+    """Pictures of quadbot that stands up, walks, halts and lies down."""
+    loop = ClosedLoop(urdf="urdf/quadbot.urdf")
+    loop.log_into(folder)
+    loop.run(0.5)
+    loop.set_posture("standing")
+    loop.run(2.5)
+    loop.run(4.5, (0.4, 0.3))
+    loop.run(1.5)
+    loop.set_posture("lying")
+    loop.run(2.0)
+    loop.end_log()
+    return drawn(folder / "run.bag", slice(0.0, 11.0))
 
 
 def mapping(folder: Path) -> Iterator[Path]:
@@ -118,7 +139,9 @@ def draw_plot(folder: Path, path: Path) -> None:
 def main() -> int:
     """Entry point of scripts/pictures."""
     parser = argparse.ArgumentParser(prog="scripts/pictures", description=__doc__)
-    parser.add_argument("what", nargs="?", choices=("readme", "console"), default="readme", help="default readme")
+    parser.add_argument(
+        "what", nargs="?", choices=("readme", "console", "legs"), default="readme", help="default readme"
+    )
     parser.add_argument("--out", type=Path, default=DOCS, help="folder (default docs)")
     given = parser.parse_args()
     if missing():
@@ -130,12 +153,19 @@ def main() -> int:
         os.environ["ROS_HOME"] = str(folder / "ros")
         if given.what == "console":
             return console_pictures(given.out, folder)
+        if given.what == "legs":
+            film = given.out / "quadbot_walk.gif"
+            return finish(film, [*legs(folder)], [(folder / "walk_%03d.png", RATE)], LEGS_SIZE)
         draw_plot(folder, given.out / "first_plot.png")
-        pictures = [*walk(folder), *mapping(folder)]
-        parts = [(folder / "walk_%03d.png", RATE), (folder / "page_%03d.png", PAGE_RATE)]
-        write_gif(given.out / "film.gif", parts, RATE, SIZE, COLOURS)
-    size = (given.out / "film.gif").stat().st_size
-    print(f"wrote {given.out / 'film.gif'}: {len(pictures)} pictures, {size / 1e6:.1f} MB")
+        pictures = [*walk(folder / "demo"), *mapping(folder)]
+        parts = [(folder / "demo" / "walk_%03d.png", RATE), (folder / "page_%03d.png", PAGE_RATE)]
+        return finish(given.out / "film.gif", pictures, parts, SIZE)
+
+
+def finish(film: Path, pictures: list[Path], parts: Sequence[tuple[Path, int]], size: tuple[int, int]) -> int:
+    """Writes a film; the exit code."""
+    write_gif(film, parts, RATE, size, COLOURS)
+    print(f"wrote {film}: {len(pictures)} pictures, {film.stat().st_size / 1e6:.1f} MB")
     return 0
 
 

@@ -12,9 +12,9 @@ import matplotlib.image
 import numpy as np
 import pytest
 from robot_control import ClosedLoop
-from robot_control.data.render.main import main
+from robot_control.data.render.main import arguments, main, scene_of
 from robot_control.data.render.run import moments_of, read_moments
-from robot_control.data.render.scene import Scene
+from robot_control.data.render.scene import UNCOLOURED, Scene, colours_of
 from robot_control.data.run_log import LogError
 
 ROOT = Path(__file__).parents[3]
@@ -22,7 +22,7 @@ MUST_RUN = bool(os.environ.get("CI") and os.environ.get("ROBOT_CONTROL_NIGHTLY")
 needs_egl = pytest.mark.skipif(
     ctypes.util.find_library("EGL") is None and not MUST_RUN, reason="libegl1 is not installed: scripts/setup --render"
 )
-ORANGE = (255, 153, 25)
+BLUE = (26, 99, 219)
 """of the path driven"""
 COLUMNS = "run,cycle,time,truth_x,truth_y,truth_yaw,truth_tilt,estimate_x,estimate_y,estimate_yaw,estimate_z"
 MJCF = """<mujoco><worldbody><geom name="floor" type="plane" size="9 9 1"/><light pos="0 0 4"/>
@@ -94,13 +94,48 @@ def test_keyframes_hold_the_joints_in_the_models_order_and_the_pose_by_the_start
     columns = COLUMNS + ",left_position"
     rows = [(1, 0, 0.0, 2.0, 0.0, 0.0, 0.0, 0, 0, 0, 0, 0.3)]
     moments = moments_of(log_of(rows, columns), 0.04)
-    model = ET.fromstring(Scene(MJCF).written(moments, 640, 360))
+    model = ET.fromstring(Scene(MJCF, {}).written(moments, 640, 360))
     (key,) = model.findall("keyframe/key")
     half = math.sqrt(0.5)
     expected = [0.0, 1.0, 2.0, 0.1, half, 0.0, 0.0, half, 0.3]  # door; 2 m ahead of a start towards y; wheel
     assert [float(number) for number in key.get("qpos").split()] == pytest.approx(expected, abs=1e-5)
     wheel = model.find(".//geom[@name='robot_control/wheel/0']")
     assert (wheel.get("type"), wheel.get("size")) == ("cylinder", "0.1 0.02")
+
+
+def test_a_robot_has_the_colours_of_its_urdf():
+    urdf = """<robot name="r"><material name="red"><color rgba="1 0 0 1"/></material>
+    <link name="base"><visual><material name="red"/></visual></link>
+    <link name="top"><visual><material name="own"><color rgba="0 1 0 1"/></material></visual></link>
+    <link name="wheel"><visual><material name="red"><color rgba="0 0 1 1"/></material></visual></link>
+    <link name="bare"><visual/></link></robot>"""
+    shapes = "".join(
+        f'<geom name="robot_control/shape/{i}/{link}" size="0.2"/>' for i, link in enumerate(("top", "bare"))
+    )
+    moments = moments_of(log_of(straight(0.1)), 0.04)
+    text = Scene(MJCF.replace('<geom size="0.2"/>', f'<geom size="0.2"/>{shapes}'), colours_of(urdf)).written(
+        moments, 640, 360
+    )
+    found = {geom.get("name"): geom.get("rgba") for geom in ET.fromstring(text).iter("geom")}
+    assert found["robot_control/shape/0/top"] == "0 1 0 1"
+    assert found["robot_control/shape/1/bare"] == UNCOLOURED
+    assert found["robot_control/wheel/0"] == "0 0 1 1"
+
+
+@pytest.mark.parametrize(("robot", "links"), [("diffbot", 3), ("quadbot", 17)])
+def test_each_link_that_the_simulation_collides_has_the_colour_of_its_urdf(tmp_path, robot, links):
+    loop = ClosedLoop(urdf=str(ROOT / "urdf" / f"{robot}.urdf"))
+    loop.log_into(tmp_path)
+    loop.run(0.2)
+    loop.end_log()
+    options = arguments([str(tmp_path / "run.bag"), "--urdf", str(ROOT / "urdf" / f"{robot}.urdf")])
+    text = scene_of(options).written(read_moments(options.run, 0.1), 640, 360)
+    shapes = [
+        geom for geom in ET.fromstring(text).iter("geom") if (geom.get("name") or "").startswith("robot_control/")
+    ]
+    assert len(shapes) >= links
+    assert all(geom.get("rgba") != UNCOLOURED for geom in shapes)
+    assert len({geom.get("rgba") for geom in shapes}) >= 2
 
 
 def test_an_unknown_scene_and_a_wrong_size_end_with_a_message(tmp_path, capsys):
@@ -120,8 +155,8 @@ def test_pictures_show_the_robot_in_the_middle_and_its_path(tmp_path):
         picture = (255 * matplotlib.image.imread(tmp_path / "out" / f"render_{number}.png")[..., :3]).astype(int)
         assert picture.shape == (180, 320, 3)
         middle = picture[70:110, 130:190].reshape(-1, 3)
-        assert (middle[:, 2] > middle[:, 0] + 20).mean() > 0.3  # the blue body
-        assert (np.abs(picture - ORANGE).max(axis=2) < 80).sum() > 30
+        assert (middle[:, 0] > middle[:, 2] + 60).mean() > 0.3  # the amber body
+        assert (np.abs(picture - BLUE).max(axis=2) < 80).sum() > 30
     video = tmp_path / "out" / "render.mp4"
     if shutil.which("ffmpeg") is None:
         assert not MUST_RUN

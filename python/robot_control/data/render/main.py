@@ -12,8 +12,8 @@ import matplotlib.image
 from robot_control import _robot_control
 from robot_control.data.render.mujoco import Camera, Picture, Renderer, make_current
 from robot_control.data.render.run import Moment, read_moments
-from robot_control.data.render.scene import Scene
-from robot_control.files.files import given_path, one_message, printable
+from robot_control.data.render.scene import Scene, colours_of
+from robot_control.files.files import given_path, one_message, printable, utf8
 from robot_control.installed_files import share_file
 from robot_control.loop.roles import DRIVER
 from robot_control.robot.send_plan import positive
@@ -30,8 +30,8 @@ MAX_PIXELS = 4096
 """pixels"""
 
 
-def model_of(given: argparse.Namespace) -> str:
-    """The MJCF that the simulation uses for this robot in this scene."""
+def scene_of(given: argparse.Namespace) -> Scene:
+    """The model that the simulation uses for this robot in this scene, in the colours of the robot in the log."""
     path = share_file(DEFAULTS) if given.params is None else str(given.params)
     values = []
     if given.urdf is not None:
@@ -40,7 +40,8 @@ def model_of(given: argparse.Namespace) -> str:
         known = not {"/", "."} & set(given.scene)
         scene = share_file(f"urdf/scenes/{given.scene}.xml") if known else str(Path(given.scene).resolve())
         values.append((f"{DRIVER}.scene", scene))
-    return _robot_control.mjcf(path, values)
+    urdf = str(_robot_control.read_run_header(utf8(given.run))["urdf"])
+    return Scene(_robot_control.mjcf(path, values), colours_of(urdf))
 
 
 class Film:
@@ -115,8 +116,8 @@ def main(given: list[str] | None = None) -> None:
     """Entry point."""
     options = arguments(given)
     out = options.out or options.run.parent
-    scene = Scene(model_of(options))
     moments = read_moments(options.run, 1 / FRAMES_PER_SECOND)
+    scene = scene_of(options)
     out.mkdir(parents=True, exist_ok=True)
     make_current()
     film = Film(scene, moments, options)

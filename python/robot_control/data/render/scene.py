@@ -1,8 +1,9 @@
 """The model that is simulated, made to be looked at: colours, light, the path driven, a keyframe per picture. Pure."""
 
 import math
+import re
 import xml.etree.ElementTree as ET
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from itertools import pairwise
 
@@ -16,9 +17,11 @@ STEP = 0.05
 MAX_POINTS = 1500
 DEGREES_OF_FREEDOM = {"free": 7, "ball": 4, "slide": 1, "hinge": 1}
 """numbers in qpos per type of joint"""
-BODY, RUBBER, MARK = "0.30 0.45 0.62 1", "0.12 0.12 0.13 1", "0.85 0.86 0.88 1"
-THING, PATH = "0.72 0.55 0.36 1", "1 0.6 0.1 1"
-"""colours: red, green, blue, opacity"""
+UNCOLOURED, MARK = "0.6 0.65 0.7 1", "0.85 0.86 0.88 1"
+THING, PATH = "0.72 0.55 0.36 1", "0.10 0.39 0.86 1"
+"""colours: red, green, blue, opacity; the first one of a link without material, as in the console"""
+SHAPE = re.compile("robot_control/shape/[0-9]+/(.+)")
+"""name of a shape, which holds that of its link"""
 UNTOUCHABLE = {"contype": "0", "conaffinity": "0"}
 HIDDEN = "5"
 """group of shapes that are not drawn"""
@@ -26,11 +29,27 @@ HIDDEN = "5"
 Vector = tuple[float, float, float]
 
 
-class Scene:
-    """An MJCF text of robot and world (exported_mjcf), to which pictures are added."""
+def colours_of(urdf: str) -> dict[str, str]:
+    """Link → colour of the material of its first shape that is seen, by the rules of URDF."""
+    robot = ET.fromstring(urdf)
+    named = {each.get("name"): each.find("color") for each in robot.iterfind("material")}
+    colours = {}
+    for link in robot.iterfind("link"):
+        material = link.find("visual/material")
+        if material is None:
+            continue
+        own = material.find("color")
+        colour = named.get(material.get("name")) if own is None else own
+        if colour is not None:
+            colours[link.get("name", "")] = colour.get("rgba", UNCOLOURED)
+    return colours
 
-    def __init__(self, mjcf: str) -> None:
-        self._root = ET.fromstring(mjcf)
+
+class Scene:
+    """An MJCF text of robot and world (exported_mjcf), to which pictures are added; `colours`: of colours_of."""
+
+    def __init__(self, mjcf: str, colours: Mapping[str, str]) -> None:
+        self._root, self._colours = ET.fromstring(mjcf), colours
         world = self._root.find("worldbody")
         robots = [body for body in self._root.iter("body") if body.find("joint[@type='free']") is not None]
         if world is None or not robots:
@@ -114,10 +133,11 @@ class Scene:
             site.set("group", HIDDEN)
         for body in self._robot.iter("body"):
             for geom in body.findall("geom"):
-                if (geom.get("name") or "").startswith("robot_control/wheel/"):
+                name = geom.get("name") or ""
+                shape = SHAPE.fullmatch(name)
+                geom.set("rgba", self._colours.get(shape[1] if shape else body.get("name", ""), UNCOLOURED))
+                if name.startswith("robot_control/wheel/"):
                     _make_wheel(body, geom)
-                else:
-                    geom.set("rgba", BODY)
 
     def _add_path(self, moments: Sequence[Moment]) -> None:
         ground = self._ground()
@@ -146,7 +166,6 @@ class Scene:
 
 def _make_wheel(body: ET.Element, geom: ET.Element) -> None:
     """Draws a wheel, which is simulated as an ellipsoid, as a cylinder with a mark that shows its turning."""
-    geom.set("rgba", RUBBER)
     sizes = _numbers(geom.get("size"), (0.0,))
     if geom.get("type") != "ellipsoid" or len(sizes) != 3 or abs(sizes[0] - sizes[1]) > 1e-9:
         return

@@ -175,7 +175,8 @@ class Writer {
         mesh = "robot_control/mesh/" + std::to_string(meshes_++);
         assets_ += mjcf_mesh(mesh, shape.points);
       }
-      bodies_ += mjcf_shape(shape, mesh, model_.wheels.empty() ? Grip::kGround : Grip::kNone, parameters_);
+      const std::string name = "robot_control/shape/" + std::to_string(shapes_++) + '/' + escaped(shape.link);
+      bodies_ += mjcf_shape(name, shape, mesh, model_.wheels.empty() ? Grip::kGround : Grip::kNone, parameters_);
     }
   }
 
@@ -184,7 +185,7 @@ class Writer {
   const RigidBodies posed_;
   const bool at_rest_;
   const MujocoPlantParameters& parameters_;
-  std::size_t meshes_ = 0;
+  std::size_t meshes_ = 0, shapes_ = 0;
   std::string assets_, bodies_, equalities_;
 };
 

@@ -6,8 +6,9 @@
 ///
 /// Shapes: a drive wheel or a caster's rolling wheel is one ellipsoid (radius, radius, half its width) about its axle,
 /// whatever its body's shapes are. On planes it rolls without the scrub of a cylinder on two edges. All other shapes
-/// are kept; a mesh becomes the hull of its corners. A hull flatter than 1 mm is thickened to 1 mm, because MuJoCo
-/// refuses its volume. The robot's shapes do not collide with each other, as in URDF.
+/// are kept, with the name of their link in theirs: "robot_control/shape/NUMBER/LINK". A mesh becomes the hull of its
+/// corners. A hull flatter than 1 mm is thickened to 1 mm, because MuJoCo refuses its volume. The robot's shapes do not
+/// collide with each other, as in URDF.
 ///
 /// Contacts are hard; these values were measured not to creep: `solref .004 1`, `solimp .99 .999 .001`. On a robot with
 /// drive wheels all other shapes are frictionless (condim 1, enforced by `priority 1`), so that casters and chassis

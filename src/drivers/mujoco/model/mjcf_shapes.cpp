@@ -72,10 +72,10 @@ std::string mjcf_pose(const Eigen::Isometry3d& frame) {
          mjcf_numbers(q.vec()) + '"';
 }
 
-std::string mjcf_shape(const Shape& shape, const std::string& mesh, Grip grip,
+std::string mjcf_shape(const std::string& name, const Shape& shape, const std::string& mesh, Grip grip,
                        const MujocoPlantParameters& parameters) {
-  std::string geom =
-      "<geom" + mjcf_pose(shape.in_body) + kContact + (grip == Grip::kNone ? kSliding : standing(parameters));
+  std::string geom = "<geom name=\"" + name + '"' + mjcf_pose(shape.in_body) + kContact +
+                     (grip == Grip::kNone ? kSliding : standing(parameters));
   switch (shape.type) {
     case ShapeType::kSphere:
       geom += " type=\"sphere\" size=\"" + mjcf_number(shape.radius);

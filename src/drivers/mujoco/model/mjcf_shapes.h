@@ -21,7 +21,8 @@ std::string mjcf_pose(const Eigen::Isometry3d& frame);
 /// Returns `<geom …/>` of a shape that is no wheel; `mesh` names its asset. It slides without friction, or has the
 /// ground's.
 enum class Grip { kNone, kGround };
-std::string mjcf_shape(const Shape& shape, const std::string& mesh, Grip grip, const MujocoPlantParameters& parameters);
+std::string mjcf_shape(const std::string& name, const Shape& shape, const std::string& mesh, Grip grip,
+                       const MujocoPlantParameters& parameters);
 
 /// Returns `<geom …/>` of a drive wheel or caster; the z axis of `frame` is the axle.
 std::string mjcf_rolling_shape(const std::string& name, const Eigen::Isometry3d& frame, const TrueWheel& wheel,
