@@ -143,6 +143,7 @@ TEST_F(Columns, ShowHowARobotOnLegsWalks) {
   controller.command.legged = {.phase = LegPhase::kWalking, .gait = 1, .gait_phase = 0.25};
   controller.command.contact_schedule = {0, 0.5, 0, 0.75};
   estimator.state.contacts[1].probability = 0.9;
+  estimator.state.contacts[1].load = 60;
   EXPECT_EQ(value("requested_lateral"), 0.2);
   EXPECT_EQ(value("limited_lateral"), 0.1);
   EXPECT_EQ(value("legged_phase"), 6);
@@ -151,6 +152,7 @@ TEST_F(Columns, ShowHowARobotOnLegsWalks) {
   EXPECT_EQ(value("front_right_stance"), 0.5);
   EXPECT_EQ(value("rear_right_stance"), 0.75);
   EXPECT_EQ(value(kContactLinks[1] + "_estimate_contact_probability"), 0.9);
+  EXPECT_EQ(value(kContactLinks[1] + "_estimate_contact_load"), 60);
 }
 
 TEST_F(Columns, TellWhatTheControllerWasSetTo) {

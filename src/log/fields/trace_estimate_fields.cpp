@@ -48,7 +48,8 @@ void add_estimate(TraceFields& to) {
       .shown_per_contact();
   list<E, f32, kMaxContacts>(to, "estimate_contact_slip", "m/s, over the ground, along the wheel", kContacts,
                              ELEMENT(state.contacts[i].slip));
-  list<E, f32, kMaxContacts>(to, "estimate_contact_load", "N, upwards", kContacts, ELEMENT(state.contacts[i].load));
+  list<E, f32, kMaxContacts>(to, "estimate_contact_load", "N, upwards", kContacts, ELEMENT(state.contacts[i].load))
+      .shown_per_contact();
   field<E, f64>(to, "estimate_distance", "m travelled in this run", MEMBER(state.base.distance)).shown();
   field<E, f64>(to, "wheel_odom_x", "m, the wheels alone by the model's numbers", MEMBER(state.wheeled.odometry.x))
       .shown();

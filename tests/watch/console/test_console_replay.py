@@ -4,14 +4,24 @@ from __future__ import annotations
 
 import asyncio
 import json
+import math
 import threading
 import time
+from pathlib import Path
 
 import pytest
+import rosbag
+import rospy
+from geometry_msgs.msg import TransformStamped
+from nav_msgs.msg import OccupancyGrid
 from robot_control import ClosedLoop
-from robot_control.data.run_log import LogError
+from robot_control.data.footfalls import FEET
+from robot_control.data.report.drive import mass_of
+from robot_control.data.run_log import LogError, read_run
+from robot_control.watch.console.navigation import NoGridError
 from robot_control.watch.console.replay.playback import Playback
 from robot_control.watch.console.settings import Settings
+from tf2_msgs.msg import TFMessage
 
 pytest.importorskip("aiohttp")
 
@@ -86,10 +96,7 @@ def served(bag):
 
     threading.Thread(target=lambda: asyncio.run(work()), daemon=True).start()
     assert there.wait(20.0)
-    end = time.monotonic() + 30.0
-    while "read" in found["replay"].slow()["replay"]["loading"]:
-        assert time.monotonic() < end
-        time.sleep(0.05)
+    read_whole(found["replay"])
     return found
 
 
@@ -122,6 +129,80 @@ def test_a_stop_is_a_mark_with_its_cause_and_can_be_looked_at(served):
     state = replay.slow()
     assert state["verdict"] == "stopped"
     assert state["safety"]["causes"][0]["sentence"] == mark["sentence"]
+
+
+def read_whole(replay):
+    """The recording, once its rows are there."""
+    end = time.monotonic() + 30.0
+    while "read" in replay.slow()["replay"]["loading"]:
+        assert time.monotonic() < end
+        time.sleep(0.05)
+    return replay
+
+
+def test_the_feet_of_a_recording_bear_the_weight_of_the_robot(tmp_path):
+    from robot_control.watch.console.replay.replay import Replay
+
+    urdf = str(Path(__file__).parents[3] / "urdf" / "quadbot.urdf")
+    loop = ClosedLoop(urdf=urdf)
+    loop.log_into(tmp_path)
+    loop.run(0.5)
+    loop.set_posture("standing")
+    loop.run(3.5)
+    loop.end_log()
+    replay = read_whole(Replay(tmp_path / "run.bag", Settings()))
+    replay.play(0.3, 0.0)
+    assert replay.fast()["legs"]["posture"] == "lying"
+    replay.play(3.9, 0.0)
+    legs = replay.fast()["legs"]
+    assert legs["posture"] == "standing"
+    assert [(foot["name"], foot["bears"]) for foot in legs["feet"]] == [(name, True) for name in FEET]
+    assert sum(foot["load"] for foot in legs["feet"]) == pytest.approx(9.81 * mass_of(Path(urdf).read_text()), rel=0.1)
+
+
+def grid(side):
+    message = OccupancyGrid()
+    message.header.frame_id = "map"
+    message.info.resolution, message.info.width, message.info.height = 0.05, side, 2
+    message.info.origin.orientation.w = 1.0
+    message.data = [0] * (2 * side)
+    return message
+
+
+def test_a_map_that_was_recorded_beside_the_log_is_shown_from_its_time_on(bag, tmp_path):
+    from robot_control.watch.console.replay.replay import Replay
+
+    copy = tmp_path / "run.bag"
+    copy.write_bytes(bag.read_bytes())
+    begin = read_run(copy, ["time"]).ros_time[0]
+    at_map, in_odom = TransformStamped(), (1.0, 2.0, math.pi / 2)
+    at_map.header.frame_id, at_map.child_frame_id = "map", "odom"
+    at_map.transform.translation.x, at_map.transform.translation.y = -2.0, 1.0
+    at_map.transform.rotation.w, at_map.transform.rotation.z = math.sqrt(0.5), -math.sqrt(0.5)
+    with rosbag.Bag(str(tmp_path / "robot_control_2026-01-01-00-00-00.bag"), "w") as beside:
+        for after, topic, message in (
+            (1.0, "/map", grid(3)),
+            (2.0, "/tf", TFMessage([at_map])),
+            (3.0, "/map", grid(4)),
+            (4.0, "/scan", grid(5)),
+        ):
+            beside.write(topic, message, rospy.Time.from_sec(begin + after))
+    (tmp_path / "robot_control_2026-01-01-00-01-00.bag").write_bytes(b"#ROSBAG V2.0\n")
+    replay = read_whole(Replay(copy, Settings()))
+    shown = []
+    for at in (0.5, 1.5, 2.5, 3.5):
+        replay.play(at, 0.0)
+        shown.append(replay.slow()["navigation"])
+    assert shown[0] == {"grids": {}}
+    assert [each["grids"]["map"] for each in shown[1:]] == [1, 1, 2]
+    assert shown[1]["map"] == [0.0, 0.0, 0.0]
+    assert shown[2]["map"] == pytest.approx(in_odom, abs=1e-5)
+    assert replay.grid("map")["columns"] == 4
+    replay.play(1.5, 0.0)
+    assert replay.grid("map")["columns"] == 3
+    replay.play(0.5, 0.0)
+    with pytest.raises(NoGridError):
+        replay.grid("map")
 
 
 @pytest.mark.nightly

@@ -51,26 +51,11 @@ class NavigationView:
         return "" if grid is None else str(grid.header.frame_id)
 
     def grid(self, name: str) -> dict[str, Any]:
-        """Origin, cell size [m] and cells, row by row, -1 … 100 as bytes in base64. Raises NoGridError."""
+        """The newest grid of this name, as grid_of has it. Raises NoGridError."""
         message = self._grids[name].message if name in self._grids else None
         if message is None:
             raise NoGridError("grid not found")
-        info, cells = message.info, np.asarray(message.data, dtype=np.int8)
-        if cells.size != info.width * info.height or not cells.size:
-            raise NoGridError(f"{name} has {cells.size} cells, and its width x height are others")
-        step = max(1, math.ceil(max(info.width, info.height) / MAX_SIDE))
-        rows, columns = (np.arange(0, size, step) for size in (info.height, info.width))
-        cells = np.maximum.reduceat(cells.reshape(info.height, info.width), rows, axis=0)
-        cells = np.maximum.reduceat(cells, columns, axis=1)
-        origin = info.origin
-        return {
-            "x": origin.position.x,
-            "y": origin.position.y,
-            "yaw": yaw_of(origin.orientation),
-            "resolution": info.resolution * step,
-            "columns": cells.shape[1],
-            "cells": base64.b64encode(cells.tobytes()).decode(),
-        }
+        return grid_of(name, message)
 
     def _locate(self) -> None:
         while True:
@@ -105,6 +90,26 @@ class NavigationView:
             step = max(1, math.ceil(len(particles.poses) / MAX_PARTICLES))
             seen["particles"] = [(each.position.x, each.position.y) for each in particles.poses[::step]]
         return seen
+
+
+def grid_of(name: str, message: OccupancyGrid) -> dict[str, Any]:
+    """Origin, cell size [m] and cells, row by row, -1 … 100 as bytes in base64. Raises NoGridError."""
+    info, cells = message.info, np.asarray(message.data, dtype=np.int8)
+    if cells.size != info.width * info.height or not cells.size:
+        raise NoGridError(f"{name} has {cells.size} cells, and its width x height are others")
+    step = max(1, math.ceil(max(info.width, info.height) / MAX_SIDE))
+    rows, columns = (np.arange(0, size, step) for size in (info.height, info.width))
+    cells = np.maximum.reduceat(cells.reshape(info.height, info.width), rows, axis=0)
+    cells = np.maximum.reduceat(cells, columns, axis=1)
+    origin = info.origin
+    return {
+        "x": origin.position.x,
+        "y": origin.position.y,
+        "yaw": yaw_of(origin.orientation),
+        "resolution": info.resolution * step,
+        "columns": cells.shape[1],
+        "cells": base64.b64encode(cells.tobytes()).decode(),
+    }
 
 
 def points_of(scan: LaserScan, laser: Pose) -> list[tuple[float, float]]:

@@ -17,6 +17,7 @@ import numpy as np
 import rosbag
 
 from robot_control._robot_control import BagError, NoTraceError, TraceError, read_run_header
+from robot_control.data.footfalls import BEARS, FEET
 from robot_control.data.run_log import FloatArray, LogError, kind_in
 from robot_control.files.files import utf8
 from robot_control.loop import signal_names as names
@@ -24,8 +25,10 @@ from robot_control.robot.diagnosis.state import Cause, Facts, Safety
 from robot_control.robot.services import Answer
 from robot_control.watch.console.authority import Authority, Page, RefusedError
 from robot_control.watch.console.navigation import NoGridError
+from robot_control.watch.console.replay.maps import Maps
 from robot_control.watch.console.replay.playback import Playback
 from robot_control.watch.console.replay.rows import (
+    CONTACT,
     COVARIANCE,
     MARK_CAUSES,
     MARK_TIMES,
@@ -34,6 +37,7 @@ from robot_control.watch.console.replay.rows import (
     SPEEDS,
     STATE,
     TRUTH,
+    contacts_of,
 )
 from robot_control.watch.console.settings import Settings
 from robot_control.watch.console.view import Values, rounded, state_of
@@ -44,7 +48,7 @@ PROGRAM = "from robot_control.watch.console.replay.rows import main; main()"
 
 
 class Refusing:
-    """Calls and map of a robot that is not there."""
+    """Calls of a robot that is not there."""
 
     def forget(self, page: Page) -> None:
         """No page has asked for anything."""
@@ -56,10 +60,6 @@ class Refusing:
     def confirm_reset(self, _page: Page, _key: str) -> None:
         """Raises RefusedError."""
         raise RefusedError(REFUSAL)
-
-    def grid(self, name: str) -> Values:
-        """Raises NoGridError: a log holds no map."""
-        raise NoGridError(f"a recording holds no {name}")
 
 
 class Replay:
@@ -78,13 +78,15 @@ class Replay:
         self.authority = Authority(settings)
         self.said: list[str] = []
         self.kind, self._joints = kind_in(self._header), list(self._header["joints"])
-        self.view, self.calls, self.navigation = self, Refusing(), Refusing()
+        self.view, self.calls, self.navigation = self, Refusing(), self
+        self._contacts = contacts_of(self._header)
         self.trail = Trail()
         self.wanted: tuple[float, Values] = -math.inf, {}
         self._playback = Playback(length)
         self._time: FloatArray = np.zeros(0)
         self._rows: dict[str, FloatArray] = {}
         self._marks: list[Values] = []
+        self._maps: Maps | None = None
         self._problem = ""
         threading.Thread(target=self._load, args=(path,), daemon=True).start()
 
@@ -108,6 +110,12 @@ class Replay:
     def play(self, at: float, speed: float) -> None:
         """Goes on from there, s, at this speed."""
         self._playback.play(at, speed, time.monotonic())
+
+    def grid(self, name: str) -> Values:
+        """The map that was known at the place that is shown. Raises NoGridError."""
+        if self._maps is None:
+            raise NoGridError(f"the recording holds no {name}")
+        return self._maps.grid(name, self._playback.at(time.monotonic()))
 
     def authority_of(self, page: Page) -> Values:
         """The values of a page: it watches."""
@@ -148,6 +156,8 @@ class Replay:
             values["covariance"] = [of(name, row) for name in COVARIANCE]
         if math.isfinite(of("truth_x", row)):
             values |= {"truth": [of(name, row) for name in TRUTH], "true": self._speeds("truth", row)}
+        if self._contacts:
+            values["legs"] = self._legs(row)
         return rounded(values)
 
     def slow(self) -> Values:
@@ -176,7 +186,7 @@ class Replay:
                 "sources": [],
                 "revoked": [],
                 "data_return": "",
-                "navigation": {"grids": {}},
+                "navigation": {"grids": {}} if self._maps is None else self._maps.values(at),
                 "goal": "",
                 "path": {"age": None},
                 "replay": {**replay, "loading": loading},
@@ -198,6 +208,7 @@ class Replay:
         self._marks = [
             {"at": float(at), "sentence": names.bits_in("StopCause", int(causes))[0].sentence} for at, causes in stops
         ]
+        self._maps = Maps(rows)
         self._time = rows["time"]
         self._playback.length = float(self._time[-1])
         for x, y in zip(rows["estimate_x"][::10], rows["estimate_y"][::10], strict=True):
@@ -221,6 +232,15 @@ class Replay:
 
     def _error(self, joint: str, row: int) -> float:
         return self._number(f"{joint}_velocity_command", row) - self._number(f"{joint}_velocity_measured", row)
+
+    def _legs(self, row: int) -> Values:
+        """Posture and feet; which gait a robot walks, its log names by a number of its own."""
+        phase, feet = self._number("legged_phase", row), []
+        for foot, contact in zip(FEET, self._contacts, strict=False):
+            probability, load = (self._number(f"{contact}_{what}", row) for what in CONTACT)
+            feet.append({"name": foot, "bears": probability > BEARS, "load": load})
+        posture = "" if math.isnan(phase) else names.states("LegPhase")[int(phase)]
+        return {"posture": posture, "gait": "", "chosen": "auto", "gaits": [], "feet": feet}
 
     def _safety(self, row: int) -> Safety | None:
         state, causes, active = (self._number(name, row) for name in STATE[:3])

@@ -1,16 +1,19 @@
 """The rows of a log that a replay shows, read by a process of its own, because a page may not wait for them."""
 
 import sys
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 from robot_control._robot_control import read_run_header
+from robot_control.data.export.topics import odom_frame
 from robot_control.data.intervals import intervals
-from robot_control.data.run_log import FloatArray, read_run
+from robot_control.data.run_log import kind_in, read_run
 from robot_control.files.files import utf8
 from robot_control.loop import signal_names as names
+from robot_control.watch.console.replay.maps import maps_beside
 
 RATE = 50.0
 """Hz of the rows that are kept"""
@@ -19,18 +22,29 @@ POSE = ("x", "y", "z", "roll", "pitch", "yaw")
 STATE = ("supervisor_state", "permit_causes", "permit_active", "evidence_cause", "evidence_value", "evidence_limit")
 COVARIANCE = ("estimate_x_variance", "estimate_xy_covariance", "estimate_y_variance")
 TRUTH = ("truth_x", "truth_y", "truth_yaw")
+CONTACT = ("estimate_contact_probability", "estimate_contact_load")
 STOPPED = ("STOPPING", "STOPPED", "FAULT")
 MARK_TIMES, MARK_CAUSES = "mark_times", "mark_causes"
 """s of each stop from the begin of the log, and the bits of its causes"""
 
 
-def rows_of(path: Path) -> dict[str, FloatArray]:
-    """Columns at RATE, `time` from the begin of the log. Raises LogError, OSError."""
-    joints: Sequence[str] = read_run_header(utf8(path))["joints"]
-    columns = [*STATE, *COVARIANCE, *TRUTH, "battery_voltage", "time", *(f"estimate_{axis}" for axis in POSE)]
+def rows_of(path: Path) -> dict[str, np.ndarray[Any, Any]]:
+    """Maps, and columns at RATE, `time` from the begin of the log. Raises LogError, OSError."""
+    header = read_run_header(utf8(path))
+    joints: Sequence[str] = header["joints"]
+    columns = [
+        *STATE,
+        *COVARIANCE,
+        *TRUTH,
+        "battery_voltage",
+        "time",
+        "legged_phase",
+        *(f"estimate_{axis}" for axis in POSE),
+    ]
     columns += [f"{of}_{axis}" for of in ("estimate", "requested", "limited", "truth") for axis in SPEEDS]
     columns += [f"{joint}_{what}" for joint in joints for what in ("position", "effort")]
     columns += [f"{joint}_velocity_{what}" for joint in joints for what in ("command", "measured")]
+    columns += [f"{contact}_{what}" for contact in contacts_of(header) for what in CONTACT]
     run = read_run(path, columns)
     seconds = run.columns["time"] - run.columns["time"][0]
     state, causes = run.columns["supervisor_state"], np.nan_to_num(run.columns["permit_causes"]).astype(np.int64)
@@ -38,7 +52,14 @@ def rows_of(path: Path) -> dict[str, FloatArray]:
     begins = [begin for begin, _ in intervals(stopped, state)]
     every = max(1, round(1 / (RATE * float(run.header["period"]))))
     rows = {name: values[::every].copy() for name, values in (run.columns | {"time": seconds}).items()}
-    return rows | {MARK_TIMES: seconds[begins], MARK_CAUSES: causes[begins].astype(float)}
+    begin, end = (float(run.ros_time[row]) for row in (0, -1))
+    maps = maps_beside(path, begin, end, odom_frame(header["parameters"]))
+    return rows | maps | {MARK_TIMES: seconds[begins], MARK_CAUSES: causes[begins].astype(float)}
+
+
+def contacts_of(header: Mapping[str, Any]) -> Sequence[str]:
+    """The links of the feet, in the order of FEET; none of a robot on wheels."""
+    return list(header["contacts"]) if kind_in(header).legged else []
 
 
 def main() -> None:
