@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 import signal
 import subprocess
 import tempfile
 import time
 from collections import deque
+from collections.abc import Iterator
 from pathlib import Path
 
 import rospy
+from geometry_msgs.msg import Twist, Vector3
 from nav_msgs.msg import Odometry
 from robot_control.installed_files import share_file
 
@@ -65,6 +68,19 @@ class Robot:
     def speed(self) -> float:
         """m/s"""
         return self.moves[-1][2]
+
+    @contextlib.contextmanager
+    def on_a_circle(self) -> Iterator[None]:
+        """It drives a circle of a metre."""
+        twist = Twist(linear=Vector3(0.3, 0, 0), angular=Vector3(0, 0, 0.3))
+        requests = rospy.Publisher("cmd_vel", Twist, queue_size=1)
+        timer = rospy.Timer(rospy.Duration(0.05), lambda _: requests.publish(twist))
+        try:
+            wait_for("motion", lambda: self.speed > 0.2)
+            yield
+        finally:
+            timer.shutdown()
+            requests.unregister()
 
     def await_rest(self) -> None:
         """Waits until it stands for half a second."""
