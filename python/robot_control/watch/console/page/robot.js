@@ -50,7 +50,7 @@ function materialOf(visual, root) {
   const given = text(own, "color", "rgba") || text(named, "color", "rgba");
   const [r, g, b, opacity] = numbers(given, [0.6, 0.65, 0.7, 1]), color = new THREE.Color(r, g, b);
   const transparent = opacity < 1, side = THREE.DoubleSide;
-  return { material: new THREE.MeshPhongMaterial({ color, transparent, opacity, side }), given: Boolean(given) };
+  return { material: new THREE.MeshLambertMaterial({ color, transparent, opacity, side }), given: Boolean(given) };
 }
 
 async function mesh(file, id, scale, { material, given }) {
