@@ -6,10 +6,10 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from bench.navigation import goals
+from bench.navigation import goals, guard
 from bench.rows import Result, Say, judged
 
-PARTS = ("map", "localization", "goals", "faults", "cost")
+PARTS = ("map", "localization", "goals", "faults", "guard", "cost")
 MAPPING = ("map", "localization")
 
 
@@ -25,6 +25,8 @@ def bench(parts: Sequence[str], first: int, runs: int | None, programs: Path, sa
         rows += goals.goals(first, runs or goals.GOALS, say)
     if "faults" in parts:
         rows += goals.faults(first, runs or goals.FAULT_RUNS, say)
+    if "guard" in parts:
+        rows += guard.meetings(first, runs or guard.TRIALS, say) + guard.lies(first, runs or guard.LIE_RUNS, say)
     if "cost" in parts:
         from bench.navigation import costs  # noqa: PLC0415 (needs ROS's messages of navigation)
 

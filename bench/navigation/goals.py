@@ -126,7 +126,7 @@ def drive_lies(task: tuple[str, int]) -> tuple[Trip, float]:
     angle, since = random.uniform(-math.pi, math.pi), robot.loop.time + float(random.uniform(2, 12))
     shift = (math.cos(angle), math.sin(angle))
     lies = {
-        "frozen": Lies(since, frozen=True),
+        "frozen": Lies(since, scan=lambda _seen, before: before),
         "shifted": Lies(since, sensor=(LASER[0] + 0.5 * shift[0], 0.5 * shift[1], 0.0)),
         "other map": Lies(),
         "mirrored map": Lies(),
@@ -203,7 +203,7 @@ def faults(first: int, runs: int, say: Say) -> list[Row]:
         tasks = [(lie, seed) for seed in range(first, first + runs)]
         drives = list(Processes().outcomes(drive_lies, tasks, say))
         affected = [trip for trip, since in drives if trip.doubts or trip.state != "reached" or lie in OTHER_MAPS]
-        unnamed = [trip for trip in affected if cause not in trip.doubts and cause not in trip.reason]
+        unnamed = [trip for trip in affected if not any(cause in each for each in (*trip.doubts, trip.reason))]
         for trip in unnamed:
             say(f"{lie}: {trip.state}: {trip.reason}; {sorted(trip.doubts)}")
         touches = sum(trip.air <= 0 for trip, _ in drives)

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 from robot_control import ClosedLoop
-from robot_control._navigation import Navigation
+from robot_control._navigation import Guard, Navigation
 from robot_control.drive.path.follower import Follower, FollowParameters, Motion, State
 from robot_control.drive.path.pieces import route
 from robot_control.drive.path.waypoints import PathError, Waypoint, checked
@@ -24,11 +24,12 @@ SPEED = 0.5  # m/s
 STEP, SCAN = 0.02, 5  # s between two steps of the law; such steps between two scans
 LONGEST = 240.0  # s for one goal
 STANDING = 10  # scans before and after it
-MOVING = 0.02  # m/s, rad/s
+HELD = 1.0  # s without a free way after which its obstacle is marked in the costmap: kReplanPeriod
 NEARER = 0.001  # m in one step: 0.05 m/s
 REACH = 0.6  # m: farther points are not looked at
 
 Place = tuple[float, float, float]
+Scan = dict[str, Any]
 
 
 @dataclass
@@ -36,7 +37,8 @@ class Lies:
     """The errors that are made on purpose, from `since` s on; the defaults are true."""
 
     since: float = math.inf
-    frozen: bool = False
+    scan: Callable[[Scan, Scan], Scan] = lambda seen, _before: seen  # `before`: the first one after `since`
+    late: float = 0.0  # s from the scan to its arrival
     sensor: Place = LASER  # where the laser is taken to be on the robot
     place: Callable[[Place], Place] = lambda place: place
 
@@ -65,8 +67,12 @@ class Robot:
         self._obstacles = obstacles
         self._standing = np.concatenate([item.outline(0.0) for item in obstacles if not item.path])
         self.navigation = Navigation(known, Path(share_file("urdf/diffbot.urdf")).read_text())
+        self.guard = Guard(Path(share_file("urdf/diffbot.urdf")).read_text())
         self.lies = Lies()
-        self._scan: dict[str, Any] = {}
+        self._first_lie: Scan = {}
+        self._arriving: list[tuple[float, float, Scan, Place, Place]] = []
+        self._seen = self._doubt = ""
+        self._held_since = 0.0
         self._moved = 0.0
         self._follower: Follower | None = None
         self._command = (0.0, 0.0)
@@ -88,32 +94,36 @@ class Robot:
     def _assumed(self) -> Place:
         return self.lies.place(self.place) if self.loop.time >= self.lies.since else self.place
 
-    def _see(self) -> str:
-        lying = self.loop.time >= self.lies.since
-        if not (lying and self.lies.frozen):
-            self._scan = self.loop.scan()
-        sensor = self.lies.sensor if lying else LASER
-        odometry = (self._state["estimate_x"], self._state["estimate_y"], self._state["estimate_yaw"])
-        problem: str = self.navigation.update(
-            self._scan, sensor, self._assumed(), odometry, self.loop.time, self._moved
-        )
-        free = 0.0
-        if not self.navigation.silent(self.loop.time):
-            free = self.navigation.clearance_along(self._scan, sensor, *self._motion())
-        self.loop.clearance(free)
-        return problem
+    @property
+    def _odometry(self) -> Place:
+        return (self._state["estimate_x"], self._state["estimate_y"], self._state["estimate_yaw"])
 
-    def _motion(self) -> tuple[float, float]:
-        """The motion that is measured, else intended."""
-        linear, angular = self._state["estimate_linear"], self._state["estimate_angular"]
-        if abs(linear) > MOVING or abs(angular) > 2 * MOVING:
-            return linear, angular
-        follower = self._follower
-        if follower is None or follower.over:
-            return 0.0, 0.0
-        if follower.state is State.TURNING:
-            return 0.0, -math.copysign(1.0, follower.heading_error)
-        return self._command[0], 0.0
+    def _see(self) -> str:
+        """Takes a scan, receives those that have arrived, and returns why the robot may not be driven."""
+        lies, now, seen = self.lies, self.loop.time, self.loop.scan()
+        lying = now >= lies.since
+        if lying:
+            self._first_lie = self._first_lie or seen
+            seen = lies.scan(seen, self._first_lie)
+        self._arriving.append((now, now + lies.late * lying, seen, self._odometry, self._assumed()))
+        while self._arriving and self._arriving[0][1] <= now + STEP / 2:
+            stamp, _, scan, odometry, place = self._arriving.pop(0)
+            sensor = lies.sensor if lying else LASER
+            self._seen = self.navigation.update(scan, sensor, place, odometry, now, self._moved)
+            self.guard.insert("scan", scan, sensor, odometry, stamp, now, self._moved)
+        return self._seen or self._doubt
+
+    def _be_guarded(self) -> None:
+        """Acts as the guard does at each message of odometry, and as navigate then does."""
+        state, now = self._state, self.loop.time
+        measured = (state["estimate_linear"], 0.0, state["estimate_angular"])
+        requested = (self._command[0], 0.0, self._command[1])
+        free, self._doubt, obstacle = self.guard.check(self._odometry, measured, requested, now)
+        self.loop.clearance(free)
+        if free > 0:
+            self._held_since = now
+        elif obstacle is not None and now - self._held_since > HELD:
+            self.navigation.block(self._assumed(), obstacle, now)
 
     def drive(self, goal: Place) -> Trip:
         """Begins the goal and returns at its end. A stop of before, by an obstacle that hit the robot, is reset."""
@@ -153,7 +163,7 @@ class Robot:
             self._follow()
             self._note(trip)
         self._problem = self._see()
-        trip.doubts |= {self._problem.split(":")[0]} - {""}
+        trip.doubts |= {self._problem} - {""}
 
     def _new_follower(self, way: list[Place]) -> Follower | None:
         try:
@@ -175,6 +185,7 @@ class Robot:
             motion = self._follower.step(Pose(*self._assumed()), measured, elapsed=STEP)
             self._command = (motion.linear, motion.angular)
         self._before = self.place
+        self._be_guarded()
         self._state = self._advance(self._command)
 
     def _note(self, trip: Trip) -> None:

@@ -65,7 +65,8 @@ Schema schema(Parameters& p) {
                  {program_of(Role::kTelemetry), keys(p.telemetry)},
                  {"slam", keys(p.slam)},
                  {"localization", keys(p.localization)},
-                 {"navigate", keys(p.navigate)}},
+                 {"navigate", keys(p.navigate)},
+                 {"collision_guard", keys(p.collision_guard)}},
       .check =
           [&p](const Schema& all, GivenValues& given) {
             check_timeouts(all, p.loop, given);

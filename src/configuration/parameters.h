@@ -130,6 +130,7 @@ struct Parameters {
   navigation::SlamParameters slam;
   navigation::LocalizationParameters localization;
   navigation::NavigateParameters navigate;
+  navigation::GuardParameters collision_guard;
   std::optional<double> no_effect;    ///< value of a key of an earlier version
   std::vector<std::string> warnings;  ///< about accepted values in an old form
 };

@@ -72,6 +72,7 @@ Costmap::Costmap(const Grid& map, Footprint footprint, bool unknown_is_free)
 void Costmap::clear() {
   for (std::size_t i = 0; i < unknown_.size(); ++i) unknown_[i] = grid_.cells[i] < 0;
   std::fill(marked_.begin(), marked_.end(), kNotMarked);
+  blocked_.clear();
   update(0);
 }
 
@@ -85,7 +86,7 @@ Agreement Costmap::insert(const Scan& scan, const PlanarPose& sensor, double now
     const double length = hit ? range : scan.range_max, angle = sensor.yaw + scan.angle(ray);
     bool passed = false;
     follow_ray(grid_, sensor, angle, length - grid_.resolution, [&](std::size_t cell, double along) {
-      marked_[cell] = kNotMarked;
+      if (hit) marked_[cell] = kNotMarked;
       unknown_[cell] = false;
       passed |= wall_distance_[cell] == 0 && along < length - kBehindWall;
       return true;
@@ -118,13 +119,23 @@ void Costmap::set_predicted(const std::vector<Point>& points) {
   }
 }
 
+void Costmap::block(Point point, double now) {
+  const Cell at = grid_.cell_at(point.x, point.y);
+  for (const Cell cell : {at, Cell{at.column - 1, at.row}, Cell{at.column + 1, at.row}, Cell{at.column, at.row - 1},
+                          Cell{at.column, at.row + 1}}) {
+    if (grid_.contains(cell)) blocked_[grid_.index(cell)] = now;
+  }
+}
+
 void Costmap::update(double now) {
+  std::erase_if(blocked_, [&](const auto& cell) { return cell.second < now - kMemory; });
   std::vector<bool> occupied(grid_.cells.size());
   for (std::size_t i = 0; i < occupied.size(); ++i) {
     occupied[i] = wall_distance_[i] == 0 || marked_[i] > now - kMemory || (unknown_[i] && !unknown_is_free_);
   }
   if (std::isfinite(now)) {
     for (const std::size_t cell : predicted_) occupied[cell] = true;
+    for (const auto& [cell, at] : blocked_) occupied[cell] = true;
   }
   distance_ = distances(occupied, grid_.columns, grid_.resolution, farthest_);
 }

@@ -1,16 +1,17 @@
 #pragma once
 /// A Costmap holds the poses that are free for a robot, according to the map, the laser and the outline of the robot.
 ///
-/// A cell is occupied if the map says so (≥ 65 %), or if a ray ended there within the last kMemory and none passed it
-/// since. Unless `unknown_is_free`, it is also occupied if neither the map nor a ray knows it. A ray that ends within
-/// kExplained of an occupied cell of the map marks nothing. It has hit the map's own wall, within the error of the
-/// localisation.
+/// A cell is occupied if the map says so (≥ 65 %), or if a ray ended there within the last kMemory. It is free
+/// again once a ray passes it on its way to an obstacle; a ray without a return is no evidence of that. Unless
+/// `unknown_is_free`, it is also occupied if neither the map nor a ray knows it. A ray that ends within kExplained of
+/// an occupied cell of the map marks nothing. It has hit the map's own wall, within the error of the localisation.
 ///
 /// A map of finer cells is taken in cells of up to kCoarsest. A plan in cells of 1 cm would take minutes.
 ///
 /// Rays also show whether map and pose can be true. An object that was added shortens a ray. Only an object that was
 /// removed, or a wrong pose or map, lets a ray pass a wall of the map.
 
+#include <map>
 #include <vector>
 
 #include "navigation/footprint.h"
@@ -24,7 +25,12 @@ inline constexpr double kExplained = 0.1;      ///< m
 inline constexpr double kBehindWall = 0.3;     ///< m; a ray that ends so far behind a wall contradicts the map
 inline constexpr double kCoarsest = 0.05;      ///< m
 inline constexpr double kFullClearance = 0.4;  ///< m of clearance from which on a cell has the lowest cost
-inline constexpr double kPadding = 0.07;       ///< m of clearance: noise of the laser and lag of the follower
+inline constexpr double kGuardAir = 0.02;      ///< m of clearance with which the collision guard lets the robot pass
+inline constexpr double kFollowerLag = 0.015;  ///< m by which the follower may be off its path beside an obstacle
+
+/// m of clearance about the centre of an occupied cell. The guard lets every planned path pass.
+inline constexpr double kPadding = 0.07;
+static_assert(kPadding >= kGuardAir + kFollowerLag + 0.7 * kCoarsest);
 
 /// Returns the ends of all rays that hit, in the frame in which `sensor` is given.
 std::vector<Point> points_of(const Scan& scan, const PlanarPose& sensor);
@@ -45,6 +51,10 @@ class Costmap {
 
   /// Sets the points, in the map, that moving objects will occupy. They count as occupied until the next call.
   void set_predicted(const std::vector<Point>& points);
+
+  /// Sets the point, in the map, in front of which the guard holds the robot. The cells around it count as occupied for
+  /// kMemory, whatever a ray says: there is less room than the map and the scans show.
+  void block(Point point, double now);
 
   /// Updates the distances, which the functions below use. Takes about 20 ns a cell.
   void update(double now);
@@ -77,9 +87,10 @@ class Costmap {
   std::vector<float> wall_distance_;  ///< m, to the map's own walls
   std::vector<bool> unknown_;
   bool unknown_is_free_;
-  std::vector<float> marked_;           ///< s, when a ray ended here; −∞: never, or passed since
-  std::vector<std::size_t> predicted_;  ///< cells
-  std::vector<float> distance_;         ///< m
+  std::vector<float> marked_;              ///< s, when a ray ended here; −∞: never, or passed since
+  std::vector<std::size_t> predicted_;     ///< cells
+  std::map<std::size_t, double> blocked_;  ///< s, when the guard last held the robot before this cell
+  std::vector<float> distance_;            ///< m
 };
 
 /// Returns the distance of each cell from the nearest one that is set, in m, at most `farthest`.

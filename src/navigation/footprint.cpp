@@ -50,8 +50,7 @@ Footprint footprint_of(const std::function<double(Point)>& reach) {
   return result;
 }
 
-Footprint footprint_of_urdf(const std::string& urdf, const std::string& source) {
-  const RigidBodies robot = read_rigid_bodies({urdf, source});
+Footprint footprint_of(const RigidBodies& robot) {
   return footprint_of([&](Point normal) {
     double reach = -std::numeric_limits<double>::infinity();
     for (const RigidBody& body : robot.bodies) {
@@ -62,6 +61,10 @@ Footprint footprint_of_urdf(const std::string& urdf, const std::string& source) 
     }
     return reach;
   });
+}
+
+Footprint footprint_of_urdf(const std::string& urdf, const std::string& source) {
+  return footprint_of(read_rigid_bodies({urdf, source}));
 }
 
 }  // namespace robot_control::navigation

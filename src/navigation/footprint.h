@@ -1,9 +1,11 @@
 #pragma once
-/// The outline of a robot in the plane. It encloses all its shapes, seen from above, with every joint at zero.
+/// The outline of a robot in the plane. It encloses all its shapes, seen from above.
 
 #include <functional>
 #include <string>
 #include <vector>
+
+#include "machine/bodies/rigid_bodies.h"
 
 namespace robot_control::navigation {
 
@@ -28,8 +30,11 @@ struct Footprint {
 /// std::invalid_argument unless the base's origin lies inside.
 Footprint footprint_of(const std::function<double(Point)>& reach);
 
-/// Reads a URDF. Throws what read_rigid_bodies throws, and std::invalid_argument for a robot without shapes or whose
-/// base lies beside them.
+/// The outline of these bodies where they are. Throws std::invalid_argument for a robot without shapes or whose base
+/// lies beside them.
+Footprint footprint_of(const RigidBodies& robot);
+
+/// Reads a URDF. Throws what read_rigid_bodies throws, and what the function above does.
 Footprint footprint_of_urdf(const std::string& urdf, const std::string& source);
 
 }  // namespace robot_control::navigation

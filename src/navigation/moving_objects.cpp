@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace robot_control::navigation {
 namespace {
@@ -91,12 +92,19 @@ std::vector<Point> from_base_axes(std::vector<Point> points, const PlanarPose& b
   return points;
 }
 
-std::vector<MovingObject> in_base_axes(std::vector<MovingObject> objects, const PlanarPose& base) {
+std::vector<Point> in_base_axes(std::vector<Point> points, const PlanarPose& base) {
   const double c = std::cos(base.yaw), s = std::sin(base.yaw);
-  const auto turned = [&](double x, double y) { return Point{c * x + s * y, c * y - s * x}; };
+  for (Point& point : points) {
+    const double dx = point.x - base.x, dy = point.y - base.y;
+    point = {c * dx + s * dy, c * dy - s * dx};
+  }
+  return points;
+}
+
+std::vector<MovingObject> in_base_axes(std::vector<MovingObject> objects, const PlanarPose& base) {
   for (MovingObject& object : objects) {
-    for (Point& point : object.points) point = turned(point.x - base.x, point.y - base.y);
-    object.velocity = turned(object.velocity.x, object.velocity.y);
+    object.points = in_base_axes(std::move(object.points), base);
+    object.velocity = in_base_axes(std::vector{object.velocity}, {0, 0, base.yaw})[0];
   }
   return objects;
 }

@@ -45,7 +45,8 @@ class MovingObjects {
 /// Returns points, given in the axes of `base`, in the frame in which `base` is given.
 std::vector<Point> from_base_axes(std::vector<Point> points, const PlanarPose& base);
 
-/// Returns the objects in the axes of `base`, which is given in their frame.
+/// Return points and objects in the axes of `base`, which is given in their frame.
+std::vector<Point> in_base_axes(std::vector<Point> points, const PlanarPose& base);
 std::vector<MovingObject> in_base_axes(std::vector<MovingObject> objects, const PlanarPose& base);
 
 /// Returns the points that the objects, given in base axes, will occupy within kPredictionTime. An object that will

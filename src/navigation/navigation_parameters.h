@@ -1,8 +1,9 @@
 #pragma once
-/// The blocks `slam`, `localization` and `navigate`.
+/// The blocks `slam`, `localization`, `navigate` and `collision_guard`.
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "parameters/block.h"
 
@@ -36,6 +37,21 @@ inline Keys keys(NavigateParameters& navigate) {
   return {{"speed", &navigate.speed, "m/s", 0.01, 10},
           {"unknown_is_free", &navigate.unknown_is_free},
           {"map_frame", &navigate.map_frame}};
+}
+
+enum class GuardMode { kOff, kSlowAndStop };
+
+inline std::vector<Word> words_of(GuardMode) {
+  return {{"off", GuardMode::kOff}, {"slow_and_stop", GuardMode::kSlowAndStop}};
+}
+
+struct GuardParameters {
+  GuardMode guard = GuardMode::kSlowAndStop;
+  std::vector<std::string> scans = {"scan"};  ///< topics, one per laser
+};
+
+inline Keys keys(GuardParameters& guard) {
+  return {{"guard", &guard.guard}, {"scans", &guard.scans}};
 }
 
 }  // namespace robot_control::navigation

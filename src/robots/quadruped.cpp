@@ -18,6 +18,10 @@
 namespace robot_control {
 namespace {
 
+/// s of the present speed that the body still moves after a request to halt, with legs of kReferenceLeg: quadbot at
+/// 0.15 and 0.3 m/s (bench/navigation/guard.py).
+constexpr double kRollOut = 0.26;
+
 /// Returns the angles of a leg while the robot stands at that height [m], its foot where it lay.
 LegAngles upright(const Leg& leg, double height) noexcept {
   const LegGeometry& geometry = leg.kinematics.geometry();
@@ -63,6 +67,7 @@ SafetyParameters Quadruped::limits() const {
   SafetyParameters limits = legged_limits(parameters_.safety, machine_);
   limits.ramp_time =
       std::max(limits.ramp_time, walk_ending_time(parameters_.leg_control, machine_) + lying_down_time(machine_));
+  if (!limits.stop_delay) limits.stop_delay = kRollOut * std::sqrt(machine_.leg_length() / kReferenceLeg);
   limits.imu_lost.reaction = limits.imu_stuck.reaction = limits.imu_jump.reaction = Reaction::kBrake;
   limits.lift.reaction = Reaction::kOff;  // a robot that lies stands on no foot
   return limits;

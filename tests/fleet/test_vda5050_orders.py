@@ -546,6 +546,56 @@ def test_a_corner_of_a_trajectory_needs_rotation_to_be_allowed():
     assert Run().send(order(places, trajectory=corner))["nodeStates"]
 
 
+# an obstacle before the collision guard
+
+
+def blocked_run(seconds, **settings):
+    """A run whose guard holds the robot on the first edge for so many seconds."""
+    run = Run(**settings)
+    run.send(order(LINE))
+    run.step(1.0)
+    run.robot.given = replace(run.robot.given, blocked_by="the laser sees an obstacle 0.03 m from the robot")
+    run.step(seconds)
+    return run
+
+
+def test_an_order_that_meets_an_obstacle_waits_reports_it_and_goes_on():
+    run = blocked_run(3.0)
+    assert run.state["driving"] is False
+    assert run.state["paused"] is False
+    (error,) = run.state["errors"]
+    assert (error["errorType"], error["errorLevel"]) == ("pathBlocked", "WARNING")
+    references = {each["referenceKey"]: each["referenceValue"] for each in error["errorReferences"]}
+    assert references == {"orderId": "o1", "edgeId": "e0", "nodeId": "n1"}
+    assert "remove the obstacle" in error["errorHint"]
+    run.robot.given = replace(run.robot.given, blocked_by="")
+    run.step(0.5)
+    assert run.state["driving"] is True
+    assert run.state["errors"] == []
+    assert end_of(run) == (3.0, 0.0)
+    assert run.robot.goals == 1
+
+
+def test_one_message_reports_an_obstacle_whatever_its_distance_becomes():
+    run = blocked_run(3.0)
+    sent = len(run.states)
+    for number in range(20):
+        run.robot.given = replace(run.robot.given, blocked_by=f"an obstacle {number} mm from the robot")
+        run.step(0.1)
+    assert len(run.states) == sent
+
+
+def test_an_order_fails_that_an_obstacle_holds_for_blocked_timeout_and_goes_on_after_stop_pause():
+    run = blocked_run(12.0, blocked_timeout=10.0)
+    assert run.state["paused"] is True
+    assert kinds(run.state) == ["drivingError"]
+    run.robot.given = replace(run.robot.given, blocked_by="")
+    run.step(5.0)
+    assert run.state["driving"] is False
+    run.send(instant(action("stopPause", 7)))
+    assert end_of(run) == (3.0, 0.0)
+
+
 # 6.8, 6.9: instant actions
 
 

@@ -86,17 +86,17 @@ TEST(MoversSeenFromTest, TheyAreTurnedIntoTheAxesOfTheBase) {
 
 TEST(FreeWayAmongMoversTest, ItEndsWhereOneCrosses) {
   const std::vector<MovingObject> crossing = object({1.12, -1.5}, {0, 0.8});
-  EXPECT_NEAR(clearance_along(diffbot(), {}, {0.5, 0}, crossing), 1.0 - kLaserNoise - kRemainingGap, 0.021);
+  EXPECT_NEAR(free_way(diffbot(), {}, {0.5, 0}, crossing).distance, 1.0 - kLaserNoise - kRemainingGap, 0.021);
 }
 
 TEST(FreeWayAmongMoversTest, OneThatComesToTheRobotEndsItAtTheMeeting) {
   const std::vector<MovingObject> oncoming = object({1.12, 0}, {-0.5, 0});
-  EXPECT_NEAR(clearance_along(diffbot(), {}, {0.5, 0}, oncoming), 0.5 - kRemainingGap, 0.05);
+  EXPECT_NEAR(free_way(diffbot(), {}, {0.5, 0}, oncoming).distance, 0.5 - kRemainingGap, 0.05);
 }
 
 TEST(FreeWayAmongMoversTest, TheRobotDrivesOnOutOfTheWayOfOneThatWouldTouchIt) {
   const std::vector<MovingObject> from_the_side = object({0, -1.27}, {0, 0.5});
-  EXPECT_TRUE(std::isinf(clearance_along(diffbot(), {}, {0.5, 0}, from_the_side)));
+  EXPECT_TRUE(std::isinf(free_way(diffbot(), {}, {0.5, 0}, from_the_side).distance));
 }
 
 }  // namespace robot_control::navigation::tests

@@ -85,6 +85,7 @@ class VirtualRobot:
             follower.fail("the safety monitor stopped the robot")
         if follower is not None:
             wanted = Motion() if self._stopping else follower.step(self.pose, self.motion)
+            wanted = Motion() if self.given.blocked_by else wanted  # the controller limits it
             distance = self._begin_at + follower.distance
             if self._stopping or follower.over:
                 reason = "" if self._stopping else follower.reason

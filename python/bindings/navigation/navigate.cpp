@@ -4,12 +4,17 @@
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
+#include <array>
+#include <map>
+#include <string>
+
 #include "bindings/navigation/conversions.h"
 #include "bindings/numpy_version.h"
+#include "navigation/collision_guard.h"
 #include "navigation/map_consistency.h"
 #include "navigation/map_file.h"
-#include "navigation/motion_clearance.h"
 #include "navigation/moving_objects.h"
+#include "navigation/moving_outline.h"
 #include "navigation/navigator.h"
 #include "navigation/scan_watch.h"
 
@@ -38,15 +43,13 @@ class Navigation {
     watch_.receive(scan, "laser", now, now, moved);
     consistency_.update(costmap_.insert(scan, composed(planar_of(place), planar_of(sensor)), now));
     const PlanarPose base = planar_of(odometry);
-    seen_ = in_base_axes(objects_.update(scan, composed(base, planar_of(sensor)), now), base);
-    costmap_.set_predicted(from_base_axes(predicted_points(seen_, costmap_.footprint()), planar_of(place)));
+    const auto seen = in_base_axes(objects_.update(scan, composed(base, planar_of(sensor)), now), base);
+    costmap_.set_predicted(from_base_axes(predicted_points(seen, costmap_.footprint()), planar_of(place)));
     const std::string problem = watch_.problem(now);
     return problem.empty() ? consistency_.problem() : problem;
   }
-  bool silent(double now) const { return !watch_.problem(now).empty(); }
-  double clearance_along(const py::dict& scan, const Pose& sensor, double linear, double angular) const {
-    return navigation::clearance_along(costmap_.footprint(), points_of(scan_of(scan), planar_of(sensor)),
-                                       {linear, angular}, seen_);
+  void block(const Pose& place, const std::array<double, 2>& obstacle, double now) {
+    costmap_.block(from_base_axes({{obstacle[0], obstacle[1]}}, planar_of(place))[0], now);
   }
   double distance(double x, double y) const { return costmap_.footprint().distance({x, y}); }
   py::tuple plan(const Pose& start, const Pose& goal, double now) {
@@ -74,9 +77,50 @@ class Navigation {
   Costmap costmap_;
   ScanWatch watch_;
   MovingObjects objects_;
-  std::vector<MovingObject> seen_;
   MapConsistency consistency_;
   Navigator navigator_;
+};
+
+/// It does what the node collision_guard does with scans, odometry and requests, without ROS.
+class Guard {
+ public:
+  using Motion = std::array<double, 3>;  // linear, lateral [m/s], angular [rad/s]
+
+  explicit Guard(const std::string& urdf)
+      : outline_(read_rigid_bodies({urdf, "the URDF"})), guard_(outline_.footprint()) {}
+
+  /// rad, by joint; `now` in s.
+  void move_joints(const std::map<std::string, double>& positions, double now) {
+    outline_.update(positions, now);
+    guard_.set_footprint(outline_.footprint());
+  }
+
+  /// `moved`: m + rad so far.
+  void insert(const std::string& laser, const py::dict& given, const Pose& mount, const Pose& base, double stamp,
+              double now, double moved) {
+    const Scan scan = scan_of(given);
+    if (!watches_[laser].receive(scan, laser, stamp, now, moved).empty()) return;
+    if (watches_[laser].problem(now).empty()) guard_.insert(laser, scan, planar_of(mount), planar_of(base), stamp);
+  }
+
+  /// Returns the clearance, why the lasers are not trusted, and what ends the way, in base axes, or None.
+  py::tuple check(const Pose& base, const Motion& measured, const Motion& requested, double now) const {
+    for (const auto& [name, watch] : watches_) {
+      if (const std::string problem = watch.problem(now); !problem.empty())
+        return py::make_tuple(0.0, problem, py::none());
+    }
+    const auto motion = [](const Motion& of) { return PlanarMotion{of[0], of[2], of[1]}; };
+    const GuardVerdict verdict = guard_.check(planar_of(base), motion(measured), motion(requested), now);
+    py::object obstacle = py::none();
+    if (verdict.obstacle) obstacle = py::make_tuple(verdict.obstacle->x, verdict.obstacle->y);
+    return py::make_tuple(verdict.clearance, verdict.problem, obstacle);
+  }
+  double distance(double x, double y) const { return guard_.footprint().distance({x, y}); }
+
+ private:
+  std::map<std::string, ScanWatch> watches_;
+  MovingOutline outline_;
+  CollisionGuard guard_;
 };
 
 }  // namespace
@@ -95,11 +139,16 @@ PYBIND11_MODULE(_navigation, module) {
            py::arg("unknown_is_free") = false)
       .def("update", &Navigation::update, py::arg("scan"), py::arg("sensor"), py::arg("place"), py::arg("odometry"),
            py::arg("now"), py::arg("moved"))
-      .def("silent", &Navigation::silent, py::arg("now"))
-      .def("clearance_along", &Navigation::clearance_along, py::arg("scan"), py::arg("sensor"), py::arg("linear"),
-           py::arg("angular"))
+      .def("block", &Navigation::block, py::arg("place"), py::arg("obstacle"), py::arg("now"))
       .def("distance", &Navigation::distance, py::arg("x"), py::arg("y"))
       .def("plan", &Navigation::plan, py::arg("start"), py::arg("goal"), py::arg("now"))
       .def("begin", &Navigation::begin, py::arg("goal"), py::arg("now"))
       .def("step", &Navigation::step, py::arg("now"), py::arg("problem"), py::arg("pose"), py::arg("path"));
+  py::class_<Guard>(module, "Guard")
+      .def(py::init<const std::string&>(), py::arg("urdf"))
+      .def("move_joints", &Guard::move_joints, py::arg("positions"), py::arg("now"))
+      .def("insert", &Guard::insert, py::arg("laser"), py::arg("scan"), py::arg("mount"), py::arg("base"),
+           py::arg("stamp"), py::arg("now"), py::arg("moved"))
+      .def("check", &Guard::check, py::arg("base"), py::arg("measured"), py::arg("requested"), py::arg("now"))
+      .def("distance", &Guard::distance, py::arg("x"), py::arg("y"));
 }

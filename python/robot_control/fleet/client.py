@@ -99,6 +99,8 @@ class Client:
         self._facts = robot.facts()
         self._mode, self._permit = self._facts.mode, self._facts.permit
         self._driving_error: Error | None = None
+        self._blocked: tuple[Error, ...] = ()  # while the leg waits before an obstacle
+        self._blocked_at = 0.0  # s
         self.file_problem = ""
         """why the order's progress is not in the file; empty if it is"""
         self._outbox: list[tuple[str, Message]] = []
@@ -270,6 +272,7 @@ class Client:
             vehicle.paused = True
         self._permit = facts.permit
         self._follow(before)
+        self._await_free_way(now)
         for action_id, status, result in self.robot.results():
             for each in vehicle.actions:
                 if each.action.id == action_id:
@@ -327,14 +330,31 @@ class Client:
         if progress.status != DRIVING:
             self._leg = None
 
+    def _await_free_way(self, now: float) -> None:
+        """Before an obstacle the leg waits, and goes on by itself; after `blocked_timeout` the order fails, paused."""
+        why, limit = self._facts.blocked_by, self.settings.blocked_timeout
+        if not why or self.robot.progress.status != DRIVING or self._facts.driving:
+            self._blocked = ()
+        elif not self._blocked:
+            hint = f"remove the obstacle: the order continues by itself within {limit:g} s; or cancelOrder"
+            self._blocked, self._blocked_at = (Error("pathBlocked", why, self._place, hint),), now
+        elif now - self._blocked_at > limit:
+            self._fail(f"{self._blocked[0].description} (for {limit:g} s)")
+
+    @property
+    def _place(self) -> tuple[tuple[str, str], ...]:
+        """References to the order and to its next edge and node."""
+        vehicle = self.vehicle
+        edge = (("edgeId", vehicle.edges[0].id),) if vehicle.edges else ()
+        node = vehicle.nodes[0].id if vehicle.nodes else ""
+        return ("orderId", vehicle.order_id), *edge, ("nodeId", node)
+
     def _traverse(self) -> None:
         for ended in self.vehicle.traverse():
             self.robot.end(ended.action.id)
 
     def _fail(self, reason: str) -> None:
-        node = self.vehicle.nodes[0].id if self.vehicle.nodes else ""
-        references = (("orderId", self.vehicle.order_id), ("nodeId", node))
-        self._driving_error = Error("drivingError", reason, references, "cancelOrder, or stopPause to continue")
+        self._driving_error = Error("drivingError", reason, self._place, "cancelOrder, or stopPause to continue")
         self.vehicle.paused = bool(self.vehicle.nodes)
 
     def _drive(self) -> None:
@@ -403,6 +423,7 @@ class Client:
         vehicle, facts = self.vehicle, self._facts
         if self._driving_error is not None:
             facts = replace(facts, errors=(*facts.errors, self._driving_error))
+        facts = replace(facts, errors=(*facts.errors, *self._blocked))
         if self.file_problem:
             error = Error("fileError", self.file_problem, (), "remove files from the disk, or repair the file")
             facts = replace(facts, errors=(*facts.errors, error))

@@ -16,6 +16,7 @@ from tf2_msgs.msg import TFMessage
 from robot_control.drive.path.frames import Tf
 from robot_control.drive.path.run import path_of, placed_pose
 from robot_control.drive.path.waypoints import PathError, Waypoint
+from robot_control.files.files import printable
 from robot_control.fleet.client import DONE, DRIVING, ENDED, Progress
 from robot_control.fleet.custom import Actions
 from robot_control.fleet.settings import CustomAction, Settings
@@ -24,6 +25,7 @@ from robot_control.fleet.v2.messages import Error
 from robot_control.fleet.v2.state import Facts
 from robot_control.msg import FollowPathAction, FollowPathFeedback, FollowPathGoal, SafetyStatus
 from robot_control.robot.boundary import guard_action, unsealed
+from robot_control.robot.diagnosis.diagnosis import MOVING
 from robot_control.robot.diagnosis.state import SILENCE
 from robot_control.robot.pose import Pose, pose_of, turned
 from robot_control.robot.safety_states import DRIVABLE, STOPPED
@@ -57,7 +59,7 @@ class RosRobot:
         self.map_odom: list[Any] | None = None  # mapId, x, y, yaw of odom in the map, if this program sets it
         self._tf = Tf() if settings.localization else None
         self._static = rospy.Publisher("tf_static", TFMessage, queue_size=1, latch=True)
-        self._view = View("odom", "safety_status", "robot_status", "battery_state")
+        self._view = View("odom", "safety_status", "robot_status", "battery_state", "guard_state")
         action = FollowPathAction()
         results, feedback = (unsealed(type(each)) for each in (action.action_result, action.action_feedback))
         guard_action(ACTION, status=unsealed(GoalStatusArray), result=results, feedback=feedback)
@@ -104,11 +106,19 @@ class RosRobot:
             permit=(safety.run, safety.withdrawals) if safety is not None else (0, 0),
             silent=not fresh or not speaks,
             held_by=self._held_by,
+            blocked_by=self._blocked_by(safety, now),
             errors=(
                 *(_errors(safety) if safety is not None and speaks else [_silent("safetyMonitor", "safety_status")]),
                 *([] if fresh else [_silent("odometry", "odom")]),
             ),
         )
+
+    def _blocked_by(self, safety: SafetyStatus | None, now: float) -> str:
+        """Why the monitor leaves the robot no speed although it may drive; empty if it does."""
+        if safety is None or safety.state_name not in DRIVABLE or safety.speed_limit >= MOVING:
+            return ""
+        guard = self._view.fresh("guard_state", now)
+        return printable(str(guard.reason if guard is not None else "")) or "clearance leaves the robot no speed"
 
     @property
     def position(self) -> list[Any]:

@@ -47,6 +47,7 @@ class Settings:
     node_tolerance: float = 0.05
     heading_tolerance: float = 0.05
     base_reserve: float = 1.0
+    blocked_timeout: float = 60.0
     unknown_battery_charge: float = 80.0
     visualization_rate: float = 5.0
     memory_file: str = ""
@@ -88,6 +89,7 @@ RULES = rules_of(
     node_tolerance=number(0.01, 0.3),
     heading_tolerance=number(0.01, 1),
     base_reserve=number(0, 100),
+    blocked_timeout=number(1, 3600),
     unknown_battery_charge=number(0, 100),
     visualization_rate=number(0, 20),
     actions=("a map of names and actions", lambda value: isinstance(value, dict)),

@@ -6,7 +6,7 @@ import rospy
 from nav_msgs.msg import Odometry
 from sensor_msgs.msg import BatteryState
 
-from robot_control.msg import DriveState, LegState, RobotStatus, SafetyStatus
+from robot_control.msg import DriveState, GuardState, LegState, RobotStatus, SafetyStatus
 from robot_control.robot.boundary import Latest, UnfitError
 from robot_control.robot.diagnosis.state import SILENCE
 from robot_control.robot.pose import FARTHEST, pose_of
@@ -14,6 +14,7 @@ from robot_control.robot.pose import FARTHEST, pose_of
 KINDS = {
     "battery_state": BatteryState,
     "drive_state": DriveState,
+    "guard_state": GuardState,
     "leg_state": LegState,
     "odom": Odometry,
     "robot_status": RobotStatus,

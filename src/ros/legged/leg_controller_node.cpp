@@ -51,6 +51,7 @@ class LegControllerNode final : public CommandedNode {
   void connect(ros::NodeHandle& handle) override {
     leg_state_ = handle.advertise<LegState>("leg_state", 10);
     velocity_out_ = handle.advertise<geometry_msgs::TwistStamped>("cmd_vel_out", 10);
+    velocity_requested_ = handle.advertise<geometry_msgs::TwistStamped>("cmd_vel_requested", 10);
     set_posture_ = handle.advertiseService("set_posture", &LegControllerNode::set_posture, this);
     set_gait_ = handle.advertiseService("set_gait", &LegControllerNode::set_gait, this);
     intake().start(
@@ -104,7 +105,9 @@ class LegControllerNode final : public CommandedNode {
       message.chosen_gait = gait_of_mode(input_.chosen_mode(), gaits_);
     }
     leg_state_.publish(message);
-    velocity_out_.publish(velocity_out(command_, report().base_frame, time().at(command_.head.stamp_ns)));
+    const ros::Time stamp = time().at(command_.head.stamp_ns);
+    velocity_out_.publish(velocity_out(command_, report().base_frame, stamp));
+    velocity_requested_.publish(velocity_requested(command_, report().base_frame, stamp));
   }
 
   void diagnose(DiagnosticReport& report) override {
@@ -310,7 +313,7 @@ class LegControllerNode final : public CommandedNode {
   InputTopic<BoundedTwist> cmd_vel_{"cmd_vel", 1};
   InputTopic<BoundedTwistStamped> cmd_vel_stamped_{"cmd_vel_stamped", 1};
   ros::Publisher leg_state_;
-  ros::Publisher velocity_out_;
+  ros::Publisher velocity_out_, velocity_requested_;
   ros::ServiceServer set_posture_;
   ros::ServiceServer set_gait_;
   std::mutex posture_mutex_;  ///< locked only by try_lock

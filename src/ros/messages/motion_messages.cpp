@@ -197,12 +197,25 @@ sensor_msgs::BatteryState battery_state(const SensorFrame& sensors, ros::Time st
   return message;
 }
 
-geometry_msgs::TwistStamped velocity_out(const CommandFrame& command, const std::string& base_frame, ros::Time stamp) {
+namespace {
+
+geometry_msgs::TwistStamped stamped(const Twist& twist, const std::string& base_frame, ros::Time stamp) {
   geometry_msgs::TwistStamped message;
   message.header.stamp = stamp;
   message.header.frame_id = base_frame;
-  message.twist = twist_message(command.twist_limited);
+  message.twist = twist_message(twist);
   return message;
+}
+
+}  // namespace
+
+geometry_msgs::TwistStamped velocity_out(const CommandFrame& command, const std::string& base_frame, ros::Time stamp) {
+  return stamped(command.twist_limited, base_frame, stamp);
+}
+
+geometry_msgs::TwistStamped velocity_requested(const CommandFrame& command, const std::string& base_frame,
+                                               ros::Time stamp) {
+  return stamped(command.requested.twist, base_frame, stamp);
 }
 
 }  // namespace robot_control

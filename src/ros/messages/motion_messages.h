@@ -90,4 +90,8 @@ sensor_msgs::BatteryState battery_state(const SensorFrame& sensors, ros::Time st
 /// Returns the limited twist.
 geometry_msgs::TwistStamped velocity_out(const CommandFrame& command, const std::string& base_frame, ros::Time stamp);
 
+/// Returns the requested twist, before all limits.
+geometry_msgs::TwistStamped velocity_requested(const CommandFrame& command, const std::string& base_frame,
+                                               ros::Time stamp);
+
 }  // namespace robot_control

@@ -7,7 +7,9 @@
 #include <nav_msgs/Odometry.h>
 #include <robot_control/FollowPathActionFeedback.h>
 #include <robot_control/FollowPathActionResult.h>
+#include <robot_control/GuardState.h>
 #include <robot_control/LocalizationState.h>
+#include <sensor_msgs/JointState.h>
 #include <sensor_msgs/LaserScan.h>
 #include <tf2_msgs/TFMessage.h>
 
@@ -18,6 +20,8 @@
 namespace robot_control::navigation {
 
 using BoundedLaserScan = Bounded<sensor_msgs::LaserScan, 52, kMaxMessage>;
+using BoundedJointState = Bounded<sensor_msgs::JointState, 32, kMaxMessage>;
+using BoundedGuardState = Bounded<GuardState, 57, kMaxMessage>;
 using BoundedOdometry = Bounded<nav_msgs::Odometry, 700, 700 + 2 * kMaxFrameId>;
 using BoundedTFMessage = Bounded<tf2_msgs::TFMessage, 4, kMaxMessage>;
 using BoundedOccupancyGrid = Bounded<nav_msgs::OccupancyGrid, 96, 96 + kMaxFrameId + kMaxCells>;

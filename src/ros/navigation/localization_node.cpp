@@ -110,7 +110,7 @@ class LocalizationService {
   std::unique_ptr<Localizer> localizer_;  // null: there is no map
   ros::Time stamp_;
   MapTopics topics_{handle_};
-  ScanInput input_{handle_, [this](const PlacedScan& scan) { use(scan); },
+  ScanInput input_{handle_, "scan", [this](const PlacedScan& scan) { use(scan); },
                    [this](const nav_msgs::Odometry& odometry) { receive_odometry(odometry); }};
   ros::ServiceServer load_ = map_service(handle_, "load_map", [this](const std::string& path) { return load(path); });
   InputTopic<BoundedPoseWithCovarianceStamped> initial_{"initialpose", 1};

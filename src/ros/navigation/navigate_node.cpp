@@ -13,7 +13,8 @@
 #include "ros/navigation/goal_servers.h"
 #include "ros/navigation/navigation_messages.h"
 #include "ros/navigation/path_client.h"
-#include "ros/navigation/scan_guard.h"
+#include "ros/navigation/robot_outline.h"
+#include "ros/navigation/scan_store.h"
 #include "ros/nodes/service_node.h"
 #include "ros/reports/diagnostics.h"
 #include "signals/formatted_text.h"
@@ -25,21 +26,14 @@ constexpr double kPeriod = 0.1;      // s
 constexpr double kTfTimeout = 0.3;   // s for which a scan waits for tf
 constexpr double kMaxPoseAge = 1.0;  // s; a localisation is as slow as its scans
 
-constexpr const char* kDescription = "robot_description";
 constexpr std::uint32_t kMapOverhead = 1024;  // bytes of a message beside its cells
-
-Footprint read_footprint(const ros::NodeHandle& handle) {
-  std::string urdf;
-  handle.getParam(kDescription, urdf);
-  return footprint_of_urdf(urdf, handle.resolveName(kDescription));
-}
 
 class NavigateService {
  public:
   explicit NavigateService(const Parameters& parameters)
       : parameters_(parameters.navigate),
-        footprint_(read_footprint(handle_)),
-        guard_(handle_, footprint_),
+        footprint_(described_footprint(handle_)),
+        scans_(handle_, footprint_),
         path_client_(handle_),
         servers_(
             handle_, [this](const GoalServers::Goal& goal) { begin(goal); }, [this] { cancel("cancelled"); }) {
@@ -52,11 +46,7 @@ class NavigateService {
   }
 
   /// The outline of the robot is that of its description.
-  static std::vector<std::string> missing() {
-    const ros::NodeHandle handle;
-    if (handle.hasParam(kDescription)) return {};
-    return {handle.resolveName(kDescription) + ": start the robot"};
-  }
+  static std::vector<std::string> missing() { return RobotOutline::missing(); }
 
   void diagnose(DiagnosticReport& report) {
     const NavigatorState state = navigator_.active() ? output_.state
@@ -101,11 +91,11 @@ class NavigateService {
   /// Inserts a scan into the costmap, and compares it with the map. A scan waits until tf has the pose at its stamp.
   void process_scan(const ros::Time& time) {
     if (!waiting_ || (time - waiting_->seen.stamp).toSec() > kTfTimeout) {
-      if (auto scan = guard_.next_scan()) waiting_ = std::move(scan);
+      if (auto scan = scans_.next_scan()) waiting_ = std::move(scan);
     }
     if (!waiting_ || !costmap_) return;
     const PlacedScan& seen = waiting_->seen;
-    const auto base = frames_.lookup(parameters_.map_frame, guard_.input().base_frame(), seen.stamp, scan_problem_);
+    const auto base = frames_.lookup(parameters_.map_frame, scans_.input().base_frame(), seen.stamp, scan_problem_);
     if (!base) return;
     costmap_->set_predicted(from_base_axes(waiting_->predicted, base->pose));
     consistency_.update(costmap_->insert(seen.scan, composed(base->pose, seen.laser), now()));
@@ -116,12 +106,13 @@ class NavigateService {
   /// Returns why nothing can be driven now, and sets the robot's pose if it is known.
   std::string problem(const ros::Time& time) {
     if (!costmap_) return map_problem_;
-    if (const std::string why = guard_.input().problem(); !why.empty()) return why;
+    if (const std::string why = scans_.input().problem(); !why.empty()) return why;
+    if (const GuardReport guard = scans_.guard(); !guard.trusted) return guard.reason;
     if (!localization_.state.empty() && localization_.state != "localized") {
       return "the robot is not localised: " + localization_.state + ": " + localization_.reason;
     }
     std::string why;
-    const auto place = frames_.lookup(parameters_.map_frame, guard_.input().base_frame(), ros::Time(), why);
+    const auto place = frames_.lookup(parameters_.map_frame, scans_.input().base_frame(), ros::Time(), why);
     if (!place) return "the robot is not localised: " + why;
     pose_ = place->pose;
     const double age = time.toSec() - place->stamp;
@@ -172,7 +163,9 @@ class NavigateService {
     process_scan(time);
     const std::string why = problem(time);
     if (navigator_.active()) {
-      const std::string slowed_by = path_client_.reason().empty() ? guard_.reason() : path_client_.reason();
+      const GuardReport guard = scans_.guard();
+      const std::string slowed_by = path_client_.reason().empty() ? guard.reason : path_client_.reason();
+      heed(guard);
       output_ = navigator_.step({now(), why, consistency_.explanation(), slowed_by, pose_, path_client_.report()},
                                 costmap_.get());
       if (output_.cancel) path_client_.cancel();
@@ -183,7 +176,13 @@ class NavigateService {
       if (output_.state == NavigatorState::kFailed) conclude(false, false, output_.reason);
       servers_.feedback(output_, pose_, parameters_.map_frame);
     }
-    guard_.guard(navigator_.active(), path_client_.intended(pose_));
+  }
+
+  /// Marks the obstacle before which the guard holds the robot, for the next plan.
+  void heed(const GuardReport& guard) {
+    if (!guard.holds) held_since_ = now();
+    if (costmap_ && guard.obstacle && now() - held_since_ > kReplanPeriod)
+      costmap_->block(from_base_axes({*guard.obstacle}, pose_)[0], now());
   }
 
   void publish_costmap() {
@@ -210,8 +209,8 @@ class NavigateService {
   ros::NodeHandle handle_;
   const NavigateParameters parameters_;
   const Footprint footprint_;
-  ScanGuard guard_;
-  const Frames& frames_ = guard_.input().frames();
+  ScanStore scans_;
+  const Frames& frames_ = scans_.input().frames();
   PathClient path_client_;
   Navigator navigator_;
   std::unique_ptr<Costmap> costmap_;
@@ -224,8 +223,9 @@ class NavigateService {
   ros::WallTimer timer_;
 
   double goal_speed_ = 0;  // m/s
+  double held_since_ = 0;  // s
   std::string map_problem_ = "no map received: start slam, or localization with a saved map";
-  std::optional<GuardedScan> waiting_;  // for tf
+  std::optional<StoredScan> waiting_;  // for tf
   ros::Time seen_at_, requested_;
   std::string scan_problem_, last_;
   MapConsistency consistency_;

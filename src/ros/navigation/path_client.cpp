@@ -4,9 +4,6 @@
 #include <actionlib_msgs/GoalStatus.h>
 #include <robot_control/FollowPathActionGoal.h>
 
-#include <algorithm>
-#include <cmath>
-
 #include "ros/navigation/navigation_messages.h"
 
 namespace robot_control::navigation {
@@ -37,8 +34,6 @@ void PathClient::send(const Plan& plan, const std::string& frame, double speed, 
     message.goal.path.poses.push_back(stamped);
   }
   goal_.publish(message);
-  poses_ = plan.poses;
-  turning_ = false;
   reason_.clear();
   report_ = {PathReport::State::kActive, ""};
 }
@@ -50,20 +45,8 @@ void PathClient::cancel() {
   report_ = {};
 }
 
-PlanarMotion PathClient::intended(const PlanarPose& pose) const {
-  if (report_.state != PathReport::State::kActive || poses_.size() < 2) return {};
-  if (turning_) return {0, heading_error_ > 0 ? -1.0 : 1.0};
-  const auto away = [&](const PlanarPose& at) { return std::hypot(at.x - pose.x, at.y - pose.y); };
-  const auto near = std::min_element(poses_.begin() + 1, poses_.end(),
-                                     [&](const PlanarPose& p, const PlanarPose& q) { return away(p) < away(q); });
-  const PlanarPose &a = near[-1], &b = *near;
-  return {(b.x - a.x) * std::cos(a.yaw) + (b.y - a.y) * std::sin(a.yaw) < 0 ? -1.0 : 1.0, 0};
-}
-
 void PathClient::receive_feedback(const FollowPathActionFeedback& message) {
   if (message.status.goal_id.id != id_) return;
-  turning_ = message.feedback.state == "turning";
-  heading_error_ = message.feedback.heading_error;
   reason_ = message.feedback.reason;
 }
 

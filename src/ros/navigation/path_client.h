@@ -6,7 +6,6 @@
 
 #include <string>
 
-#include "navigation/motion_clearance.h"
 #include "navigation/navigator.h"
 #include "ros/navigation/bounded_inputs.h"
 
@@ -26,9 +25,6 @@ class PathClient {
   /// Returns why follow_path holds the robot, as it says; "" if it does not.
   std::string reason() const { return reason_; }
 
-  /// Returns the motion that follow_path intends now, as far as its feedback says: the sign of a turn on the spot, or
-  /// of the speed.
-  PlanarMotion intended(const PlanarPose& pose) const;
   bool connected() const { return goal_.getNumSubscribers() > 0; }
 
  private:
@@ -40,9 +36,6 @@ class PathClient {
   InputTopic<BoundedFollowPathActionResult> result_{"follow_path/result", 10};
   std::string id_, reason_;
   PathReport report_;
-  std::vector<PlanarPose> poses_;
-  bool turning_ = false;
-  double heading_error_ = 0;  // rad
   int sent_ = 0;
 };
 

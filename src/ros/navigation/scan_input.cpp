@@ -8,9 +8,9 @@
 
 namespace robot_control::navigation {
 
-ScanInput::ScanInput(ros::NodeHandle& handle, std::function<void(const PlacedScan&)> use,
+ScanInput::ScanInput(ros::NodeHandle& handle, const std::string& topic, std::function<void(const PlacedScan&)> use,
                      std::function<void(const nav_msgs::Odometry&)> odometry)
-    : frames_(handle), use_(std::move(use)), heard_(std::move(odometry)) {
+    : frames_(handle), use_(std::move(use)), heard_(std::move(odometry)), scan_(topic, 2) {
   scan_.connect_with_sender(handle, [this](const sensor_msgs::LaserScan& message, const Publisher& publisher) {
     receive(message, publisher.name);
   });

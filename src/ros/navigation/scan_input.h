@@ -25,8 +25,9 @@ struct PlacedScan {
 
 class ScanInput {
  public:
-  /// `use` is called for each scan, `odometry` for each message of odom, in the thread of the handle's queue.
-  ScanInput(ros::NodeHandle& handle, std::function<void(const PlacedScan&)> use,
+  /// `use` is called for each scan of `topic`, `odometry` for each message of odom, in the thread of the handle's
+  /// queue.
+  ScanInput(ros::NodeHandle& handle, const std::string& topic, std::function<void(const PlacedScan&)> use,
             std::function<void(const nav_msgs::Odometry&)> odometry);
 
   // Any thread may call these, but not from within `use`.
@@ -54,7 +55,7 @@ class ScanInput {
   nav_msgs::Odometry odometry_;  // the newest
   std::string place_problem_ = "no odom received: start the robot";
   double moved_ = 0, used_at_ = -1e9;  // m + rad; s
-  InputTopic<BoundedLaserScan> scan_{"scan", 2};
+  InputTopic<BoundedLaserScan> scan_;
   InputTopic<BoundedOdometry> odom_{"odom", 50};
 };
 

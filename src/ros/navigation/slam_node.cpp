@@ -79,7 +79,7 @@ class SlamService {
   bool changed_ = false, used_ = false;
   ros::Time stamp_;
   MapTopics topics_{handle_};
-  ScanInput input_{handle_, [this](const PlacedScan& scan) { use(scan); },
+  ScanInput input_{handle_, "scan", [this](const PlacedScan& scan) { use(scan); },
                    [this](const nav_msgs::Odometry& odometry) { receive_odometry(odometry); }};
   ros::ServiceServer save_ = map_service(handle_, "save_map", [this](const std::string& path) { return save(path); });
   ros::ServiceServer load_ = map_service(handle_, "load_map", [this](const std::string& path) { return load(path); });

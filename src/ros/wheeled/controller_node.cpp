@@ -55,6 +55,7 @@ class ControllerNode final : public CommandedNode {
     joint_commands_ = handle.advertise<std_msgs::Float64MultiArray>("joint_commands", 10);
     joint_targets_ = handle.advertise<sensor_msgs::JointState>("joint_targets", 10);
     velocity_out_ = handle.advertise<geometry_msgs::TwistStamped>("cmd_vel_out", 10);
+    velocity_requested_ = handle.advertise<geometry_msgs::TwistStamped>("cmd_vel_requested", 10);
     drive_state_ = handle.advertise<DriveState>("drive_state", 10);
     intake().start(earlier_controller(handle, command_topics()));
     if (mux_) {
@@ -84,6 +85,7 @@ class ControllerNode final : public CommandedNode {
     joint_commands_.publish(joint_commands(command_, wheels()));
     joint_targets_.publish(joint_targets(command_, wheels(), stamp));
     velocity_out_.publish(velocity_out(command_, report().base_frame, stamp));
+    velocity_requested_.publish(velocity_requested(command_, report().base_frame, stamp));
     DriveState state = drive_state(command_, plan(), std::exchange(since_message_, 0), wheels(), stamp);
     add_senders(state);
     drive_state_.publish(state);
@@ -233,7 +235,7 @@ class ControllerNode final : public CommandedNode {
 
   ros::Publisher joint_commands_;
   ros::Publisher joint_targets_;
-  ros::Publisher velocity_out_;
+  ros::Publisher velocity_out_, velocity_requested_;
   InputTopic<BoundedTwist> cmd_vel_{"cmd_vel", 1};
   InputTopic<BoundedTwistStamped> cmd_vel_stamped_{"cmd_vel_stamped", 1};
   CommandSourceList list_;

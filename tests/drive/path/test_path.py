@@ -287,7 +287,13 @@ def test_no_command_exceeds_speed_yaw_rate_and_limit():
     assert max(abs(command.angular) for command in commands) <= given.max_angular_speed + 1e-9
     commands = drive(Follower(route(STRAIGHT)), Ideal(), 5.0, limit=0.1)
     assert max(abs(command.linear) for command in commands) == 0.1
-    assert all(command.linear == 0.0 for command in drive(Follower(route(STRAIGHT)), Ideal(), 1.0, limit=0.0))
+
+
+@pytest.mark.parametrize("sign", [1, -1])
+def test_where_nothing_may_drive_the_command_says_where_the_path_goes(sign):
+    path = [Waypoint(0.0, 0.0, 0.0), Waypoint(1.0 * sign, 0.0, 0.0)]
+    commands = drive(Follower(route(path)), Ideal(), 1.0, limit=0.0)
+    assert {command.linear for command in commands} == {sign * FollowParameters.slowest}
 
 
 def test_a_speed_of_the_path_holds_from_its_point_on():

@@ -33,6 +33,7 @@ OF_OTHER_NODES = {
 OF_LEGS = {"body_pose", "foot_target", "joint_trajectory", "leg_state"}
 OF_NAVIGATION = {
     "scan",
+    "guard_state",
     "map",
     "map_metadata",
     "localization_state",

@@ -12,10 +12,9 @@ import rospy
 from actionlib_msgs.msg import GoalID, GoalStatus
 from diagnostic_msgs.msg import DiagnosticArray
 from nav_msgs.msg import OccupancyGrid, Odometry
-from robot_control.msg import FollowPathActionGoal, NavigateToAction, NavigateToGoal
+from robot_control.msg import FollowPathActionGoal, GuardState, NavigateToAction, NavigateToGoal
 from sensor_msgs.msg import LaserScan
-from std_msgs.msg import Float64
-from system.navigation.navigation_support import Localised, message_of, missing, share, transform
+from system.navigation.navigation_support import RAYS, Localised, World, message_of, missing, scan_of, share, transform
 from system.system_support import Latest, Process, Program, refusal, truncated_messages, wait_for
 from tf2_msgs.msg import TFMessage
 
@@ -23,41 +22,8 @@ HALL = np.zeros((80, 120), dtype=np.int8)
 HALL[[0, -1], :] = HALL[:, [0, -1]] = 100
 MAP = (-2.0, -2.0, 0.05, HALL)
 """a hall of 6 m by 4 m, with the robot at x = y = 0"""
-RAYS = 360
 SECOND = "{header: {frame_id: laser_link}, angle_increment: 0.1, range_max: 9.0, ranges: [1.0, 1.0]}"
 """a scan of another laser"""
-
-
-def scan_of(hall: tuple[float, float, float, float] = (-1.95, 3.95, -1.95, 1.95)) -> LaserScan:
-    """Returns the scan of a laser at the origin of the hall: left, right, bottom, top [m]."""
-    scan = LaserScan(angle_min=-math.pi, angle_increment=2 * math.pi / RAYS, range_min=0.1, range_max=12.0)
-    scan.header.frame_id, scan.header.stamp = "laser_link", rospy.Time.now()
-    angles = scan.angle_min + np.arange(RAYS) * scan.angle_increment
-    scan.angle_max = float(angles[-1])
-    with np.errstate(divide="ignore"):
-        walls = [np.where(np.cos(angles) * x > 0, x / np.cos(angles), np.inf) for x in hall[:2]]
-        walls += [np.where(np.sin(angles) * y > 0, y / np.sin(angles), np.inf) for y in hall[2:]]
-    scan.ranges = np.min(walls, axis=0).tolist()
-    return scan
-
-
-class World:
-    """Publishes scan and odom at 10 Hz, as a robot that stands; `change` is applied to each scan."""
-
-    def __init__(self) -> None:
-        self.change: Callable[[LaserScan], LaserScan | None] = lambda scan: scan
-        self._scan = rospy.Publisher("scan", LaserScan, queue_size=1)
-        self._odom = rospy.Publisher("odom", Odometry, queue_size=1)
-        self._timer = rospy.Timer(rospy.Duration(0.1), self._publish)
-
-    def _publish(self, _event: object) -> None:
-        odom = Odometry(child_frame_id="base_link")
-        odom.header.frame_id, odom.header.stamp = "odom", rospy.Time.now()
-        odom.pose.pose.orientation.w = 1.0
-        self._odom.publish(odom)
-        scan = self.change(scan_of())
-        if scan is not None:
-            self._scan.publish(scan)
 
 
 @unittest.skipIf(missing(), missing())
@@ -80,13 +46,16 @@ class NavigationInputsTest(unittest.TestCase):
         cls.localised.end()
         cls.navigate.end()
 
-    def answer(self) -> str:
-        """Sends a goal that is right, and returns why it is refused; "driven" if a path is sent."""
-        self.paths.clear()
+    def goal(self) -> NavigateToGoal:
         goal = NavigateToGoal()
         goal.target.header.frame_id, goal.target.pose.position.x = "map", 2.0
         goal.target.pose.orientation.w = 1.0
-        self.client.send_goal(goal)
+        return goal
+
+    def answer(self) -> str:
+        """Sends a goal that is right, and returns why it is refused; "driven" if a path is sent."""
+        self.paths.clear()
+        self.client.send_goal(self.goal())
         end = time.monotonic() + 6.0
         while time.monotonic() < end and not self.paths:
             if self.client.get_state() == GoalStatus.ABORTED:
@@ -182,20 +151,25 @@ class NavigationInputsTest(unittest.TestCase):
         time.sleep(0.5)
         self.assert_driven()
 
-    def test_5_while_a_goal_is_driven_a_silent_laser_leaves_no_clearance(self) -> None:
-        clearances: list[float] = []
-        subscriber = rospy.Subscriber("clearance", Float64, lambda message: clearances.append(message.data))
-        goal = NavigateToGoal()
-        goal.target.header.frame_id, goal.target.pose.position.x = "map", 2.0
-        goal.target.pose.orientation.w = 1.0
-        self.client.send_goal(goal)
-        wait_for("a free way", lambda: bool(clearances) and clearances[-1] > 1.0)
-        self.world.change = lambda _scan: None
-        wait_for("no clearance", lambda: clearances[-1] == 0.0)
-        self.world.change = lambda scan: scan
+    def test_5_a_laser_that_the_guard_doubts_holds_the_goal_and_an_obstacle_before_it_blocks_its_place(self) -> None:
+        guard = rospy.Publisher("guard_state", GuardState, queue_size=1)
+        costmap = Latest("costmap", OccupancyGrid)
+        wait_for("navigate", lambda: guard.get_num_connections() > 0)
+        state = GuardState(reason="scan is blind in part", trusted=False)
+        state.obstacle.x = math.nan
+        timer = rospy.Timer(rospy.Duration(0.1), lambda _event: guard.publish(state))
+        time.sleep(0.3)
+        self.assertIn("scan is blind in part", self.answer())
+        state.reason, state.trusted, state.obstacle.x = "an obstacle", True, 1.0
+        self.assert_driven()
+        self.client.send_goal(self.goal())
+        row, column = 40, 60  # of the place 1 m ahead, in MAP
+        cell = row * HALL.shape[1] + column
+        wait_for("the obstacle in the costmap", lambda: costmap.message and costmap.message.data[cell] == 100)
         self.client.cancel_goal()
-        wait_for("no limit after the goal", lambda: math.isinf(clearances[-1]))
-        subscriber.unregister()
+        timer.shutdown()
+        time.sleep(1.0)
+        self.assert_driven()
 
     def test_6_all_wrong_parameters_refuse_the_start_at_once(self) -> None:
         rospy.set_param("/wrong", {"speed": "fast", "unknown_is_free": 1, "map_frame": [1], "sped": 0.4})
@@ -225,19 +199,13 @@ class NavigationInputsTest(unittest.TestCase):
         wait_for("a report", lambda: found.message is not None and found.message.status[0].name == "navigate")
         self.assertIn("goal", {value.key for value in found.message.status[0].values})
 
-    def test_7_one_that_is_started_again_ends_the_path_of_the_one_before_and_frees_the_robot(self) -> None:
-        clearances: list[float] = []
+    def test_7_one_that_is_started_again_ends_the_path_of_the_one_before(self) -> None:
         cancelled: list[GoalID] = []
         self.assert_driven()
         self.navigate.kill()
-        subscribers = [
-            rospy.Subscriber("clearance", Float64, lambda message: clearances.append(message.data)),
-            rospy.Subscriber("follow_path/cancel", GoalID, cancelled.append),
-        ]
+        subscriber = rospy.Subscriber("follow_path/cancel", GoalID, cancelled.append)
         self.__class__.navigate = Program("navigate")
-        wait_for("no limit", lambda: bool(clearances) and math.isinf(clearances[-1]))
         wait_for("the end of all paths before", lambda: bool(cancelled))
         self.assertGreater(cancelled[0].stamp, self.paths[-1].goal_id.stamp)
         self.assertEqual(cancelled[0].id, "")
-        for subscriber in subscribers:
-            subscriber.unregister()
+        subscriber.unregister()

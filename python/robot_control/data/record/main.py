@@ -16,8 +16,9 @@ REQUESTS = (
 )
 REPORTS = (
     *("joint_commands", "joint_targets", "joint_states", "odom", "wheel_odom", "tf", "tf_static", "imu/data_raw"),
-    *("imu/data", "cmd_vel_out", "battery_state", "drive_state", "leg_state", "path_wanted", "scan", "map"),
-    *("map_metadata", "localization_state", "amcl_pose", "particlecloud", "view/markers", "view/path_driven"),
+    *("imu/data", "cmd_vel_out", "cmd_vel_requested", "battery_state", "drive_state", "leg_state", "path_wanted"),
+    *("scan", "guard_state", "map", "map_metadata", "localization_state", "amcl_pose", "particlecloud"),
+    *("view/markers", "view/path_driven"),
     *("robot_kind", "safety_status", "robot_status", "ground_truth/odom", "/diagnostics", "/clock", "/rosout"),
 )
 TOPICS = REQUESTS + REPORTS

@@ -147,7 +147,8 @@ class Follower:
         Args:
             pose: of the robot, by odometry.
             measured: its twist.
-            limit: m/s that nothing may exceed (SafetyStatus.speed_limit).
+            limit: m/s that nothing may exceed (SafetyStatus.speed_limit). Below `slowest`, which the controller then
+                limits, the command only says where the path goes: the collision guard watches that way.
             elapsed: s since the pose of the last step.
         """
         if not all(map(math.isfinite, (pose.x, pose.y, pose.yaw, measured.linear, measured.angular))):
@@ -262,7 +263,7 @@ class Follower:
             turn_limit / max(abs(curvature), 1e-9),
             math.sqrt(2 * given.deceleration * max(left, 0.0)),
         )
-        speed = min(max(speed, given.slowest), limit)
+        speed = max(given.slowest, min(speed, limit))
         return Motion(piece.sign * speed, speed * curvature)
 
     def _goes_wrong(self, foot: Foot, left: float, driven: float) -> bool:

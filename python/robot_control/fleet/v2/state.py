@@ -43,6 +43,7 @@ class Facts:
     permit: tuple[int, int] = (0, 0)  # that of the monitor: each stop and each start begin another one
     silent: bool = False  # odometry or safety_status does not come
     held_by: str = ""  # why the present path is paused at the robot
+    blocked_by: str = ""  # why the collision guard leaves the robot no way
     errors: tuple[Error, ...] = ()
 
     @property

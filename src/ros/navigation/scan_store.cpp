@@ -1,0 +1,53 @@
+#include "ros/navigation/scan_store.h"
+
+#include <cmath>
+#include <utility>
+
+#include "files/ascii.h"
+
+namespace robot_control::navigation {
+namespace {
+
+ros::NodeHandle with_queue(ros::NodeHandle handle, ros::CallbackQueue& queue) {
+  handle.setCallbackQueue(&queue);
+  return handle;
+}
+
+}  // namespace
+
+ScanStore::ScanStore(const ros::NodeHandle& handle, Footprint footprint)
+    : footprint_(std::move(footprint)),
+      handle_(with_queue(handle, queue_)),
+      input_(
+          handle_, "scan", [this](const PlacedScan& scan) { use(scan); }, [](const nav_msgs::Odometry&) {}) {
+  state_.connect(handle_, [this](const GuardState& message) { receive(message); });
+  spinner_.start();
+}
+
+std::optional<StoredScan> ScanStore::next_scan() {
+  const std::lock_guard lock(mutex_);
+  return std::exchange(newest_, std::nullopt);
+}
+
+GuardReport ScanStore::guard() {
+  const std::lock_guard lock(mutex_);
+  return ros::SteadyTime::now().toSec() - reported_at_ > kScanTimeout ? GuardReport() : report_;
+}
+
+void ScanStore::use(const PlacedScan& scan) {
+  const std::lock_guard lock(mutex_);
+  const PlanarPose& base = scan.odometry.mean;
+  const std::vector<MovingObject> objects =
+      in_base_axes(objects_.update(scan.scan, composed(base, scan.laser), scan.stamp.toSec()), base);
+  newest_ = {scan, predicted_points(objects, footprint_)};
+}
+
+void ScanStore::receive(const GuardState& message) {
+  const std::lock_guard lock(mutex_);
+  report_ = {ascii(message.reason), message.trusted != 0, !(message.clearance > 0), {}};
+  const Point obstacle{message.obstacle.x, message.obstacle.y};
+  if (std::hypot(obstacle.x, obstacle.y) < kFarthest) report_.obstacle = obstacle;
+  reported_at_ = ros::SteadyTime::now().toSec();
+}
+
+}  // namespace robot_control::navigation
