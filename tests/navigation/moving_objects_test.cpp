@@ -2,8 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "navigation/guard/motion_clearance.h"
 #include "navigation/house.h"
-#include "navigation/motion_clearance.h"
 
 namespace robot_control::navigation::tests {
 

@@ -1,7 +1,7 @@
 #include "navigation/navigator.h"
 
+#include "navigation/guard/motion_clearance.h"
 #include "navigation/house.h"
-#include "navigation/motion_clearance.h"
 #include "support/matchers.h"
 
 namespace robot_control::navigation::tests {

@@ -1,4 +1,4 @@
-#include "navigation/scan_memory.h"
+#include "navigation/guard/scan_memory.h"
 
 #include <algorithm>
 #include <random>

@@ -123,12 +123,13 @@ MAY_INCLUDE = {
     # The laws of a log, run again from its rows.
     "log/replay": LOOP,
     "simulation": ALL - {"simulation"} | {"simulation/machines"},
-    "bindings": ALL | {"log/replay", "navigation", "navigation/mrpt"},
+    "bindings": ALL | {"log/replay", "navigation", "navigation/guard", "navigation/mrpt"},
     "ros": LOOP | {"files", "machine/description"},
     # Maps, costmap, planner: services beside the loop, without ROS.
     "navigation": {"signals", "files", "machine", "parameters"},
+    "navigation/guard": {"navigation", "machine", "signals"},
     "navigation/mrpt": {"navigation"},
-    "ros/navigation": {"signals", "navigation", "navigation/mrpt", "ros", "configuration", "files"},
+    "ros/navigation": {"signals", "navigation", "navigation/guard", "navigation/mrpt", "ros", "configuration", "files"},
     "main": {
         "signals",
         "ros",

@@ -10,11 +10,11 @@
 
 #include "bindings/navigation/conversions.h"
 #include "bindings/numpy_version.h"
-#include "navigation/collision_guard.h"
+#include "navigation/guard/collision_guard.h"
+#include "navigation/guard/moving_outline.h"
 #include "navigation/map_consistency.h"
 #include "navigation/map_file.h"
 #include "navigation/moving_objects.h"
-#include "navigation/moving_outline.h"
 #include "navigation/navigator.h"
 #include "navigation/scan_watch.h"
 

@@ -7,10 +7,12 @@
 #include <cmath>
 #include <deque>
 #include <limits>
+#include <map>
+#include <stdexcept>
 
-#include "navigation/collision_guard.h"
+#include "navigation/guard/collision_guard.h"
+#include "navigation/guard/moving_outline.h"
 #include "ros/navigation/navigation_messages.h"
-#include "ros/navigation/robot_outline.h"
 #include "ros/navigation/scan_input.h"
 #include "ros/nodes/service_node.h"
 #include "ros/reports/diagnostics.h"
@@ -22,6 +24,40 @@ namespace {
 constexpr double kWatchPeriod = 0.1;     // s
 constexpr double kReportedWay = 0.3;     // m; with less, the state says why
 constexpr double kRequestTimeout = 0.5;  // s without a message after which nothing is requested
+
+constexpr const char* kDescription = "robot_description";
+
+RigidBodies described(const ros::NodeHandle& handle) {
+  std::string urdf;
+  handle.getParam(kDescription, urdf);
+  return read_rigid_bodies({urdf, handle.resolveName(kDescription)});
+}
+
+/// The outline of the robot, by `robot_description` and, with legs or an arm, `joint_states`.
+class RobotOutline {
+ public:
+  explicit RobotOutline(ros::NodeHandle& handle) : outline_(described(handle)) {
+    if (outline_.changes())
+      joints_.connect(handle, [this](const sensor_msgs::JointState& message) { receive(message); });
+  }
+  const Footprint& footprint() const noexcept { return outline_.footprint(); }
+
+ private:
+  void receive(const sensor_msgs::JointState& message) {
+    std::map<std::string, double> positions;
+    for (std::size_t i = 0; i < std::min(message.name.size(), message.position.size()); ++i) {
+      if (std::isfinite(message.position[i])) positions[message.name[i]] = message.position[i];
+    }
+    try {
+      outline_.update(positions, ros::SteadyTime::now().toSec());
+    } catch (const std::invalid_argument& error) {  // the base lies beside such an outline
+      ROS_WARN_THROTTLE(10, "joint_states: %s", error.what());
+    }
+  }
+
+  MovingOutline outline_;
+  InputTopic<BoundedJointState> joints_{"joint_states", 1};
+};
 
 class CollisionGuardService {
  public:
@@ -46,7 +82,11 @@ class CollisionGuardService {
   }
 
   /// The outline of the robot is that of its description.
-  static std::vector<std::string> missing() { return RobotOutline::missing(); }
+  static std::vector<std::string> missing() {
+    const ros::NodeHandle handle;
+    if (handle.hasParam(kDescription)) return {};
+    return {handle.resolveName(kDescription) + ": start the robot"};
+  }
 
   void diagnose(DiagnosticReport& report) const {
     if (!active_) return report.ok("off");

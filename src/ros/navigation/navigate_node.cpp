@@ -13,7 +13,6 @@
 #include "ros/navigation/goal_servers.h"
 #include "ros/navigation/navigation_messages.h"
 #include "ros/navigation/path_client.h"
-#include "ros/navigation/robot_outline.h"
 #include "ros/navigation/scan_store.h"
 #include "ros/nodes/service_node.h"
 #include "ros/reports/diagnostics.h"
@@ -26,13 +25,20 @@ constexpr double kPeriod = 0.1;      // s
 constexpr double kTfTimeout = 0.3;   // s for which a scan waits for tf
 constexpr double kMaxPoseAge = 1.0;  // s; a localisation is as slow as its scans
 
+constexpr const char* kDescription = "robot_description";
 constexpr std::uint32_t kMapOverhead = 1024;  // bytes of a message beside its cells
+
+Footprint read_footprint(const ros::NodeHandle& handle) {
+  std::string urdf;
+  handle.getParam(kDescription, urdf);
+  return footprint_of_urdf(urdf, handle.resolveName(kDescription));
+}
 
 class NavigateService {
  public:
   explicit NavigateService(const Parameters& parameters)
       : parameters_(parameters.navigate),
-        footprint_(described_footprint(handle_)),
+        footprint_(read_footprint(handle_)),
         scans_(handle_, footprint_),
         path_client_(handle_),
         servers_(
@@ -46,7 +52,11 @@ class NavigateService {
   }
 
   /// The outline of the robot is that of its description.
-  static std::vector<std::string> missing() { return RobotOutline::missing(); }
+  static std::vector<std::string> missing() {
+    const ros::NodeHandle handle;
+    if (handle.hasParam(kDescription)) return {};
+    return {handle.resolveName(kDescription) + ": start the robot"};
+  }
 
   void diagnose(DiagnosticReport& report) {
     const NavigatorState state = navigator_.active() ? output_.state

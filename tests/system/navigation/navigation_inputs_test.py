@@ -160,7 +160,8 @@ class NavigationInputsTest(unittest.TestCase):
         timer = rospy.Timer(rospy.Duration(0.1), lambda _event: guard.publish(state))
         time.sleep(0.3)
         self.assertIn("scan is blind in part", self.answer())
-        state.reason, state.trusted, state.obstacle.x = "an obstacle", True, 1.0
+        state.reason, state.trusted, state.obstacle.x = "an obstacle", True, 1.02
+        state.obstacle.y = 0.02
         self.assert_driven()
         self.client.send_goal(self.goal())
         row, column = 40, 60  # of the place 1 m ahead, in MAP

@@ -1,4 +1,4 @@
-#include "navigation/collision_guard.h"
+#include "navigation/guard/collision_guard.h"
 
 #include <algorithm>
 #include <cmath>

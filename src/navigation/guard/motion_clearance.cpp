@@ -1,4 +1,4 @@
-#include "navigation/motion_clearance.h"
+#include "navigation/guard/motion_clearance.h"
 
 #include <algorithm>
 #include <cmath>

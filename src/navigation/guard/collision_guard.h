@@ -11,8 +11,8 @@
 #include <string>
 #include <utility>
 
-#include "navigation/motion_clearance.h"
-#include "navigation/scan_memory.h"
+#include "navigation/guard/motion_clearance.h"
+#include "navigation/guard/scan_memory.h"
 
 namespace robot_control::navigation {
 

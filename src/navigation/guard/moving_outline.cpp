@@ -1,4 +1,4 @@
-#include "navigation/moving_outline.h"
+#include "navigation/guard/moving_outline.h"
 
 #include <algorithm>
 #include <limits>

@@ -20,7 +20,7 @@
 #include <string>
 #include <vector>
 
-#include "navigation/motion_clearance.h"
+#include "navigation/guard/motion_clearance.h"
 #include "navigation/scan_watch.h"
 
 namespace robot_control::navigation {
@@ -34,7 +34,7 @@ inline constexpr double kDoubtfulAngle = 0.175;  ///< rad, 10°: at 0.5 m the wi
 class ScanMemory {
  public:
   /// Takes a scan whose laser was at `mount` on the base, and the base at `base` in odom. `stamp` in s. After a jump of
-  /// the pose or the stamp it begins anew.
+  /// the pose or the stamp it is empty.
   void update(const Scan& scan, const PlanarPose& mount, const PlanarPose& base, double stamp,
               const Footprint& footprint);
 
