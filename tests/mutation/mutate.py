@@ -5,8 +5,9 @@ usage: mutate.py ROOM N [SEED]    ROOM: a folder below src (gate/wheeled); N: ho
 
 The changes are drawn at random among all of the room, without those that do not compile and those that equal.txt lists.
 One is found if a test program fails, crashes or does not end. The programs are those of the folder below tests with the
-same name, or of the nearest folder above it. Those that measure their own speed (FAST) are left out. Each change that
-no test finds is printed with its place. The exit code is 0 if and only if at least 85 % are found.
+same name, or of the nearest folder above it. Those that measure their own speed (FAST) are left out. An index outside
+of an array ends them. Each change that no test finds is printed with its place. The exit code is 0 if and only if at
+least 85 % are found.
 
 A copy of the sources in build/mutants holds all changes of control, gate … at once, and an environment variable chooses
 one (switch.h). A first run notes which test executes which place; a change is then tried with these tests alone.
@@ -526,7 +527,7 @@ class Copy:
 
     def compile(self, targets: list[str]) -> str:
         """Returns the compiler's messages, empty if it succeeds."""
-        flags = f"-O1 -w -Wno-narrowing -I{self.tree}/tests"
+        flags = f"-O1 -w -Wno-narrowing -D_GLIBCXX_ASSERTIONS -I{self.tree}/tests"
         workspace = [f"-DMUTATED={self.folder}", f"-DWORKSPACE_LIBRARIES={ROOT}/build/robot_control/devel/lib"]
         options = [*workspace, "-DROBOT_CONTROL_ROS=OFF", "-DCMAKE_BUILD_TYPE=None", f"-DCMAKE_CXX_FLAGS={flags}"]
         configure = ["cmake", "-S", str(self.tree), "-B", str(self.build), *options]

@@ -130,6 +130,11 @@ TEST_F(ReadParameters, NamesTheRuleOfAMapThatIsNone) {
                                         "wheel_inertia, wheel_damping, wheel_friction"));
 }
 
+TEST_F(ReadParameters, ChecksTheGaitsOfTheUser) {
+  EXPECT_THAT(file.refusal({{"leg_controller.gait_1", "{name: pace}", "dict"}}),
+              HasSubstr("leg_controller.gait_1.name = pace: does not describe a gait by itself [dict]"));
+}
+
 /// Adds the values of a YAML map as overlays.
 void add_values(const YAML::Node& map, const std::string& prefix, std::vector<Overlay>& to) {
   for (const auto& entry : map) {

@@ -184,7 +184,6 @@ void LegController::report(CommandFrame& out) const noexcept {
   const Stand::State& stand = state_.stand;
   out.legged.phase = state_.phase;
   out.legged.lifted = state_.phase >= LegPhase::kStanding && stand.lifted != kLegs ? stand.lifted + 1 : 0;
-  if (state_.phase < LegPhase::kRising || state_.phase > LegPhase::kLowering) return;
   for (std::size_t leg = 0; leg < kLegs; ++leg) out.contact_schedule[leg] = stand.share[leg] > 0 ? 0.5 : 0;
   if (state_.phase == LegPhase::kStanding) stand_.report(stand, out.legged);
 }

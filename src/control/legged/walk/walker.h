@@ -95,7 +95,7 @@ class Walker {
 
   /// Returns the cycles from plan to plan.
   static std::uint64_t plan_cycles(double period) noexcept {
-    return std::max<std::uint64_t>(1, static_cast<std::uint64_t>(kPlanTime / period + 1e-9));
+    return std::max<std::uint64_t>(1, static_cast<std::uint64_t>(kPlanTime / period));
   }
 
   /// `friction` is μ of the forces, `period` s, `gaits` those of a leg of kReferenceLeg.

@@ -39,6 +39,22 @@ TEST(LyingLegs, BrakeAllJointsUntilARequestToStandUp) {
   EXPECT_EQ(legs.out.reasons, 0u);
 }
 
+TEST(LyingLegs, BearNothing) {
+  const ContactSchedule none{}, all{0.5, 0.5, 0.5, 0.5};
+  IdealLegs legs = standing();
+  EXPECT_EQ(legs.out.contact_schedule, all);
+  legs.step(stance_of({ModeKind::kLie}));
+  EXPECT_EQ(legs.out.contact_schedule, all) << "while the body sinks";
+  run_until(legs, LegPhase::kLying);
+  EXPECT_EQ(legs.out.contact_schedule, none);
+  legs.step(stance_of({ModeKind::kStand}));
+  ASSERT_EQ(legs.out.legged.phase, LegPhase::kGathering);
+  EXPECT_EQ(legs.out.contact_schedule, none);
+  run_until(legs, LegPhase::kRising);
+  legs.step();
+  EXPECT_EQ(legs.out.contact_schedule, all);
+}
+
 /// The attitude of a robot whose ground rises by `slope` rad ahead.
 Quaternion uphill(double slope) {
   return {0, std::sin(-slope / 2), 0, std::cos(-slope / 2)};

@@ -28,6 +28,28 @@ TEST_F(LegUseTest, IsInfiniteWhereALegReachesItsFootNoMore) {
   EXPECT_EQ(steady({0.5, 0, 0}, {0.05, 0.15, 0.15}), std::numeric_limits<double>::infinity());
 }
 
+/// A trot in place that lifts no foot keeps the joints where they stand.
+TEST_F(LegUseTest, IsInfiniteWhereAJointLeavesItsRangeOrComesNearItsEndInAPose) {
+  constexpr double kLittle = 1e-6;
+  trot.lift = 0;
+  const LegGeometry whole = robot.legs[1].kinematics.geometry();
+  const LegAngles angles = robot.legs[1].kinematics.inverse(stance.feet[1]).angles;
+  for (std::size_t i = 0; i < kLegJoints; ++i) {
+    const double angle = angles[static_cast<Eigen::Index>(i)];
+    const auto reaches = [&](double below, double above, const CarriedBody& body) {
+      LegGeometry geometry = whole;
+      geometry.range[i] = {angle - below, angle + above};
+      robot.legs[1].kinematics = LegKinematics(geometry);
+      return std::isfinite(steady({}, body));
+    };
+    for (const auto& [end, body] : {std::pair{0.0, CarriedBody{}}, {kFromEnd, CarriedBody{0, kLittle / 10, 0}}}) {
+      EXPECT_TRUE(reaches(end + kLittle, end + kLittle, body)) << i;
+      EXPECT_FALSE(reaches(end - kLittle, 1, body)) << i;
+      EXPECT_FALSE(reaches(1, end - kLittle, body)) << i;
+    }
+  }
+}
+
 /// The hip bears half of the weight beside its axis, in a trot on the spot.
 TEST_F(LegUseTest, CountsTheTorqueOfHalfOfTheWeight) {
   const double lever = std::abs(stance.feet[0].y() - robot.legs[0].kinematics.geometry().hip.y());

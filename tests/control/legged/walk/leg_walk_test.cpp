@@ -439,6 +439,57 @@ TEST(LegWalk, AsksForNoMoreSpeedThanTheLegsCarryInThePoseInForce) {
   EXPECT_NEAR(legs.legs.out.legged.body[4], body[2], 1e-3);
 }
 
+/// Joints of half of their speed bound a walk before the legs are too short for it.
+TEST(LegWalk, NoJointIsFasterThanItsPartWhileTheBodyLeansAndAfterwards) {
+  LegModel slow = lopsided();
+  for (JointModel& joint : slow.joints) joint.velocity_limit *= 0.5;
+  const NominalStance stance = nominal_stance(slow);
+  const LegUse use(slow, stance);
+  const Gait trot = gait_of(slow, stance, kGaits[gait_named("trot")]);
+  WalkingLegs legs(slow);
+  Request request = twist_of(1.5, 0, 0, mode_of(gait_named("trot")));
+  legs.run(2, request);
+  request.posture = {.height = 0, .roll = -0.1, .pitch = 0.1};
+  legs.legs.request(request);
+  const auto& [height, roll, pitch] = legs.legs.state().walk.carried;
+  for (double time = 0; time < 1; time += kCycle) {
+    const double before = roll.value;
+    legs.step();
+    if (roll.value == before) continue;
+    EXPECT_LE(use.steady(trot, {legs.speed(0), 0, 0}, {height.value, roll.value, pitch.value}, 8,
+                         {height.speed, roll.speed, pitch.speed}),
+              kSpeedShare + 1e-9)
+        << time;
+  }
+  EXPECT_NEAR(roll.value, -0.1, 1e-4);
+  EXPECT_NEAR(pitch.value, 0.1, 1e-4);
+  const auto used = [&](double speed) { return use.steady(trot, {speed, 0, 0}, {0, -0.1, 0.1}, 8); };
+  EXPECT_LE(used(legs.speed(0)), kSpeedShare + 1e-9);
+  EXPECT_GT(used(1.06 * legs.speed(0)), kSpeedShare);
+  EXPECT_LT(used(1.06 * legs.speed(0)), 1.1 * kSpeedShare) << "the legs are long enough";
+}
+
+/// The search among all parts takes longer.
+TEST(LegWalk, ThePartOfATwistChangesByAStepPerCycleWhileThePoseAloneMoves) {
+  constexpr double kPartStep = 1.0 / 32;
+  for (const double from : {0.0, 1.0}) {
+    WalkingLegs legs = ready();
+    Request request = twist_of(1.5, 0, 0, mode_of(gait_named("trot")));
+    legs.run(1.5, request);
+    request.posture = {.height = 0.03, .roll = -0.1, .pitch = -0.1};
+    legs.run(2 * kCycle, request);
+    LegController::State state = legs.legs.state();
+    ASSERT_GT(state.walk.carried_twist.part, 4 * kPartStep);
+    ASSERT_LT(state.walk.carried_twist.part, 1 - 4 * kPartStep);
+    state.walk.carried_twist.part = from;
+    legs.legs.controller.set_state(state);
+    for (int steps = 1; steps <= 4; ++steps) {
+      legs.step();
+      EXPECT_EQ(legs.legs.state().walk.carried_twist.part, std::abs(from - steps * kPartStep));
+    }
+  }
+}
+
 /// Two feet bear in a trot and three in a crawl. So weak legs carry less of a pose in a trot.
 TEST(LegWalk, TakesOfAPoseWhatTheLegsCarryInTheGaitOfNow) {
   LegModel weak = lopsided();
