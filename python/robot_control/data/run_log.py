@@ -6,11 +6,12 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import yaml  # type: ignore[import-untyped]
 from numpy.typing import NDArray
 
 from robot_control._robot_control import BagError, NoTraceError, TraceError, read_run_bag, read_run_header
 from robot_control.files.files import MAX_TABLE, check_input, utf8
-from robot_control.loop.roles import Kind
+from robot_control.loop.roles import ESTIMATOR, Kind
 
 BAG_MAGIC = b"#ROSBAG"
 
@@ -87,6 +88,12 @@ def is_run_log(path: Path) -> bool:
 def kind_in(header: Mapping[str, Any]) -> Kind:
     """The kind of robot that the header of a log names."""
     return Kind(str(header.get("kind", "")))
+
+
+def odom_frame(parameters: str) -> str:
+    """The name of the frame odom, from the YAML text in a log's header."""
+    blocks = yaml.safe_load(parameters) or {}
+    return str((blocks.get(ESTIMATOR) or {}).get("odom_frame", "odom"))
 
 
 def read_log(path: Path | str, columns: Sequence[str] = ()) -> dict[str, FloatArray]:

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 from robot_control import ClosedLoop
 from robot_control.data.export.main import main
-from robot_control.data.export.topics import odom_frame, root_link
-from robot_control.data.run_log import read_log, read_run
+from robot_control.data.export.topics import root_link
+from robot_control.data.run_log import odom_frame, read_log, read_run
 from support.pypi_package import imported
 
 SECONDS = 2.0

@@ -8,15 +8,13 @@ from typing import Any
 
 import numpy as np
 import rosbag
-import yaml  # type: ignore[import-untyped]
 from geometry_msgs.msg import TransformStamped, Twist
 from nav_msgs.msg import Odometry
 from rospy import Time
 from sensor_msgs.msg import JointState
 from tf2_msgs.msg import TFMessage
 
-from robot_control.data.run_log import FloatArray, RunLog, read_run
-from robot_control.loop.roles import ESTIMATOR
+from robot_control.data.run_log import FloatArray, RunLog, odom_frame, read_run
 
 ODOM_RATE = 50.0
 """Hz, odom and tf; the default of a running robot"""
@@ -133,9 +131,3 @@ def root_link(urdf: str) -> str:
     robot = ET.fromstring(urdf)
     children = {child.get("link") for child in robot.iterfind("joint/child")}
     return next((link.get("name", "") for link in robot.iterfind("link") if link.get("name") not in children), "")
-
-
-def odom_frame(parameters: str) -> str:
-    """The name of the frame odom, from the YAML text in a log's header."""
-    blocks = yaml.safe_load(parameters) or {}
-    return str((blocks.get(ESTIMATOR) or {}).get("odom_frame", "odom"))

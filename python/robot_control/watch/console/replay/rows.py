@@ -8,9 +8,8 @@ from typing import Any
 import numpy as np
 
 from robot_control._robot_control import read_run_header
-from robot_control.data.export.topics import odom_frame
 from robot_control.data.intervals import intervals
-from robot_control.data.run_log import kind_in, read_run
+from robot_control.data.run_log import kind_in, odom_frame, read_run
 from robot_control.files.files import utf8
 from robot_control.loop import signal_names as names
 from robot_control.watch.console.replay.maps import maps_beside
