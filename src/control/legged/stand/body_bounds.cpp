@@ -64,7 +64,7 @@ std::array<AxisBounds, 6> body_bounds(const LegModel& robot) {
 double lying_down_time(const LegModel& robot) {
   const LegTuning tuning = leg_tuning(robot);
   const std::array<AxisBounds, 6> bounds = body_bounds(robot);
-  const double ranges[6] = {tuning.sway, tuning.sway, tuning.bob, tuning.lean, tuning.lean, tuning.lean};
+  const double ranges[] = {tuning.sway, tuning.sway, tuning.bob, tuning.lean, tuning.lean, tuning.lean};
   double length = 0, slowest = 0;
   for (std::size_t axis = 0; axis < bounds.size(); ++axis) {
     length += ranges[axis] / bounds[axis].acceleration;

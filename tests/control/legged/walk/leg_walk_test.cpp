@@ -227,6 +227,25 @@ TEST(LegWalk, EndsAfterAZeroOnFeetThatAreOnTheirPlaces) {
   EXPECT_TRUE(legs.walks()) << "it walks again";
 }
 
+/// Large knees meet the ground while the body sinks: it keeps the same margin before and after.
+TEST(LegWalk, LeavesABodyThatSinksAsFarAsBefore) {
+  LegModel robot = lopsided();
+  for (std::size_t leg = 0; leg < kLegs; ++leg) {
+    const Eigen::Vector3d foot = nominal_stance(robot).feet[leg];
+    const LegKinematics& kinematics = robot.legs[leg].kinematics;
+    robot.legs[leg].knee_radius = kinematics.knee(kinematics.inverse(foot).angles).z() - foot.z() - 0.03;
+  }
+  WalkingLegs stood(robot), walked = stood;
+  walked.run(1, stance_of(mode_of(gait_named("trot"))));
+  ASSERT_TRUE(walked.walks());
+  ASSERT_LT(walked.end(), 2);
+  Request low;
+  low.posture.height = -1;
+  for (WalkingLegs* legs : {&stood, &walked}) legs->run(2, low);
+  EXPECT_GT(stood.legs.out.legged.body[2], 0.01 - leg_tuning(robot).bob) << "the knees are in the way";
+  EXPECT_NEAR(walked.legs.out.legged.body[2], stood.legs.out.legged.body[2], 5e-3) << "feet beside their places";
+}
+
 TEST(LegWalk, HoldsTheTiltWithWhichItStands) {
   WalkingLegs legs = ready();
   Request leans = twist_of(0.2);

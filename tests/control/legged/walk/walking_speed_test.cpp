@@ -124,6 +124,29 @@ TEST_F(WalkingSpeedTest, NoJointNeedsMoreThanItsPartAtTheSpeedsOfAGaitAndItsChan
   }
 }
 
+TEST_F(WalkingSpeedTest, IsTheLargestToATwelveTimesHalvedRange) {
+  constexpr double kFinest = 10.0 / (1 << 12);
+  const LegUse use(robot, stance);
+  for (const char* name : {"walking_trot", "crawl"}) {
+    const Gait& gait =
+        *std::ranges::find(gaits, std::string_view(name), [](const Gait& row) { return row.name.data(); });
+    const WalkingTwist speeds = walking_speeds(robot, stance, {gait})[0];
+    for (std::size_t axis = 0; axis < speeds.size(); ++axis) {
+      const auto needs = [&](double speed) {
+        double part = 0;
+        for (const double sense : {1.0, -1.0}) {
+          WalkingTwist twist{};
+          twist[axis] = sense * speed;
+          part = std::max({part, use.steady(gait, twist), use.changing(gait, gait, twist)});
+        }
+        return part;
+      };
+      EXPECT_LE(needs(speeds[axis]), kSpeedShare) << name << axis;
+      EXPECT_GT(needs(speeds[axis] + kFinest), kSpeedShare) << name << axis;
+    }
+  }
+}
+
 TEST_F(WalkingSpeedTest, NoGaitIsFasterThanATrotKeepsItsBalance) {
   for (const double size : {1.0, 0.25}) {
     LegModel fast = sized(size);
