@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 from pathlib import Path
 from typing import Any
@@ -255,7 +255,7 @@ def lie(task: tuple[str, str, int]) -> Trip:
     obstacles, known = scene_of(scene)
     random = np.random.default_rng(seed)
     robot = Robot(scene, obstacles, known, seed)
-    robot.lies = Lies(since=3.0, scan=LYING[what][0].scan, late=LYING[what][0].late)
+    robot.lies = replace(LYING[what][0], since=3.0)
     while True:
         goal = random_goal(random, known)
         if math.dist(goal[:2], robot.place[:2]) > 3 and feasible(robot, known, goal):

@@ -43,14 +43,16 @@ std::vector<float> distances(const std::vector<bool>& occupied, int columns, dou
   return result;
 }
 
+Point end_of(const Scan& scan, const PlanarPose& sensor, std::size_t ray) {
+  const double range = scan.ranges[ray], angle = sensor.yaw + scan.angle(ray);
+  return {sensor.x + range * std::cos(angle), sensor.y + range * std::sin(angle)};
+}
+
 std::vector<Point> points_of(const Scan& scan, const PlanarPose& sensor) {
   std::vector<Point> points;
   points.reserve(scan.ranges.size());
   for (std::size_t ray = 0; ray < scan.ranges.size(); ++ray) {
-    const float range = scan.ranges[ray];
-    if (!scan.hit(range)) continue;
-    const double angle = sensor.yaw + scan.angle(ray);
-    points.push_back({sensor.x + range * std::cos(angle), sensor.y + range * std::sin(angle)});
+    if (scan.hit(scan.ranges[ray])) points.push_back(end_of(scan, sensor, ray));
   }
   return points;
 }

@@ -32,7 +32,10 @@ inline constexpr double kFollowerLag = 0.015;  ///< m by which the follower may 
 inline constexpr double kPadding = 0.07;
 static_assert(kPadding >= kGuardAir + kFollowerLag + 0.7 * kCoarsest);
 
-/// Returns the ends of all rays that hit, in the frame in which `sensor` is given.
+/// Returns the end of a ray, in the frame in which `sensor` is given.
+Point end_of(const Scan& scan, const PlanarPose& sensor, std::size_t ray);
+
+/// Returns the ends of all rays that hit, likewise.
 std::vector<Point> points_of(const Scan& scan, const PlanarPose& sensor);
 
 struct Agreement {

@@ -30,8 +30,8 @@ struct Footprint {
 /// std::invalid_argument unless the base's origin lies inside.
 Footprint footprint_of(const std::function<double(Point)>& reach);
 
-/// The outline of these bodies where they are. Throws std::invalid_argument for a robot without shapes or whose base
-/// lies beside them.
+/// Returns the outline of these bodies where they are. Throws std::invalid_argument for a robot without shapes or whose
+/// base lies beside them.
 Footprint footprint_of(const RigidBodies& robot);
 
 /// Reads a URDF. Throws what read_rigid_bodies throws, and what the function above does.

@@ -20,12 +20,6 @@ bool echo(const Scan& scan, std::size_t ray) {
   return scan.ranges[ray] >= scan.range_min && scan.ranges[ray] < kFarEcho * scan.range_max;
 }
 
-Point end_of(const Scan& scan, const PlanarPose& sensor, std::size_t ray) {
-  const PlanarPose end =
-      composed(sensor, {scan.ranges[ray] * std::cos(scan.angle(ray)), scan.ranges[ray] * std::sin(scan.angle(ray)), 0});
-  return {end.x, end.y};
-}
-
 double distance(Point a, Point b) {
   return std::hypot(a.x - b.x, a.y - b.y);
 }
