@@ -259,7 +259,7 @@ void Monitor<KindConditions>::supervise(const MonitorInput& input) noexcept {
   supervised.missing = missing();
   supervised.released = release_.released();
   supervised.requested = motion_requested_;
-  supervised.no_motion_requested = release_.no_motion_requested();
+  supervised.motion_refusal = release_.reset_refusal();
   supervised.moving = kind_.moving();
   supervised.standing = kind_.standing();
   supervised.sliding = kind_.sliding();

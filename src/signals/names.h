@@ -54,6 +54,8 @@ inline constexpr auto kResetRefusalNames = std::to_array<BitName>({
     {kRefusalPaused, "paused", "the simulation is paused", "resume it ({driver}/set_pause false), then call e_stop_reset again"},
     {kRefusalSliding, "sliding", "the wheels stand still, but the robot may still slide",
      "wait, then call e_stop_reset again: from speed v, it is assumed to stand after v/stop_deceleration"},
+    {kRefusalGap, "gap", "the loop started or missed cycles a moment ago: nothing shows yet that no motion is requested",
+     "call e_stop_reset again after {request_timeout}; if this persists, check that {controller} gets enough CPU time (scripts/doctor.py)"},
 });
 
 inline constexpr auto kMissingNodeNames = std::to_array<BitName>({

@@ -60,12 +60,13 @@ inline constexpr std::size_t kMaxEvidence = 8;
 /// Why a reset was refused; bits of Permit::reset_refusal.
 enum ResetRefusal : std::uint64_t {
   kRefusalCauseActive = 1u << 0,  ///< A cause in `active` persists.
-  kRefusalCommand = 1u << 1,      ///< A motion is requested, or there is no evidence that none is.
+  kRefusalCommand = 1u << 1,      ///< A motion is requested, or was until a moment ago.
   kRefusalMoving = 1u << 2,       ///< A wheel still turns.
   kRefusalInit = 1u << 3,         ///< The monitor still waits.
   kRefusalSilent = 1u << 4,       ///< No sensor frame arrives, so nothing can be checked.
   kRefusalPaused = 1u << 5,       ///< The simulated machine is paused, so nothing can be checked.
   kRefusalSliding = 1u << 6,      ///< The wheels stand, but the body may still slide.
+  kRefusalGap = 1u << 7,          ///< A gap (motion_release.h) alone leaves no evidence that no motion is requested.
 };
 
 /// Bits of Permit::missing, in state kInit.

@@ -69,7 +69,7 @@ struct Losses : ::testing::Test {
     EXPECT_TRUE(robot_.await([&] { return (robot_.permit().causes & cause) != 0; }))
         << "wanted " << names_of(kStopCauseNames, cause) << "; " << robot_.situation();
     expect_stands(100);
-    EXPECT_NE(robot_.ask_reset() & kRefusalCommand, 0u) << robot_.situation();
+    EXPECT_NE(robot_.ask_reset() & (kRefusalCommand | kRefusalGap), 0u) << robot_.situation();
     expect_stands(20);
     robot_.release();
     robot_.ask_for_nothing();

@@ -83,7 +83,7 @@ TEST_F(RunTest, ResetOfAStopInARunWithoutAControllerIsRefused) {
   input_.command = nullptr;
   e_stop();
   stand();
-  EXPECT_EQ(reset(), std::uint64_t{kRefusalCommand});
+  EXPECT_EQ(reset(), std::uint64_t{kRefusalGap});
   EXPECT_EQ(permit_.state, SupervisorState::kStopped);
 }
 

@@ -26,8 +26,8 @@ MASTER_PORT, CONSOLE_PORT, PORTS = 11311, 8080, 100
 """the usual ports of a ROS master and of the console, and how many are tried from there on"""
 LASER_RATE, LASER_LINK = 10, "laser_link"
 """Hz, of a robot that has this link"""
-READY = "ready: "
-"""what a robot prints when it may be commanded"""
+STARTED = re.compile(r"(?:ready|STOPPED): .*")
+"""what a robot prints when it may be commanded, or waits for a reset: a stop outlives a restart"""
 POLL = 0.1
 """s"""
 LAST = 10.0
@@ -73,7 +73,7 @@ def try_out(robot: str, scene: str, port: int, out: Path, *, browser: bool) -> i
         address = ""
         while robot_part.running and console.running:
             if not address and (address := _address(robot_part, console)):
-                _say(address, robot, out)
+                _say(address, robot_part, robot, out)
                 if browser and (os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY")):
                     webbrowser.open(address)
             time.sleep(POLL)
@@ -93,13 +93,15 @@ class _Master:
 
 
 def _address(robot_part: Child, console: Child) -> str:
-    """That of the page, once the robot may be commanded; empty before."""
+    """That of the page, once the robot may be commanded or reset; empty before."""
     found = re.search(r"^open (\S+)$", console.output.read_text(), re.MULTILINE)
-    return found[1] if found and READY in robot_part.output.read_text(errors="replace") else ""
+    return found[1] if found and STARTED.search(_plain(robot_part.output)) else ""
 
 
-def _say(address: str, robot: str, out: Path) -> None:
+def _say(address: str, robot_part: Child, robot: str, out: Path) -> None:
     lines = [f"{Path(robot).stem} runs; open  {address}", f"log: {out}"]
+    if (state := STARTED.findall(_plain(robot_part.output))[-1]).startswith("STOPPED"):
+        lines.append(state)
     if (master := os.environ["ROS_MASTER_URI"]) != f"http://127.0.0.1:{MASTER_PORT}":
         lines.append(f"programs beside it: export ROS_MASTER_URI={master}")
     print("\n".join([*lines, "Ctrl-C ends all"]))
@@ -107,11 +109,15 @@ def _say(address: str, robot: str, out: Path) -> None:
 
 def _last_words(log: Path) -> str:
     """The output of a launch from its first refusal on, else its last lines, without colours and stamps."""
-    text = re.sub(r"\x1b\[[0-9;]*m", "", log.read_text(errors="replace"))
-    said = [re.sub(r"^\[\s*\w+\] \[[\d.]+\]: ", "", line) for line in text.splitlines() if line.strip()]
+    said = [re.sub(r"^\[\s*\w+\] \[[\d.]+\]: ", "", line) for line in _plain(log).splitlines() if line.strip()]
     first = next((i for i, line in enumerate(said) if "refused:" in line), len(said) - LINES)
     shown = said[max(0, first) :]
     return "\n".join(itertools.takewhile(lambda line: "REQUIRED process" not in line, shown[:LINES]))
+
+
+def _plain(output: Path) -> str:
+    """Its text without colours."""
+    return re.sub(r"\x1b\[[0-9;]*m", "", output.read_text(errors="replace"))
 
 
 def _robot(text: str) -> str:

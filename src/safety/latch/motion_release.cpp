@@ -45,7 +45,7 @@ void MotionRelease::step(const MonitorInput& input, std::uint64_t elapsed) noexc
   if (input.state != nullptr) update_start(state_first_, input.state->first_cycle);
   if (command != nullptr) update_start(command_first_, command->first_cycle);
   if (elapsed > 1) since_gap_.restart(cycle - 1);
-  no_motion_requested_ = false;
+  reset_refusal_ = kRefusalGap;
   if (command != nullptr && input.state != nullptr && command->state_cycle == command->head.cycle) {
     evaluate(*command);
   } else {
@@ -57,11 +57,17 @@ void MotionRelease::evaluate(const CommandFrame& command) noexcept {
   const bool zero_after_start = since_start_.grown(command);
   const bool zero_after_gap = since_gap_.grown(command);
   const bool in_force = parts_of(command.requested) != 0;
+  const bool zeros = !in_force && command.zero_requested != 0;
   const std::uint64_t current_cycles = command.head.cycle - std::min(command.head.cycle, since_gap_.after);
-  const bool silent = !in_force && std::min(command.silent_cycles, current_cycles) >=
-                                       std::max<std::uint64_t>(command.silence_needed, 1);
+  const std::uint64_t needed = std::max<std::uint64_t>(command.silence_needed, 1);
+  const bool quiet = !in_force && command.silent_cycles >= needed;
+  const bool silent = quiet && current_cycles >= needed;
   released_ = released_ || zero_after_start || silent;
-  no_motion_requested_ = silent || (!in_force && command.zero_requested != 0 && zero_after_gap);
+  if (silent || (zeros && zero_after_gap)) {
+    reset_refusal_ = 0;
+  } else {
+    reset_refusal_ = quiet || zeros ? kRefusalGap : kRefusalCommand;
+  }
 }
 
 }  // namespace robot_control

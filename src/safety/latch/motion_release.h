@@ -45,8 +45,8 @@ class MotionRelease {
   /// Zero first is satisfied.
   bool released() const noexcept { return released_; }
 
-  /// In the last step there was evidence that no motion is requested.
-  bool no_motion_requested() const noexcept { return no_motion_requested_; }
+  /// 0: in the last step there was evidence that no motion is requested. Otherwise one bit of ResetRefusal.
+  std::uint64_t reset_refusal() const noexcept { return reset_refusal_; }
 
  private:
   /// Zero requests after a cycle.
@@ -70,7 +70,7 @@ class MotionRelease {
   Count since_gap_;
   std::uint64_t starts_ = 0;
   bool released_ = false;
-  bool no_motion_requested_ = false;
+  std::uint64_t reset_refusal_ = kRefusalGap;
 };
 
 }  // namespace robot_control

@@ -61,7 +61,7 @@ std::uint64_t Supervisor::refusal(const SupervisorInput& input) const noexcept {
     return refusal;
   }
   if ((input.fault | input.brake | input.ramp) != 0) refusal |= kRefusalCauseActive;
-  if (!input.no_motion_requested) refusal |= kRefusalCommand;
+  refusal |= input.motion_refusal;
   if (!input.standing || state_ == SupervisorState::kStopping) refusal |= kRefusalMoving;
   if (input.sliding) refusal |= kRefusalSliding;
   return refusal;

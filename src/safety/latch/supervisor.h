@@ -24,16 +24,16 @@ namespace robot_control {
 
 struct SupervisorInput {
   std::uint64_t cycle = 0;
-  std::uint64_t fault = 0;           ///< StopCause bits active in this cycle, with FixedReaction::kFault
-  std::uint64_t brake = 0;           ///< … that brake at once
-  std::uint64_t ramp = 0;            ///< … that ramp
-  std::uint64_t missing = 0;         ///< MissingNode bits of this run
-  bool released = false;             ///< zero first is satisfied
-  bool requested = false;            ///< the controller requests motion
-  bool no_motion_requested = false;  ///< there is evidence that no motion is requested
-  bool moving = false;               ///< a joint turns in this cycle
-  bool standing = false;             ///< all joints have been slow for the standing time
-  bool sliding = false;              ///< standing, but the body may still slide
+  std::uint64_t fault = 0;                     ///< StopCause bits active in this cycle, with FixedReaction::kFault
+  std::uint64_t brake = 0;                     ///< … that brake at once
+  std::uint64_t ramp = 0;                      ///< … that ramp
+  std::uint64_t missing = 0;                   ///< MissingNode bits of this run
+  bool released = false;                       ///< zero first is satisfied
+  bool requested = false;                      ///< the controller requests motion
+  std::uint64_t motion_refusal = kRefusalGap;  ///< MotionRelease::reset_refusal
+  bool moving = false;                         ///< a joint turns in this cycle
+  bool standing = false;                       ///< all joints have been slow for the standing time
+  bool sliding = false;                        ///< standing, but the body may still slide
   bool reset_requested = false;
 };
 

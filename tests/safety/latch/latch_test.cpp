@@ -181,7 +181,7 @@ TEST(SupervisorOf, TheFirstCauseOfAnEarlierMonitorStaysTheFirst) {
 TEST(SupervisorOf, AStopIsResetOnRequestAlone) {
   Supervisor supervisor(300);
   supervisor.step({.cycle = 1, .brake = bit_of(3)});
-  SupervisorInput rest{.cycle = 2, .released = true, .no_motion_requested = true, .standing = true};
+  SupervisorInput rest{.cycle = 2, .released = true, .motion_refusal = 0, .standing = true};
   supervisor.step(rest);
   EXPECT_EQ(supervisor.state(), SupervisorState::kStopped);
   rest.reset_requested = true;

@@ -77,7 +77,7 @@ TEST_F(MotionReleaseTest, AMotionRequestedSinceTheStartReleasesNothing) {
     request_motion();
     step();
     ASSERT_FALSE(release_.released());
-    ASSERT_FALSE(release_.no_motion_requested());
+    ASSERT_EQ(release_.reset_refusal(), std::uint64_t{kRefusalCommand});
   }
 }
 
@@ -87,7 +87,7 @@ TEST_F(MotionReleaseTest, NoPartOfARequestInForceIsSilence) {
     command_.requested = part;
     steps(10 * kSilence);
     EXPECT_FALSE(release_.released());
-    EXPECT_FALSE(release_.no_motion_requested());
+    EXPECT_EQ(release_.reset_refusal(), std::uint64_t{kRefusalCommand});
   }
   command_.requested = {};
   step();
@@ -98,11 +98,11 @@ TEST_F(MotionReleaseTest, AZeroRequestReleasesAndMotionMayFollow) {
   request_zero();
   step();
   EXPECT_TRUE(release_.released());
-  EXPECT_TRUE(release_.no_motion_requested());
+  EXPECT_EQ(release_.reset_refusal(), 0u);
   request_motion();
   step();
   EXPECT_TRUE(release_.released());
-  EXPECT_FALSE(release_.no_motion_requested());
+  EXPECT_EQ(release_.reset_refusal(), std::uint64_t{kRefusalCommand});
 }
 
 TEST_F(MotionReleaseTest, SilenceReleasesAfterWhatItNeedsAndNotACycleEarlier) {
@@ -113,7 +113,7 @@ TEST_F(MotionReleaseTest, SilenceReleasesAfterWhatItNeedsAndNotACycleEarlier) {
   }
   step();
   EXPECT_TRUE(release_.released());
-  EXPECT_TRUE(release_.no_motion_requested());
+  EXPECT_EQ(release_.reset_refusal(), 0u);
 }
 
 TEST_F(MotionReleaseTest, ACommandWithoutTimeoutThatIsInForceIsNoSilence) {
@@ -134,14 +134,14 @@ TEST_F(MotionReleaseTest, AMissingCommandFrameIsNoEvidenceAndStartsTheCountAgain
   step();
   no_command_ = true;
   step();
-  EXPECT_FALSE(release_.no_motion_requested());
+  EXPECT_EQ(release_.reset_refusal(), std::uint64_t{kRefusalGap});
   no_command_ = false;
   for (std::uint64_t i = 0; i < kSilence; ++i) {
     step();
-    ASSERT_FALSE(release_.no_motion_requested()) << i;
+    ASSERT_EQ(release_.reset_refusal(), std::uint64_t{kRefusalGap}) << i;
   }
   step();
-  EXPECT_TRUE(release_.no_motion_requested());
+  EXPECT_EQ(release_.reset_refusal(), 0u);
 }
 
 TEST_F(MotionReleaseTest, AZeroRequestAfterAMissingFrameIsEvidenceAtOnce) {
@@ -152,7 +152,7 @@ TEST_F(MotionReleaseTest, AZeroRequestAfterAMissingFrameIsEvidenceAtOnce) {
   step();
   request_zero();
   step();
-  EXPECT_TRUE(release_.no_motion_requested());
+  EXPECT_EQ(release_.reset_refusal(), 0u);
 }
 
 TEST_F(MotionReleaseTest, CyclesThatWereNotLookedAtAreAGap) {
@@ -160,21 +160,21 @@ TEST_F(MotionReleaseTest, CyclesThatWereNotLookedAtAreAGap) {
   step();
   step(2);
   step();
-  EXPECT_FALSE(release_.no_motion_requested());
+  EXPECT_EQ(release_.reset_refusal(), std::uint64_t{kRefusalGap});
   steps(kSilence - 3);
-  EXPECT_FALSE(release_.no_motion_requested());
+  EXPECT_EQ(release_.reset_refusal(), std::uint64_t{kRefusalGap});
   step();
-  EXPECT_TRUE(release_.no_motion_requested()) << "silence counts from the last of them";
+  EXPECT_EQ(release_.reset_refusal(), 0u) << "silence counts from the last of them";
 }
 
 TEST_F(MotionReleaseTest, ACommandFromAnOldStateIsNoEvidence) {
   request_zero();
   step();
-  ASSERT_TRUE(release_.no_motion_requested());
+  ASSERT_EQ(release_.reset_refusal(), 0u);
   sensors_.head.cycle = cycle_;
   command_.head.cycle = cycle_ - 1;  // computed from the state of the cycle before
   release_.step(input_, 1);
-  EXPECT_FALSE(release_.no_motion_requested());
+  EXPECT_EQ(release_.reset_refusal(), std::uint64_t{kRefusalGap});
 }
 
 TEST_F(MotionReleaseTest, ARestartedControllerTakesTheReleaseBack) {
@@ -201,7 +201,7 @@ TEST_F(MotionReleaseTest, ANewMonitorHasSeenNoStartAndNoEvidence) {
   const MotionRelease release;
   EXPECT_EQ(release.starts(), 0u);
   EXPECT_FALSE(release.released());
-  EXPECT_FALSE(release.no_motion_requested());
+  EXPECT_EQ(release.reset_refusal(), std::uint64_t{kRefusalGap});
 }
 
 TEST_F(MotionReleaseTest, ANewRunIsAStartAndTakesTheReleaseBack) {
@@ -354,7 +354,7 @@ TEST_F(MonitorTest, AResetInACycleWithoutACommandFrameIsRefused) {
   turn_wheels(0);
   steps(kStands);
   input_.command = nullptr;
-  EXPECT_EQ(reset(), std::uint64_t{kRefusalCommand});
+  EXPECT_EQ(reset(), std::uint64_t{kRefusalGap});
   input_.command = &command_;
   EXPECT_EQ(permit_.state, SupervisorState::kStopped);
 }

@@ -82,13 +82,13 @@ TEST_F(ResetTest, ARefusedRequestIsNotTriedAgain) {
 
 TEST_F(ResetTest, IsRefusedInACycleWithoutACommand) {
   input_.command = nullptr;
-  EXPECT_EQ(reset(), std::uint64_t{kRefusalCommand});
+  EXPECT_EQ(reset(), std::uint64_t{kRefusalGap});
 }
 
 TEST_F(ResetTest, IsRefusedWhileTheControllerIsLost) {
   input_.command = nullptr;
   steps(kLoss);
-  EXPECT_EQ(reset(), kRefusalCauseActive | kRefusalCommand);
+  EXPECT_EQ(reset(), kRefusalCauseActive | kRefusalGap);
   input_.command = &command_;
   step();  // the next zero request is the first one after the gap
   EXPECT_EQ(reset(), 0u);
