@@ -79,14 +79,16 @@ double ScanMemory::frozen_angle(const Scan& scan, const PlanarPose& sensor) cons
     if (!echo(reference_, i)) continue;
     const Point end = end_of(reference_, reference_sensor_, i);
     if (i > 0 && echo(reference_, i - 1) && distance(end, last) < kMaxGap) {
-      const double from = ray_towards(scan, sensor, last), span = ray_towards(scan, sensor, end) - from;
+      const double turn = 2 * M_PI / std::abs(scan.angle_increment), from = ray_towards(scan, sensor, last);
+      const double span = std::remainder(ray_towards(scan, sensor, end) - from, turn);
       for (double ray = std::ceil(from); span > 0 && ray < std::min(from + span, static_cast<double>(frozen.size()));
            ++ray) {
         const auto k = static_cast<std::size_t>(ray);
         const double share = (ray - from) / span;
         const Point at{last.x + share * (end.x - last.x), last.y + share * (end.y - last.y)};
         const double expected = distance(at, {sensor.x, sensor.y});
-        frozen[k] = scan.ranges[k] == reference_.ranges[k] && std::abs(scan.ranges[k] - expected) > kFrozenRange;
+        frozen[k] = echo(scan, k) && scan.ranges[k] == reference_.ranges[k] &&
+                    std::abs(scan.ranges[k] - expected) > kFrozenRange;
       }
     }
     last = end;

@@ -60,6 +60,25 @@ TEST_F(ScanMemoryTest, ATrueScanIsNotDoubtedWhileTheRobotDrivesAndTurns) {
   }
 }
 
+TEST_F(ScanMemoryTest, RaysWithoutAnEchoAreNotFrozenWhereTwoEchoesSwapSidesAtTheFirstRay) {
+  Scan scan{-M_PI, M_PI / 180, 0.05, 8.0, std::vector<float>(360, kNothing)};
+  const Scan empty = scan;
+  scan.ranges[355] = 0.6F, scan.ranges[356] = 0.8F;
+  // After 5.4 cm to the left, the nearer end lies in the direction of ray 0.2, the farther one in that of ray 359.9.
+  memory.update(scan, {}, {0, 0, 0}, 1.0, diffbot());
+  memory.update(empty, {}, {0, 0.054, 0}, 1.1, diffbot());
+  EXPECT_EQ(memory.problem(), "");
+}
+
+TEST_F(ScanMemoryTest, AnOpeningBetweenTwoEchoesIsNotFrozen) {
+  Scan scan{-M_PI, M_PI / 180, 0.05, 8.0, std::vector<float>(360, kNothing)};
+  const Scan empty = scan;
+  scan.ranges[180] = 1.0F, scan.ranges[179] = 0.8F;
+  memory.update(scan, {}, {0, 0, 0}, 1.0, diffbot());
+  memory.update(empty, {}, {0.74, 0, 0}, 1.1, diffbot());  // now they are 13 degrees apart
+  EXPECT_EQ(memory.problem(), "");
+}
+
 TEST_F(ScanMemoryTest, ALaserThatMeasuresInCentimetresIsNotFrozen) {
   noise = std::normal_distribution<float>(0, 0);
   drive(20, 0.5);
