@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -19,6 +19,9 @@ SPEED, TURN = 0.5, 1.0  # m/s, rad/s
 LASER = (0.05, 0.0, 0.0)  # m, m, rad: the laser of diffbot in base_link
 NEAR, FACING = 0.1, 0.1  # m, rad
 
+Place = tuple[float, float, float]
+"""x [m], y [m], yaw [rad]"""
+Scan = dict[str, Any]
 Corners = tuple[tuple[float, float], ...]
 """m, from the start of the scene"""
 
@@ -45,11 +48,25 @@ class Sight:
     scan: dict[str, Any]
 
 
-def new_loop(scene: str | Path, seed: int, plant: dict[str, Any] | None = None) -> ClosedLoop:
+@dataclass(frozen=True)
+class Machine:
+    """A robot with a laser."""
+
+    urdf: str
+    laser: Place = LASER  # in base_link
+    view: dict[str, float] = field(default_factory=dict)  # keys of mujoco_plant.laser
+
+
+DIFFBOT = Machine(share_file("urdf/diffbot.urdf"))
+
+
+def new_loop(
+    scene: str | Path, seed: int, plant: dict[str, Any] | None = None, machine: Machine = DIFFBOT
+) -> ClosedLoop:
     """The robot with a laser of 10 Hz at the start of this scene, a shipped one or a file."""
-    values = {**(plant or {}), "laser": {"rate": 1 / SCAN_PERIOD}}
+    values = {**(plant or {}), "laser": {"rate": 1 / SCAN_PERIOD, **machine.view}}
     path = share_file(f"urdf/scenes/{scene}.xml") if isinstance(scene, str) else scene
-    return ClosedLoop({"mujoco_plant": values}, seed=seed, scene=path)
+    return ClosedLoop({"mujoco_plant": values}, seed=seed, urdf=machine.urdf, scene=path)
 
 
 def look(loop: ClosedLoop, command: tuple[float, float]) -> Sight:

@@ -6,7 +6,6 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 from robot_control import ClosedLoop
@@ -14,11 +13,10 @@ from robot_control._navigation import Guard, Navigation
 from robot_control.drive.path.follower import Follower, FollowParameters, Motion, State
 from robot_control.drive.path.pieces import route
 from robot_control.drive.path.waypoints import PathError, Waypoint, checked
-from robot_control.installed_files import share_file
 from robot_control.robot.pose import Pose
 
 from bench.navigation.scene_map import Map, Obstacle
-from bench.navigation.tour import LASER, new_loop
+from bench.navigation.tour import DIFFBOT, LASER, Machine, Place, Scan, new_loop
 
 SPEED = 0.5  # m/s
 STEP, SCAN = 0.02, 5  # s between two steps of the law; such steps between two scans
@@ -28,9 +26,6 @@ HELD = 1.0  # s without a free way after which its obstacle is marked in the cos
 NEARER = 0.001  # m in one step: 0.05 m/s
 REACH = 0.6  # m: farther points are not looked at
 
-Place = tuple[float, float, float]
-Scan = dict[str, Any]
-
 
 @dataclass
 class Lies:
@@ -39,7 +34,7 @@ class Lies:
     since: float = math.inf
     scan: Callable[[Scan, Scan], Scan] = lambda seen, _before: seen  # `before`: the first one after `since`
     late: float = 0.0  # s from the scan to its arrival
-    sensor: Place = LASER  # where the laser is taken to be on the robot
+    sensor: Place = LASER  # where the laser is taken to be on diffbot
     place: Callable[[Place], Place] = lambda place: place
 
 
@@ -54,20 +49,29 @@ class Trip:
     error: float = math.inf  # m from the goal, at the end
     turn_error: float = math.inf  # rad
     air: float = math.inf  # m between outline and what stands, the least
+    seconds: float = 0.0  # from its begin to its end
     hit: bool = False  # an obstacle that moves on, whatever it meets, touched the outline
     drove_into: bool = False  # in a touch of such an obstacle, the robot's own motion brought them nearer
     doubts: set[str] = field(default_factory=set)
 
 
 class Robot:
-    """One robot in a scene."""
+    """One robot in a scene; without a known map it has a window of cells around it."""
 
-    def __init__(self, scene: str, obstacles: list[Obstacle], known: Map, seed: int) -> None:
-        self.loop: ClosedLoop = new_loop(scene, seed)
+    def __init__(
+        self,
+        scene: str | Path,
+        obstacles: list[Obstacle],
+        known: Map | None,
+        seed: int,
+        machine: Machine = DIFFBOT,
+    ) -> None:
+        self.machine, self.speed = machine, SPEED
+        self.loop: ClosedLoop = new_loop(scene, seed, machine=machine)
         self._obstacles = obstacles
         self._standing = np.concatenate([item.outline(0.0) for item in obstacles if not item.path])
-        self.navigation = Navigation(known, Path(share_file("urdf/diffbot.urdf")).read_text())
-        self.guard = Guard(Path(share_file("urdf/diffbot.urdf")).read_text())
+        self.navigation = Navigation(known, Path(machine.urdf).read_text())
+        self.guard = Guard(Path(machine.urdf).read_text())
         self.lies = Lies()
         self._first_lie: Scan = {}
         self._arriving: list[tuple[float, float, Scan, Place, Place]] = []
@@ -95,12 +99,18 @@ class Robot:
         return self.lies.place(self.place) if self.loop.time >= self.lies.since else self.place
 
     @property
+    def _motion(self) -> tuple[float, float]:
+        """m/s and rad/s, as measured."""
+        return self._state["estimate_linear"], self._state["estimate_angular"]
+
+    @property
     def _odometry(self) -> Place:
         return (self._state["estimate_x"], self._state["estimate_y"], self._state["estimate_yaw"])
 
     def _see(self) -> str:
         """Takes a scan, receives those that have arrived, and returns why the robot may not be driven."""
         lies, now, seen = self.lies, self.loop.time, self.loop.scan()
+        lost = self._locate(seen)
         lying = now >= lies.since
         if lying:
             self._first_lie = self._first_lie or seen
@@ -108,15 +118,19 @@ class Robot:
         self._arriving.append((now, now + lies.late * lying, seen, self._odometry, self._assumed()))
         while self._arriving and self._arriving[0][1] <= now + STEP / 2:
             stamp, _, scan, odometry, place = self._arriving.pop(0)
-            sensor = lies.sensor if lying else LASER
+            sensor = lies.sensor if lying else self.machine.laser
             self._seen = self.navigation.update(scan, sensor, place, odometry, now, self._moved)
             self.guard.insert("scan", scan, sensor, odometry, stamp, now, self._moved)
-        return self._seen or self._doubt
+        return self._seen or self._doubt or lost
+
+    def _locate(self, scan: Scan) -> str:  # noqa: ARG002 (the place is the true one)
+        """Finds the place by this scan; returns why it does not."""
+        return ""
 
     def _be_guarded(self) -> None:
         """Acts as the guard does at each message of odometry, and as navigate then does."""
-        state, now = self._state, self.loop.time
-        measured = (state["estimate_linear"], 0.0, state["estimate_angular"])
+        now = self.loop.time
+        measured = (self._motion[0], 0.0, self._motion[1])
         requested = (self._command[0], 0.0, self._command[1])
         free, self._doubt, obstacle = self.guard.check(self._odometry, measured, requested, now)
         self.loop.clearance(free)
@@ -125,8 +139,14 @@ class Robot:
         elif obstacle is not None and now - self._held_since > HELD:
             self.navigation.block(self._assumed(), obstacle, now)
 
-    def drive(self, goal: Place) -> Trip:
-        """Begins the goal and returns at its end. A stop of before, by an obstacle that hit the robot, is reset."""
+    def _arrived(self) -> bool:
+        """True where the goal counts as reached before navigate says so."""
+        return False
+
+    def drive(self, goal: Place, limit: float = LONGEST) -> Trip:
+        """Begins the goal and returns at its end, or after `limit` s. A stop of before, by an obstacle that hit the
+        robot, is reset.
+        """
         trip = Trip()
         self.loop.e_stop_reset()
         self._stand(trip)
@@ -134,9 +154,11 @@ class Robot:
         _, trip.planned, _ = self.navigation.plan(self.place, goal, self.loop.time)
         self.navigation.begin(goal, self.loop.time)
         path = "none"
-        while self.loop.time - begin < LONGEST:
+        while self.loop.time - begin < limit and not self._arrived():
             path = self._report(path)
-            state, reason, way, cancel = self.navigation.step(self.loop.time, self._problem, self._assumed(), path)
+            state, reason, way, cancel = self.navigation.step(
+                self.loop.time, self._problem, self._assumed(), self._motion, path
+            )
             if cancel:
                 self._follower, path = None, "none"
             if way is not None:
@@ -145,6 +167,7 @@ class Robot:
                 trip.state, trip.reason = state, reason
                 break
             self._until_next_scan(trip)
+        trip.seconds = self.loop.time - begin
         self._stand(trip)
         x, y, yaw = self.place
         trip.error, trip.turn_error = (
@@ -170,7 +193,7 @@ class Robot:
             points = checked([Waypoint(x, y, yaw) for x, y, yaw in way])
         except PathError:
             return None
-        return Follower(route(points), FollowParameters(speed=SPEED, scale_error=0.05))
+        return Follower(route(points), FollowParameters(speed=self.speed, scale_error=0.05))
 
     def _report(self, path: str) -> str:
         follower = self._follower
@@ -181,8 +204,7 @@ class Robot:
     def _follow(self) -> None:
         self._command = (0.0, 0.0)
         if self._follower is not None and not self._follower.over:
-            measured = Motion(self._state["estimate_linear"], self._state["estimate_angular"])
-            motion = self._follower.step(Pose(*self._assumed()), measured, elapsed=STEP)
+            motion = self._follower.step(Pose(*self._assumed()), Motion(*self._motion), elapsed=STEP)
             self._command = (motion.linear, motion.angular)
         self._before = self.place
         self._be_guarded()

@@ -8,6 +8,11 @@ namespace {
 
 constexpr float kNotMarked = -std::numeric_limits<float>::infinity();
 
+Grid unknown_window() {
+  const int size = static_cast<int>(kWindow / kCoarsest);
+  return {size, size, kCoarsest, -kWindow / 2, -kWindow / 2, std::vector(std::size_t(size * size), kUnknownCell)};
+}
+
 /// Calls `visit` for each cell that the line crosses, in steps of half a cell, until it returns false.
 template <class Visit>
 void follow_ray(const Grid& grid, const PlanarPose& sensor, double angle, double length, Visit visit) {
@@ -71,6 +76,32 @@ Costmap::Costmap(const Grid& map, Footprint footprint, bool unknown_is_free)
   clear();
 }
 
+Costmap::Costmap(Footprint footprint) : Costmap(unknown_window(), std::move(footprint), true) {
+  is_window_ = true;
+}
+
+void Costmap::centre_on(Point point, double now) {
+  const Cell at = grid_.cell_at(point.x, point.y);
+  const Cell by{at.column - grid_.columns / 2, at.row - grid_.rows / 2};
+  if (!is_window_ || std::max(std::abs(by.column), std::abs(by.row)) * grid_.resolution <= kWindow / 8) return;
+  std::vector<float> marked(marked_.size(), kNotMarked);
+  std::vector<bool> unknown(unknown_.size(), true);
+  std::map<std::size_t, double> blocked;
+  for (std::size_t to = 0; to < marked.size(); ++to) {
+    const Cell cell = grid_.cell_of(to), before{cell.column + by.column, cell.row + by.row};
+    if (!grid_.contains(before)) continue;
+    const std::size_t from = grid_.index(before);
+    marked[to] = marked_[from];
+    unknown[to] = unknown_[from];
+    if (const auto found = blocked_.find(from); found != blocked_.end()) blocked[to] = found->second;
+  }
+  grid_.origin_x += by.column * grid_.resolution;
+  grid_.origin_y += by.row * grid_.resolution;
+  marked_ = std::move(marked), unknown_ = std::move(unknown), blocked_ = std::move(blocked);
+  predicted_.clear();
+  update(now);
+}
+
 void Costmap::clear() {
   for (std::size_t i = 0; i < unknown_.size(); ++i) unknown_[i] = grid_.cells[i] < 0;
   std::fill(marked_.begin(), marked_.end(), kNotMarked);
@@ -88,18 +119,20 @@ Agreement Costmap::insert(const Scan& scan, const PlanarPose& sensor, double now
     const double length = hit ? range : scan.range_max, angle = sensor.yaw + scan.angle(ray);
     bool passed = false;
     follow_ray(grid_, sensor, angle, length - grid_.resolution, [&](std::size_t cell, double along) {
-      if (hit) marked_[cell] = kNotMarked;
+      if (hit || marked_[cell] < now - kMemory) marked_[cell] = kNotMarked;
       unknown_[cell] = false;
       passed |= wall_distance_[cell] == 0 && along < length - kBehindWall;
       return true;
     });
     if (!hit) continue;
-    ++result.rays;
-    result.contradicting += passed ? 1 : 0;
     const Cell end = grid_.cell_at(sensor.x + range * std::cos(angle), sensor.y + range * std::sin(angle));
-    if (!grid_.contains(end)) continue;
-    const std::size_t cell = grid_.index(end);
-    if (wall_distance_[cell] <= kExplained) {
+    const bool inside = grid_.contains(end);
+    const std::size_t cell = inside ? grid_.index(end) : 0;
+    const bool explained = inside && wall_distance_[cell] <= kExplained;
+    result.rays += passed || explained || (inside ? grid_.cells[cell] >= 0 : !is_window_) ? 1 : 0;
+    result.contradicting += passed ? 1 : 0;
+    if (!inside) continue;
+    if (explained) {
       result.explained += passed ? 0 : 1;
     } else {
       ends.push_back(cell);
@@ -133,7 +166,8 @@ void Costmap::update(double now) {
   std::erase_if(blocked_, [&](const auto& cell) { return cell.second < now - kMemory; });
   std::vector<bool> occupied(grid_.cells.size());
   for (std::size_t i = 0; i < occupied.size(); ++i) {
-    occupied[i] = wall_distance_[i] == 0 || marked_[i] > now - kMemory || (unknown_[i] && !unknown_is_free_);
+    const bool marked = marked_[i] > (grid_.cells[i] < 0 ? kNotMarked : now - kMemory);
+    occupied[i] = wall_distance_[i] == 0 || marked || (unknown_[i] && !unknown_is_free_);
   }
   if (std::isfinite(now)) {
     for (const std::size_t cell : predicted_) occupied[cell] = true;
@@ -146,11 +180,19 @@ double Costmap::step_cost(Cell cell) const noexcept {
   return 1 + std::clamp(1 - (distance(cell) - footprint_.inscribed) / kFullClearance, 0.0, 1.0);
 }
 
+int Costmap::reach() const noexcept {
+  return static_cast<int>((footprint_.circumscribed + kPadding) / grid_.resolution) + 1;
+}
+
+bool Costmap::interior(Cell cell) const noexcept {
+  return grid_.contains({cell.column - reach(), cell.row - reach()}) &&
+         grid_.contains({cell.column + reach(), cell.row + reach()});
+}
+
 bool Costmap::free(const PlanarPose& pose) const noexcept {
   const Cell base = grid_.cell_at(pose.x, pose.y);
-  const int reach = static_cast<int>((footprint_.circumscribed + kPadding) / grid_.resolution) + 1;
-  if (base.column < reach || base.row < reach || base.column >= grid_.columns - reach || base.row >= grid_.rows - reach)
-    return false;
+  const int reach = this->reach();
+  if (!interior(base)) return false;
   const double nearest = distance(base);
   if (nearest > footprint_.circumscribed + kPadding + grid_.resolution) return true;
   if (nearest < footprint_.inscribed) return false;

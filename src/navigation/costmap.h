@@ -6,12 +6,18 @@
 /// `unknown_is_free`, it is also occupied if neither the map nor a ray knows it. A ray that ends within kExplained of
 /// an occupied cell of the map marks nothing. It has hit the map's own wall, within the error of the localisation.
 ///
+/// Where the map knows nothing, what a ray has marked stays longer than kMemory: until a ray passes the cell, then also
+/// one without a return.
+///
+/// Without a map the costmap is a window of kWindow whose cells are all unknown. It moves with the robot.
+///
 /// A map of finer cells is taken in cells of up to kCoarsest. A plan in cells of 1 cm would take minutes.
 ///
 /// Rays also show whether map and pose can be true. An object that was added shortens a ray. Only an object that was
 /// removed, or a wrong pose or map, lets a ray pass a wall of the map.
 
 #include <map>
+#include <utility>
 #include <vector>
 
 #include "navigation/footprint.h"
@@ -22,6 +28,7 @@ namespace robot_control::navigation {
 
 inline constexpr double kMemory = 10;          ///< s; less than kNoProgressTime of a goal that it blocks
 inline constexpr double kExplained = 0.1;      ///< m
+inline constexpr double kWindow = 16;          ///< m; more than twice what lasers of 8 m see ahead
 inline constexpr double kBehindWall = 0.3;     ///< m; a ray that ends so far behind a wall contradicts the map
 inline constexpr double kCoarsest = 0.05;      ///< m
 inline constexpr double kFullClearance = 0.4;  ///< m of clearance from which on a cell has the lowest cost
@@ -39,7 +46,7 @@ Point end_of(const Scan& scan, const PlanarPose& sensor, std::size_t ray);
 std::vector<Point> points_of(const Scan& scan, const PlanarPose& sensor);
 
 struct Agreement {
-  int rays = 0;           ///< those that hit
+  int rays = 0;           ///< those that hit; not those that end where the map knows nothing
   int explained = 0;      ///< end at a wall of the map
   int contradicting = 0;  ///< passed a wall of the map
   int unexpected = 0;     ///< end where the map is free
@@ -48,6 +55,15 @@ struct Agreement {
 class Costmap {
  public:
   Costmap(const Grid& map, Footprint footprint, bool unknown_is_free);
+
+  /// A window without a map, around the origin. What no ray has seen is free.
+  explicit Costmap(Footprint footprint);
+
+  /// Returns whether there is no map, so that goals may be outside.
+  bool is_window() const noexcept { return is_window_; }
+
+  /// Moves a window by whole cells, if the point is more than kWindow/8 from its middle. Marks that stay inside stay.
+  void centre_on(Point point, double now);
 
   /// Inserts one scan whose sensor was at `sensor` in the map; `now` in s of any monotonic clock.
   Agreement insert(const Scan& scan, const PlanarPose& sensor, double now);
@@ -68,6 +84,9 @@ class Costmap {
   /// Returns the distance of the cell from the nearest occupied one, m, at most `farthest_`; 0 outside the map.
   double distance(Cell cell) const noexcept { return grid_.contains(cell) ? distance_[grid_.index(cell)] : 0; }
 
+  /// Returns whether no outline at this cell reaches beyond the border.
+  bool interior(Cell cell) const noexcept;
+
   /// Returns whether the outline, grown by kPadding, lies within the map and contains the centre of no occupied cell.
   /// The clearance is then at least kPadding less half a cell's diagonal, 3.5 cm at a resolution of 5 cm.
   bool free(const PlanarPose& pose) const noexcept;
@@ -84,12 +103,14 @@ class Costmap {
   void clear();
 
  private:
+  int reach() const noexcept;  // cells of the grown outline from its base
+
   Grid grid_;
   Footprint footprint_;
   double farthest_;                   ///< m, the largest distance that a function below distinguishes
   std::vector<float> wall_distance_;  ///< m, to the map's own walls
   std::vector<bool> unknown_;
-  bool unknown_is_free_;
+  bool unknown_is_free_, is_window_ = false;
   std::vector<float> marked_;              ///< s, when a ray ended here; −∞: never, or passed since
   std::vector<std::size_t> predicted_;     ///< cells
   std::map<std::size_t, double> blocked_;  ///< s, when the guard last held the robot before this cell

@@ -75,6 +75,13 @@ struct PlanarPose {
   double x = 0, y = 0, yaw = 0;  ///< m, m, rad
 };
 
+/// A velocity of the base, or a requested one; where only the direction counts, its length does not.
+struct PlanarMotion {
+  double linear = 0;   ///< m/s
+  double angular = 0;  ///< rad/s
+  double lateral = 0;  ///< m/s, to the left
+};
+
 /// Returns `inner`, given in the frame of `outer`, in the frame in which `outer` is given.
 inline PlanarPose composed(const PlanarPose& outer, const PlanarPose& inner) noexcept {
   const double c = std::cos(outer.yaw), s = std::sin(outer.yaw);

@@ -68,7 +68,8 @@ NavigatorOutput Navigator::step(const NavigatorInput& input, Costmap* costmap) {
 void Navigator::plan(const NavigatorInput& input, Costmap& costmap, NavigatorOutput& out) {
   planned_at_ = input.now;
   costmap.update(input.now);
-  Plan found = plan_path(costmap, input.pose, goal_);
+  const PlanarPose stop = stop_pose(input.pose, input.motion), start = costmap.free(stop) ? stop : input.pose;
+  Plan found = plan_path(costmap, start, goal_);
   if (!found.problem.empty()) {
     const std::string blocked = found.problem;
     if (state_ == NavigatorState::kDriving) {  // the present path may still be free for a while
@@ -77,7 +78,7 @@ void Navigator::plan(const NavigatorInput& input, Costmap& costmap, NavigatorOut
     }
     if (!driven_) {
       costmap.update(std::numeric_limits<double>::infinity());  // the map alone
-      found = plan_path(costmap, input.pose, goal_);
+      found = plan_path(costmap, start, goal_);
       costmap.update(input.now);
       if (!found.problem.empty()) return fail(found.problem, out);
       driven_ = true;  // there is a path once the obstacle has gone
@@ -96,7 +97,7 @@ void Navigator::plan(const NavigatorInput& input, Costmap& costmap, NavigatorOut
 
 void Navigator::drive(const NavigatorInput& input, Costmap& costmap, NavigatorOutput& out) {
   if (input.path.state == PathReport::State::kDone) {
-    state_ = NavigatorState::kReached;
+    state_ = path_.partial ? NavigatorState::kWaiting : NavigatorState::kReached;
     return;
   }
   if (input.path.state == PathReport::State::kFailed) {
@@ -112,7 +113,8 @@ void Navigator::drive(const NavigatorInput& input, Costmap& costmap, NavigatorOu
   const double free = free_distance(costmap, path_.poses, input.pose, passed_);
   note_progress(input);
   const bool blocked = free < kMinFreeDistance;
-  if (blocked && input.now - planned_at_ >= kReplanPeriod) plan(input, costmap, out);
+  const bool ends = path_.partial && remaining(input.pose) < kWindow / 4;
+  if ((blocked || ends) && input.now - planned_at_ >= kReplanPeriod) plan(input, costmap, out);
   if (blocked && !out.path && free < kStopDistance) wait(reason_.empty() ? "the path is blocked" : reason_, out);
   if (!blocked) reason_ = input.now - progress_at_ > kReplanPeriod ? input.slowed_by : "";
 }

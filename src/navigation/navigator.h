@@ -4,9 +4,12 @@
 ///
 ///   planning   the first plan of a goal; a goal that the map alone does not allow is refused at once
 ///   driving    follow_path has a path. A path that is blocked within kMinFreeDistance is replaced, at most once per
-///              kReplanPeriod. If there is no other path, the robot drives on until kStopDistance before the obstacle
+///              kReplanPeriod. If there is no other path, the robot drives on until kStopDistance before the obstacle.
+///              A path to the border of a window is replaced when less than kWindow/4 of it remain
 ///   waiting    nothing is driven: the path is blocked, or the laser, the map or the pose cannot be trusted. The goal is
 ///              given up after kNoProgressTime; before the first path, after kFirstPathTime
+///
+/// Every path begins where the robot can stand at the earliest (stop_pose), if that is free.
 ///
 /// A path that follow_path gave up is planned again, kAttempts times without kMinProgress in between. No later path
 /// from standstill restarts these times. follow_path refuses what a stop of the robot has revoked.
@@ -39,6 +42,7 @@ struct NavigatorInput {
   std::string explanation;  ///< what the reason of a failure ends with
   std::string slowed_by;    ///< what slows the robot, if something does: why it may not come nearer
   PlanarPose pose;          ///< of the base in the map
+  PlanarMotion motion;      ///< as measured
   PathReport path;
 };
 

@@ -45,13 +45,35 @@ struct Open {
   bool operator<(const Open& other) const { return cost > other.cost; }  // the queue's top is the cheapest
 };
 
+/// Returns whether the goal is outside a window, or too near to its border.
+bool beyond(const Costmap& costmap, const PlanarPose& goal) {
+  return costmap.is_window() && !costmap.interior(costmap.grid().cell_at(goal.x, goal.y));
+}
+
+/// Returns whether the cell is one of the last at the border at which the outline may be.
+bool at_border(const Costmap& costmap, Cell cell) {
+  return costmap.interior(cell) &&
+         !(costmap.interior({cell.column - 1, cell.row - 1}) && costmap.interior({cell.column + 1, cell.row + 1}));
+}
+
 /// Costs from each cell to the goal without headings; kUnreached where there is no path even for the inscribed circle.
-std::vector<float> costs_to(const Costmap& costmap, Cell goal) {
+std::vector<float> costs_to(const Costmap& costmap, const PlanarPose& goal) {
   const Grid& grid = costmap.grid();
   std::vector<float> costs(grid.cells.size(), kUnreached);
   std::priority_queue<Open> open;
-  costs[grid.index(goal)] = 0;
-  open.push({0, grid.index(goal)});
+  const auto begin = [&](std::size_t index, double cost) {
+    costs[index] = static_cast<float>(cost);
+    open.push({costs[index], index});
+  };
+  if (beyond(costmap, goal)) {
+    for (std::size_t i = 0; i < costs.size(); ++i) {
+      const Cell cell = grid.cell_of(i);
+      if (at_border(costmap, cell) && costmap.distance(cell) >= costmap.footprint().inscribed)
+        begin(i, std::hypot(grid.x_of(cell.column) - goal.x, grid.y_of(cell.row) - goal.y));
+    }
+  } else {
+    begin(grid.index(grid.cell_at(goal.x, goal.y)), 0);
+  }
   while (!open.empty()) {
     const Open top = open.top();
     open.pop();
@@ -87,8 +109,9 @@ class Search {
       : costmap_(costmap),
         grid_(costmap.grid()),
         goal_(goal),
+        beyond_(beyond(costmap, goal)),
         goal_cell_(grid_.cell_at(goal.x, goal.y)),
-        to_goal_(costs_to(costmap, goal_cell_)) {
+        to_goal_(costs_to(costmap, goal)) {
     // The turn from the start's own heading to that of a sector may be free where the nearest sector is not.
     const Cell cell = grid_.cell_at(start.x, start.y);
     for (int i = 0; i < kSectors; ++i) {
@@ -107,7 +130,9 @@ class Search {
       if (node.closed) continue;
       node.closed = true;
       const double yaw = heading_of(static_cast<int>(at % kSectors));
-      if (cell_of(at) == goal_cell_ && turn_is_free(costmap_, {goal_.x, goal_.y}, yaw, goal_.yaw)) return path_to(at);
+      if (beyond_ ? at_border(costmap_, cell_of(at))
+                  : cell_of(at) == goal_cell_ && turn_is_free(costmap_, {goal_.x, goal_.y}, yaw, goal_.yaw))
+        return path_to(at);
       expand(at, node.cost);
     }
     return {};
@@ -176,6 +201,7 @@ class Search {
   const Costmap& costmap_;
   const Grid& grid_;
   PlanarPose goal_;
+  bool beyond_;
   Cell goal_cell_;
   std::vector<float> to_goal_;
   std::unordered_map<std::uint64_t, Node> nodes_;
@@ -231,6 +257,7 @@ std::string goal_problem(const Costmap& costmap, const PlanarPose& goal) {
   const bool near = std::abs(goal.x) <= kFarthest && std::abs(goal.y) <= kFarthest;
   const Cell cell = near ? grid.cell_at(goal.x, goal.y) : Cell{-1, -1};
   const std::string at = formatted("the goal (%.2f, %.2f) m ", goal.x, goal.y);
+  if (near && beyond(costmap, goal)) return "";
   if (!grid.contains(cell)) return at + "is outside the map";
   if (costmap.occupied(cell)) return at + (costmap.unknown(cell) ? "is in unknown space" : "is in an obstacle");
   if (costmap.free(goal)) return "";
@@ -238,6 +265,14 @@ std::string goal_problem(const Costmap& costmap, const PlanarPose& goal) {
 }
 
 }  // namespace
+
+PlanarPose stop_pose(const PlanarPose& pose, const PlanarMotion& motion) {
+  const double speed = std::hypot(motion.linear, motion.lateral);
+  const double half = std::max(speed / kStopDeceleration, std::abs(motion.angular) / kStopAngularDeceleration) / 2;
+  const double turn = motion.angular * half, c = std::cos(turn / 2), s = std::sin(turn / 2);
+  const double x = motion.linear * half, y = motion.lateral * half;
+  return composed(pose, {c * x - s * y, s * x + c * y, turn});
+}
 
 Plan plan_path(const Costmap& costmap, const PlanarPose& start, const PlanarPose& goal) {
   constexpr double kSamePosition = 0.04;  // m; the end of a path is as exact
@@ -260,7 +295,8 @@ Plan plan_path(const Costmap& costmap, const PlanarPose& start, const PlanarPose
     plan.problem = no_path_problem(costmap, from, grid.cell_at(goal.x, goal.y));
     return plan;
   }
-  plan.poses = straightened(costmap, path, start, goal);
+  plan.partial = beyond(costmap, goal);
+  plan.poses = straightened(costmap, path, start, plan.partial ? path.back() : goal);
   plan.length = length_of(plan.poses);
   return plan;
 }

@@ -24,11 +24,21 @@ struct Plan {
   std::vector<PlanarPose> poses;  ///< from start to goal; empty: there is no path
   double length = 0;              ///< m
   std::string problem;            ///< why there is none: a sentence without full stop
+  bool partial = false;           ///< the path ends at the border of a window; the goal is outside
 };
 
+/// The robot's deceleration, with which a new path waits for it: those of the shipped parameters.
+inline constexpr double kStopDeceleration = 1.0;         ///< m/s²
+inline constexpr double kStopAngularDeceleration = 4.0;  ///< rad/s²
+
+/// Returns where the robot can stand at the earliest: v²/2a ahead on its arc.
+PlanarPose stop_pose(const PlanarPose& pose, const PlanarMotion& motion);
+
 /// The costmap is up to date (Costmap::update). A start that is not free may be left, as long as every step is freer
-/// than the start or free. A goal is refused outside the map, in an obstacle, in unknown space, or too near to either.
-/// The problem names the narrowest point of the widest path if there is no path for the outline.
+/// than the start or free. A goal outside a window is planned to the point of its border from which the straight
+/// remaining path, at the lowest cost, is the best. Else a goal is refused outside the map, in an obstacle, in unknown
+/// space, or too near to either. The problem names the narrowest point of the widest path if there is no path for the
+/// outline.
 Plan plan_path(const Costmap& costmap, const PlanarPose& start, const PlanarPose& goal);
 
 /// Returns the distance along the poses to the first one that is not free, from the pose nearest to `robot` on; ∞ if

@@ -22,8 +22,9 @@ struct NavigatorTest : testing::Test {
 
   void step() {
     now_ += kPeriod;
+    costmap_.centre_on({pose_.x, pose_.y}, now_);
     costmap_.insert(scan_of(world_, pose_, 180), pose_, now_);
-    out_ = navigator_.step({now_, problem_, explanation_, "", pose_, report_}, &costmap_);
+    out_ = navigator_.step({now_, problem_, explanation_, "", pose_, motion_, report_}, &costmap_);
     if (out_.cancel) report_.state = PathReport::State::kNone;
     if (out_.path) path_ = *out_.path, along_ = 0, report_ = {PathReport::State::kActive, ""}, ++paths_;
     if (report_.state == PathReport::State::kActive && !failing_.empty())
@@ -57,6 +58,7 @@ struct NavigatorTest : testing::Test {
   PathReport report_;
   std::string problem_, explanation_, failing_;
   PlanarPose pose_{1.6, 1.6, 0};
+  PlanarMotion motion_;
   double now_ = 100, least_air_ = 1e9;
   int paths_ = 0;
   bool paused_ = false;  // follow_path does not drive
@@ -70,6 +72,34 @@ TEST_F(NavigatorTest, ReachesAGoalInTheOtherRoom) {
   EXPECT_NEAR(pose_.yaw, 1, 1e-6);
   EXPECT_EQ(paths_, 1);
   EXPECT_GT(least_air_, 0);
+}
+
+TEST_F(NavigatorTest, APathBeginsWhereTheRobotCanStand) {
+  motion_ = {.linear = 0.6, .angular = 0.2, .lateral = 0};
+  navigator_.begin({4.7, 2.2, 1}, now_);
+  step();
+  const PlanarPose stop = stop_pose({1.6, 1.6, 0}, motion_);
+  EXPECT_NEAR(path_.poses.front().x, stop.x, 1e-9);
+  EXPECT_NEAR(path_.poses.front().y, stop.y, 1e-9);
+}
+
+TEST_F(NavigatorTest, APathBeginsAtThePoseWhereTheStopIsNotFree) {
+  pose_ = {2.2, 0.6, 0};
+  motion_ = {.linear = 1.5, .angular = 0, .lateral = 0};
+  ASSERT_FALSE(costmap_.free(stop_pose(pose_, motion_)));
+  navigator_.begin({1.0, 2.2, 1}, now_);
+  step();
+  EXPECT_NEAR(path_.poses.front().x, 2.2, 1e-9);
+}
+
+TEST_F(NavigatorTest, AGoalOutsideAWindowIsReachedByPathsToItsBorder) {
+  costmap_ = Costmap(diffbot());
+  world_.cells.assign(world_.cells.size(), kFreeCell);
+  navigator_.begin({30, 5, 1}, now_);
+  run(200);
+  EXPECT_EQ(out_.state, State::kReached) << out_.reason;
+  EXPECT_NEAR(pose_.x, 30, 1e-6);
+  EXPECT_GT(paths_, 2);
 }
 
 TEST_F(NavigatorTest, AGoalInAWallIsRefusedAtOnce) {

@@ -1,5 +1,6 @@
 #include "navigation/planner.h"
 
+#include <algorithm>
 #include <fstream>
 #include <random>
 
@@ -119,6 +120,97 @@ TEST(CostmapTest, AnUntruePoseLetsRaysPassWalls) {
     const Agreement seen = costmap.insert(scan_of(map, kLeft), wrong, 1.0);
     EXPECT_GT(seen.contradicting, seen.rays / 8);
   }
+}
+
+/// A window that has seen the left room of the house from kLeft.
+Costmap window_of(const Grid& world, const PlanarPose& pose) {
+  Costmap window(diffbot());
+  window.insert(scan_of(world, pose, 1440), pose, 1);
+  window.update(1);
+  return window;
+}
+
+TEST(WindowTest, WhatIsSeenIsOccupiedAndTheUnseenIsFree) {
+  const Costmap window = window_of(two_rooms(0.8), kLeft);
+  EXPECT_TRUE(window.occupied(window.grid().cell_at(3.12, 0.6)));
+  EXPECT_FALSE(window.occupied(window.grid().cell_at(4.7, 0.6)));
+  EXPECT_TRUE(window.unknown(window.grid().cell_at(4.7, 0.6)));
+}
+
+TEST(WindowTest, ItMovesWithTheRobotAndKeepsWhatItHasSeen) {
+  Costmap window = window_of(two_rooms(0.8), kLeft);
+  const Cell before = window.grid().cell_at(3.12, 0.6);
+  window.centre_on({kWindow / 8 - 0.1, 0}, 2);
+  EXPECT_EQ(window.grid().cell_at(3.12, 0.6), before);
+  window.centre_on({5.01, 1.01}, 2);
+  const Cell after = window.grid().cell_at(3.12, 0.6);
+  EXPECT_EQ(after.column, before.column - 100);
+  EXPECT_EQ(after.row, before.row - 20);
+  EXPECT_TRUE(window.occupied(after));
+  window.centre_on({50.0, 1.0}, 2);
+  window.centre_on({5.01, 1.01}, 2);
+  EXPECT_FALSE(window.occupied(window.grid().cell_at(3.12, 0.6)));
+}
+
+TEST(WindowTest, AMapDoesNotMove) {
+  Costmap costmap = costmap_of(two_rooms(0.8));
+  costmap.centre_on({50, 50}, 1);
+  EXPECT_EQ(costmap.grid().origin_x, 0);
+}
+
+TEST(WindowTest, WhatIsHiddenIsRememberedUntilARayPasses) {
+  Costmap window = window_of(two_rooms(0.8), kLeft);
+  const double later = 1 + 10 * kMemory;
+  window.update(later);
+  EXPECT_TRUE(window.occupied(window.grid().cell_at(3.12, 0.6)));
+  Grid open = two_rooms(0.8);
+  std::ranges::fill(open.cells, kFreeCell);  // no ray returns
+  window.insert(scan_of(open, kLeft, 1440), kLeft, 1.1);
+  window.update(1.1);
+  EXPECT_TRUE(window.occupied(window.grid().cell_at(3.12, 0.6))) << "a ray without return is no evidence at once";
+  window.insert(scan_of(open, kLeft, 1440), kLeft, later);
+  window.update(later);
+  EXPECT_FALSE(window.occupied(window.grid().cell_at(3.12, 0.6)));
+}
+
+TEST(WindowTest, AMissingMapIsNoFalseMap) {
+  Costmap window(diffbot());
+  MapConsistency consistency;
+  for (int i = 0; i < 2 * kBadScans; ++i) consistency.update(window.insert(scan_of(two_rooms(0.8), kLeft), kLeft, 1));
+  EXPECT_EQ(consistency.problem(), "");
+  EXPECT_EQ(consistency.explanation(), "");
+}
+
+TEST(WindowTest, AGoalOutsideIsPlannedToTheBestPointOfTheBorder) {
+  Grid world = two_rooms(0.8);
+  for (int row = 0; row < world.rows; ++row) world.cells[world.index({62, row})] = kFreeCell;  // the wall on the right
+  const Costmap window = window_of(world, kLeft);
+  for (const PlanarPose& goal : {PlanarPose{100, 1.6, 1}, PlanarPose{kWindow / 2 - 0.1, 1.6, 1}}) {
+    const Plan plan = plan_path(window, kLeft, goal);
+    ASSERT_EQ(plan.problem, "");
+    EXPECT_TRUE(plan.partial);
+    EXPECT_NEAR(plan.poses.back().x, kWindow / 2, 0.7);
+    EXPECT_NEAR(plan.poses.back().y, 1.6, 1.0);
+    for (const PlanarPose& pose : plan.poses) EXPECT_TRUE(window.free(pose));
+  }
+  EXPECT_FALSE(plan_path(window, kLeft, kRight).partial);
+  EXPECT_THAT(plan_path(window, kLeft, {1e300, 0, 0}).problem, HasSubstr("is outside the map"));
+}
+
+TEST(WindowTest, AGoalOutsideOfAClosedRoomHasNoPath) {
+  const Costmap window = window_of(two_rooms(0), kLeft);
+  EXPECT_THAT(plan_path(window, kLeft, {100, 1.6, 1}).problem, HasSubstr("no path"));
+}
+
+TEST(StopPoseTest, ItIsWhereABrakingRobotEnds) {
+  const auto at = [](double linear, double angular) {
+    return stop_pose({1, 2, M_PI / 2}, {.linear = linear, .angular = angular, .lateral = 0});
+  };
+  EXPECT_NEAR(at(0, 0).y, 2, 1e-12);
+  EXPECT_NEAR(at(0.5, 0).y, 2 + 0.25 / 2 / kStopDeceleration, 1e-12);
+  EXPECT_NEAR(at(-0.5, 0).y, 2 - 0.25 / 2 / kStopDeceleration, 1e-12);
+  EXPECT_NEAR(at(0, 1).yaw, M_PI / 2 + 1 / 2.0 / kStopAngularDeceleration, 1e-12);
+  EXPECT_LT(at(0.5, 1).x, 1) << "to the left";
 }
 
 TEST(DoubtTest, AnUntruePoseIsDoubtedAfterHalfASecondAndATrueOneTrustedAgain) {

@@ -90,7 +90,7 @@ def test_the_nodes_report_no_override_that_a_launch_file_sets():
     for arguments in (
         ["robot.launch"],
         ["sim.launch", "black_box:=false", "telemetry:=true"],
-        ["navigation.launch", "map:=x"],
+        ["navigation.launch", "map:=x", "map_frame:=odom"],
     ):
         set_here |= {name[1:].partition("/")[2].replace("/", ".") for name in config_of(*arguments).params}
     assert set_here - {"", "config"} == unsaid

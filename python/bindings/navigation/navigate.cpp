@@ -6,6 +6,7 @@
 
 #include <array>
 #include <map>
+#include <optional>
 #include <string>
 
 #include "bindings/navigation/conversions.h"
@@ -32,8 +33,16 @@ std::vector<Pose> poses_of(const Plan& plan) {
 /// It does what the node navigate does with scan, place and goal, without ROS.
 class Navigation {
  public:
-  Navigation(const py::tuple& map, const std::string& urdf, bool unknown_is_free)
-      : costmap_(grid_of(map), footprint_of_urdf(urdf, "the URDF"), unknown_is_free) {}
+  /// Without a map it has a window around the robot.
+  Navigation(const std::optional<py::tuple>& map, const std::string& urdf)
+      : costmap_(footprint_of_urdf(urdf, "the URDF")) {
+    if (map) set_map(*map, false);
+  }
+
+  void set_map(const py::tuple& map, bool unknown_is_free) {
+    costmap_ = Costmap(grid_of(map), costmap_.footprint(), unknown_is_free);
+    consistency_ = MapConsistency();
+  }
 
   /// `sensor`: on the base, which is at `place` in the map and at `odometry`. `moved`: m + rad so far. Returns why the
   /// laser, or map and place, cannot be trusted.
@@ -41,6 +50,7 @@ class Navigation {
                      double moved) {
     const Scan scan = scan_of(given);
     watch_.receive(scan, "laser", now, now, moved);
+    costmap_.centre_on({place[0], place[1]}, now);
     consistency_.update(costmap_.insert(scan, composed(planar_of(place), planar_of(sensor)), now));
     const PlanarPose base = planar_of(odometry);
     const auto seen = in_base_axes(objects_.update(scan, composed(base, planar_of(sensor)), now), base);
@@ -59,15 +69,18 @@ class Navigation {
   }
   void begin(const Pose& goal, double now) { navigator_.begin(planar_of(goal), now); }
 
-  /// `path`: "none", "active", "done" or why it failed. Returns state, reason, path or None, whether to stop.
-  py::tuple step(double now, const std::string& problem, const Pose& pose, const std::string& path) {
+  /// `motion`: linear [m/s], angular [rad/s]. `path`: "none", "active", "done" or why it failed. Returns state, reason,
+  /// path or None, whether to stop.
+  py::tuple step(double now, const std::string& problem, const Pose& pose, const std::array<double, 2>& motion,
+                 const std::string& path) {
     using State = PathReport::State;
     const State state = path == "none"     ? State::kNone
                         : path == "active" ? State::kActive
                         : path == "done"   ? State::kDone
                                            : State::kFailed;
-    const NavigatorOutput out =
-        navigator_.step({now, problem, consistency_.explanation(), "", planar_of(pose), {state, path}}, &costmap_);
+    const NavigatorOutput out = navigator_.step(
+        {now, problem, consistency_.explanation(), "", planar_of(pose), {motion[0], motion[1], 0}, {state, path}},
+        &costmap_);
     py::object way = py::none();
     if (out.path) way = py::cast(poses_of(*out.path));
     return py::make_tuple(name_of(out.state), out.reason, way, out.cancel);
@@ -135,15 +148,16 @@ PYBIND11_MODULE(_navigation, module) {
       "write_map", [](const std::string& path, const py::tuple& map) { write_map(path, grid_of(map)); },
       py::arg("path"), py::arg("map"));
   py::class_<Navigation>(module, "Navigation")
-      .def(py::init<const py::tuple&, const std::string&, bool>(), py::arg("map"), py::arg("urdf"),
-           py::arg("unknown_is_free") = false)
+      .def(py::init<const std::optional<py::tuple>&, const std::string&>(), py::arg("map"), py::arg("urdf"))
+      .def("set_map", &Navigation::set_map, py::arg("map"), py::arg("unknown_is_free"))
       .def("update", &Navigation::update, py::arg("scan"), py::arg("sensor"), py::arg("place"), py::arg("odometry"),
            py::arg("now"), py::arg("moved"))
       .def("block", &Navigation::block, py::arg("place"), py::arg("obstacle"), py::arg("now"))
       .def("distance", &Navigation::distance, py::arg("x"), py::arg("y"))
       .def("plan", &Navigation::plan, py::arg("start"), py::arg("goal"), py::arg("now"))
       .def("begin", &Navigation::begin, py::arg("goal"), py::arg("now"))
-      .def("step", &Navigation::step, py::arg("now"), py::arg("problem"), py::arg("pose"), py::arg("path"));
+      .def("step", &Navigation::step, py::arg("now"), py::arg("problem"), py::arg("pose"), py::arg("motion"),
+           py::arg("path"));
   py::class_<Guard>(module, "Guard")
       .def(py::init<const std::string&>(), py::arg("urdf"))
       .def("move_joints", &Guard::move_joints, py::arg("positions"), py::arg("now"))

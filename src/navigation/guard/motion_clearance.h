@@ -14,21 +14,14 @@ inline constexpr double kLookAhead = 4.0;      ///< m; what is farther ahead lim
 inline constexpr double kLaserNoise = 0.02;    ///< m of air about the outline: noise of the laser
 inline constexpr double kRemainingGap = 0.01;  ///< m that also stay ahead: motion within one step of the search
 
-/// A velocity of the base, or a requested one; its direction counts.
-struct PlanarMotion {
-  double linear = 0;   ///< m/s
-  double angular = 0;  ///< rad/s
-  double lateral = 0;  ///< m/s, to the left
-};
-
 struct FreeWay {
   double distance = std::numeric_limits<double>::infinity();  ///< m of the base's path
   std::optional<Point> obstacle;                              ///< in base axes: what ends it
 };
 
-/// Returns how far the outline may go along the arc of this motion until a point is within kLaserNoise, less
-/// kRemainingGap. It is in m of the base's path, ∞ beyond kLookAhead. For a turn on the spot it is the path of the
-/// outline's widest point, ∞ beyond a whole turn. Without motion it is the distance straight ahead.
+/// Returns how far the outline may go along the arc of this motion, whose direction counts, until a point is within
+/// kLaserNoise, less kRemainingGap. It is in m of the base's path, ∞ beyond kLookAhead. For a turn on the spot it is
+/// the path of the outline's widest point, ∞ beyond a whole turn. Without motion it is the distance straight ahead.
 ///
 /// `points` are in base axes. A point that lies deeper than kLaserNoise inside the outline is a part of the robot. A
 /// point that is nearer than kLaserNoise at the start counts if the motion brings it nearer.

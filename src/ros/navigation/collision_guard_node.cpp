@@ -101,11 +101,6 @@ class CollisionGuardService {
  private:
   static double now() { return ros::SteadyTime::now().toSec(); }
 
-  static PlanarMotion motion_of(const geometry_msgs::Twist& twist) {
-    const PlanarMotion motion{twist.linear.x, twist.angular.z, twist.linear.y};
-    return std::isfinite(motion.linear + motion.angular + motion.lateral) ? motion : PlanarMotion();
-  }
-
   void insert(const std::string& laser, const PlacedScan& scan) {
     guard_.set_footprint(outline_.footprint());
     guard_.insert(laser, scan.scan, scan.laser, scan.odometry.mean, scan.stamp.toSec());

@@ -103,10 +103,12 @@ class NavigateService {
     if (!waiting_ || (time - waiting_->seen.stamp).toSec() > kTfTimeout) {
       if (auto scan = scans_.next_scan()) waiting_ = std::move(scan);
     }
+    if (!costmap_ && scans_.odom_frame() == parameters_.map_frame) costmap_ = std::make_unique<Costmap>(footprint_);
     if (!waiting_ || !costmap_) return;
     const PlacedScan& seen = waiting_->seen;
     const auto base = frames_.lookup(parameters_.map_frame, scans_.input().base_frame(), seen.stamp, scan_problem_);
     if (!base) return;
+    costmap_->centre_on({base->pose.x, base->pose.y}, now());
     costmap_->set_predicted(from_base_axes(waiting_->predicted, base->pose));
     consistency_.update(costmap_->insert(seen.scan, composed(base->pose, seen.laser), now()));
     waiting_.reset();
@@ -176,8 +178,9 @@ class NavigateService {
       const GuardReport guard = scans_.guard();
       const std::string slowed_by = path_client_.reason().empty() ? guard.reason : path_client_.reason();
       heed(guard);
-      output_ = navigator_.step({now(), why, consistency_.explanation(), slowed_by, pose_, path_client_.report()},
-                                costmap_.get());
+      output_ = navigator_.step(
+          {now(), why, consistency_.explanation(), slowed_by, pose_, scans_.motion(), path_client_.report()},
+          costmap_.get());
       if (output_.cancel) path_client_.cancel();
       if (output_.path)
         path_client_.send(*output_.path, parameters_.map_frame, goal_speed_ > 0 ? goal_speed_ : parameters_.speed,

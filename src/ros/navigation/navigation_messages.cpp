@@ -30,6 +30,11 @@ geometry_msgs::Pose pose_message(const PlanarPose& pose) {
   return message;
 }
 
+PlanarMotion motion_of(const geometry_msgs::Twist& twist) {
+  const PlanarMotion motion{twist.linear.x, twist.angular.z, twist.linear.y};
+  return std::isfinite(motion.linear + motion.angular + motion.lateral) ? motion : PlanarMotion();
+}
+
 UncertainPose uncertain_of(const geometry_msgs::PoseWithCovariance& message) {
   UncertainPose result{planar_of(message.pose)};
   for (int row = 0; row < 3; ++row)

@@ -2,6 +2,7 @@
 /// Conversions between messages of ROS and the types of navigation/.
 
 #include <geometry_msgs/PoseWithCovarianceStamped.h>
+#include <geometry_msgs/Twist.h>
 #include <nav_msgs/OccupancyGrid.h>
 #include <sensor_msgs/LaserScan.h>
 
@@ -19,6 +20,9 @@ double yaw_of(const geometry_msgs::Quaternion& turn);
 
 PlanarPose planar_of(const geometry_msgs::Pose& pose);
 geometry_msgs::Pose pose_message(const PlanarPose& pose);
+
+/// Returns the velocity in a plane; none, where a component is not finite.
+PlanarMotion motion_of(const geometry_msgs::Twist& twist);
 
 /// Convert x, y and yaw with their covariance; other entries of a message are ignored, or 0.
 UncertainPose uncertain_of(const geometry_msgs::PoseWithCovariance& message);

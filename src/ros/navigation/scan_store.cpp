@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "files/ascii.h"
+#include "ros/navigation/navigation_messages.h"
 
 namespace robot_control::navigation {
 namespace {
@@ -19,7 +20,8 @@ ScanStore::ScanStore(const ros::NodeHandle& handle, Footprint footprint)
     : footprint_(std::move(footprint)),
       handle_(with_queue(handle, queue_)),
       input_(
-          handle_, "scan", [this](const PlacedScan& scan) { use(scan); }, [](const nav_msgs::Odometry&) {}) {
+          handle_, "scan", [this](const PlacedScan& scan) { use(scan); },
+          [this](const nav_msgs::Odometry& odometry) { receive(odometry); }) {
   state_.connect(handle_, [this](const GuardState& message) { receive(message); });
   spinner_.start();
 }
@@ -32,6 +34,22 @@ std::optional<StoredScan> ScanStore::next_scan() {
 GuardReport ScanStore::guard() {
   const std::lock_guard lock(mutex_);
   return ros::SteadyTime::now().toSec() - reported_at_ > kScanTimeout ? GuardReport() : report_;
+}
+
+PlanarMotion ScanStore::motion() {
+  const std::lock_guard lock(mutex_);
+  return motion_;
+}
+
+std::string ScanStore::odom_frame() {
+  const std::lock_guard lock(mutex_);
+  return odom_frame_;
+}
+
+void ScanStore::receive(const nav_msgs::Odometry& message) {
+  const std::lock_guard lock(mutex_);
+  motion_ = motion_of(message.twist.twist);
+  odom_frame_ = message.header.frame_id;
 }
 
 void ScanStore::use(const PlacedScan& scan) {

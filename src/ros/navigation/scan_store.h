@@ -38,9 +38,16 @@ class ScanStore {
 
   GuardReport guard();
 
+  /// Returns the velocity by the newest message of odom.
+  PlanarMotion motion();
+
+  /// Returns the frame of odom; "" before its first message.
+  std::string odom_frame();
+
  private:
   void use(const PlacedScan& scan);
   void receive(const GuardState& message);
+  void receive(const nav_msgs::Odometry& message);
 
   const Footprint footprint_;
   ros::CallbackQueue queue_;
@@ -50,6 +57,8 @@ class ScanStore {
   std::optional<StoredScan> newest_;
   MovingObjects objects_;
   GuardReport report_;
+  PlanarMotion motion_;
+  std::string odom_frame_;
   double reported_at_ = -1e9;  // s
 
   ScanInput input_;
