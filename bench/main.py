@@ -174,7 +174,9 @@ TRIALS: dict[str, tuple[str, Callable[[Any, argparse.Namespace, Runner], Result]
     "fleet": ("fleet.bench", lambda m, g, _: m.bench(_parts_of("fleet", g), g.first, g.runs, say)),
     "navigation": (
         "navigation.bench",
-        lambda m, g, _: m.bench(_parts_of("navigation", g), g.first, g.runs, g.programs, say),
+        lambda m, g, _: m.bench(
+            _parts_of("navigation", g), g.first, g.runs, g.programs, say, m.barn.Fields(g.map, g.speed, g.worlds)
+        ),
     ),
     "loops": ("loops", lambda m, g, _: m.bench(_parts_of("loops", g), g.programs, g.params, say)),
     "data_return": (
@@ -280,6 +282,9 @@ def parse(arguments: Sequence[str] | None = None) -> argparse.Namespace:
     parser.add_argument("--only", type=_scenarios, metavar="SCENARIO[,…]", help="odometry: these scenarios alone")
     parser.add_argument("--plots", type=Path, help="odometry: folder for pictures")
     parser.add_argument("--file", type=Path, help="recordings legs: another recording, of the same form")
+    parser.add_argument("--worlds", type=Path, help="navigation barn: folder of public worlds, N.json each")
+    parser.add_argument("--map", choices=navigation.MAPS, default=navigation.MAPS[0], help="navigation barn: the map")
+    parser.add_argument("--speed", type=float, choices=navigation.SPEEDS, default=0.5, help="navigation barn: m/s")
     parser.add_argument("--keep", type=Path, help="record: folder for the logs and their reports")
     cluster = parser.add_argument_group("cluster", f"{', '.join(ON_CLUSTERS)} run with the workers of a Dask scheduler")
     cluster.add_argument("--scheduler", metavar="tls://HOST:8786", help="its address; default: this computer only")

@@ -6,16 +6,19 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from bench.navigation import goals, guard
+from bench.navigation import barn, goals, guard
 from bench.rows import Result, Say, judged
 
-PARTS = ("map", "localization", "goals", "faults", "guard", "cost")
+PARTS = ("map", "localization", "goals", "faults", "guard", "barn", "cost")
+MAPS, SPEEDS = tuple(barn.SUCCESSES), tuple(barn.CLIPS)
 MAPPING = ("map", "localization")
 
 
-def bench(parts: Sequence[str], first: int, runs: int | None, programs: Path, say: Say) -> Result:
-    """The rows of these parts, and whether all bounds hold. `runs`: tours of each scene, drives of each kind, or
-    blocks of the costs.
+def bench(  # noqa: PLR0917 (the options of the command line)
+    parts: Sequence[str], first: int, runs: int | None, programs: Path, say: Say, fields: barn.Fields
+) -> Result:
+    """The rows of these parts, and whether all bounds hold. `runs`: tours of each scene, drives of each kind, worlds,
+    or blocks of the costs.
 
     Raises:
         RuntimeError: MRPT is missing.
@@ -27,6 +30,8 @@ def bench(parts: Sequence[str], first: int, runs: int | None, programs: Path, sa
         rows += goals.faults(first, runs or goals.FAULT_RUNS, say)
     if "guard" in parts:
         rows += guard.meetings(first, runs or guard.TRIALS, say) + guard.lies(first, runs or guard.LIE_RUNS, say)
+    if "barn" in parts:
+        rows += barn.barn(first, runs or barn.GENERATED, fields, say)
     if "cost" in parts:
         from bench.navigation import costs  # noqa: PLC0415 (needs ROS's messages of navigation)
 

@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 from robot_control.installed_files import share_file
 
 from bench.navigation.scene_map import Map, Obstacle, read_scene, true_map
-from bench.navigation.tour import LASER
-from bench.navigation.virtual import Lies, Place, Robot, Trip
+from bench.navigation.tour import LASER, Place
+from bench.navigation.virtual import Lies, Robot, Trip
 from bench.rows import Row, Say, bounded
 from bench.runs.runner import Processes
 

@@ -23,8 +23,8 @@ from robot_control.robot.pose import Pose
 
 from bench.fleet.messages import order
 from bench.navigation.goals import feasible, random_goal, scene_of
-from bench.navigation.tour import LASER, SCAN_PERIOD
-from bench.navigation.virtual import STEP, Lies, Robot, Scan, Trip
+from bench.navigation.tour import LASER, SCAN_PERIOD, Scan
+from bench.navigation.virtual import STEP, Lies, Robot, Trip
 from bench.rows import Row, Say, bounded
 from bench.runs.runner import Processes
 
