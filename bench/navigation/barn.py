@@ -1,9 +1,9 @@
 """BARN: 10 m to a goal behind a field of cylinders, without a given map; in virtual time.
 
 Worlds and metric are those of D. Perille, A. Truong, X. Xiao and P. Stone, Benchmarking metric ground navigation, SSRR
-2020, doi:10.1109/SSRR50563.2020.9292572, and of its challenges. With the shortest way at 2 m/s as the optimal time OT,
-a drive that takes AT counts OT / clip(AT, 4 OT, 8 OT), one that touches or takes longer than 100 s counts 0. Since 2023
-the lower end of the clip is 2 OT.
+2020, doi:10.1109/SSRR50563.2020.9292572, and of its challenges. The optimal time OT is
+that of the shortest way at 2 m/s. A drive that takes AT counts OT / clip(AT, 4 OT, 8 OT). One that touches, or takes
+longer than 100 s, counts 0. Since 2023 the lower end of the clip is 2 OT.
 
 A field is 30 cells of 0.15 m wide and long. Each cell is filled with a probability of 0.15 … 0.3, and smoothed 2 … 4
 times: it is filled with more than 4 filled neighbours and empty with less than 2. A cylinder stands in each filled
@@ -49,7 +49,7 @@ Cells = NDArray[np.bool_]
 
 @dataclass(frozen=True)
 class Fields:
-    """What crosses fields of cylinders: its map ("none", "slam"), its speed in m/s, and a folder of public worlds."""
+    """The map ("none", "slam") and the speed in m/s of the robot, and a folder of public worlds."""
 
     map: str = "none"
     speed: float = 0.5

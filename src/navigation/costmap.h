@@ -6,8 +6,8 @@
 /// `unknown_is_free`, it is also occupied if neither the map nor a ray knows it. A ray that ends within kExplained of
 /// an occupied cell of the map marks nothing. It has hit the map's own wall, within the error of the localisation.
 ///
-/// Where the map knows nothing, what a ray has marked stays longer than kMemory: until a ray passes the cell, then also
-/// one without a return.
+/// A mark in a cell that the map does not know stays longer than kMemory, until a ray passes the cell. After kMemory
+/// this may be a ray without a return.
 ///
 /// Without a map the costmap is a window of kWindow whose cells are all unknown. It moves with the robot.
 ///
@@ -56,7 +56,7 @@ class Costmap {
  public:
   Costmap(const Grid& map, Footprint footprint, bool unknown_is_free);
 
-  /// A window without a map, around the origin. What no ray has seen is free.
+  /// Makes a window without a map, around the origin. Space that no ray has seen is free.
   explicit Costmap(Footprint footprint);
 
   /// Returns whether there is no map, so that goals may be outside.

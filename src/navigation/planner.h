@@ -35,8 +35,8 @@ inline constexpr double kStopAngularDeceleration = 4.0;  ///< rad/s²
 PlanarPose stop_pose(const PlanarPose& pose, const PlanarMotion& motion);
 
 /// The costmap is up to date (Costmap::update). A start that is not free may be left, as long as every step is freer
-/// than the start or free. A goal outside a window is planned to the point of its border from which the straight
-/// remaining path, at the lowest cost, is the best. Else a goal is refused outside the map, in an obstacle, in unknown
+/// than the start or free. A path to a goal outside a window ends at its border, where its cost and the straight
+/// remaining distance are the least together. Else a goal is refused outside the map, in an obstacle, in unknown
 /// space, or too near to either. The problem names the narrowest point of the widest path if there is no path for the
 /// outline.
 Plan plan_path(const Costmap& costmap, const PlanarPose& start, const PlanarPose& goal);

@@ -96,6 +96,16 @@ def test_the_nodes_report_no_override_that_a_launch_file_sets():
     assert set_here - {"", "config"} == unsaid
 
 
+def test_navigation_without_a_map_starts_neither_slam_nor_localization():
+    def nodes(*arguments):
+        return {node.type for node in config_of("navigation.launch", *arguments).nodes}
+
+    assert {"slam", "navigate"} <= nodes()
+    assert nodes("map_frame:=odom") == nodes() - {"slam"}
+    assert config_of("navigation.launch", "map_frame:=odom").params["/navigate/map_frame"].value == "odom"
+    assert "/navigate/map_frame" not in config_of("navigation.launch").params
+
+
 def test_an_address_is_taken_as_given():
     for launch in ("sim.launch", "robot.launch"):
         assert dict(config_of(launch, "ip:=192.0.2.7").nodes[0].env_args)["ROS_IP"] == "192.0.2.7"

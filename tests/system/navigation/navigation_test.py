@@ -116,6 +116,23 @@ class NavigationTest(RobotTestCase):
         self.assertLess(math.hypot(self.robot.pose.x - before.x, self.robot.pose.y - before.y), 0.01)
 
     @again_after_a_stall
+    def test_without_a_map_goals_lie_in_odom_or_in_the_axes_of_the_robot(self) -> None:
+        self.navigate.end()
+        rospy.set_param("/navigate/map_frame", "odom")
+        NavigationTest.navigate = Program("navigate")
+        try:
+            x = 1.2 if self.robot.pose.x < 0.6 else 0.0
+            for target in (self.pose(x, 0.1, frame="odom"), self.pose(0.0, 0.0, 1.0, frame="base_link")):
+                client = self.end_of("navigate_to", NavigateToAction, NavigateToGoal(target=target))
+                self.assertEqual((client.get_state(), client.get_result().reason), (SUCCEEDED, "reached"))
+                self.assert_reached(x, 0.1)
+            self.assertAlmostEqual(self.robot.pose.yaw, 1.0, delta=0.15)
+        finally:
+            self.navigate.end()
+            rospy.delete_param("/navigate/map_frame")
+            NavigationTest.navigate = Program("navigate")
+
+    @again_after_a_stall
     def test_a_cancelled_goal_ends_with_zero(self) -> None:
         client = actionlib.SimpleActionClient("navigate_to", NavigateToAction)
         self.assertTrue(client.wait_for_server(rospy.Duration(30.0)))
