@@ -6,6 +6,7 @@
 #include <limits>
 #include <utility>
 
+#include "navigation/straightening.h"
 #include "signals/formatted_text.h"
 
 namespace robot_control::navigation {
@@ -68,7 +69,7 @@ NavigatorOutput Navigator::step(const NavigatorInput& input, Costmap* costmap) {
 void Navigator::plan(const NavigatorInput& input, Costmap& costmap, NavigatorOutput& out) {
   planned_at_ = input.now;
   costmap.update(input.now);
-  const PlanarPose stop = stop_pose(input.pose, input.motion), start = costmap.free(stop) ? stop : input.pose;
+  const PlanarPose stop = next_start(input), start = costmap.free(stop) ? stop : input.pose;
   Plan found = plan_path(costmap, start, goal_);
   if (!found.problem.empty()) {
     const std::string blocked = found.problem;
@@ -93,6 +94,19 @@ void Navigator::plan(const NavigatorInput& input, Costmap& costmap, NavigatorOut
   least_remaining_ = found.length;
   reason_.clear();
   out.path = std::move(found);
+}
+
+PlanarPose Navigator::next_start(const NavigatorInput& input) const {
+  const double ahead = input.motion.linear * input.motion.linear / (2 * kStopDeceleration);
+  PlanarPose start = input.pose;
+  if (state_ != NavigatorState::kDriving || ahead < kSpacing / 2) return start;
+  for (std::size_t i = passed_; i < path_.poses.size(); ++i) {
+    const double turn = std::abs(std::remainder(path_.poses[i].yaw - start.yaw, 2 * M_PI));
+    if (i > passed_ && turn > kCorner) break;
+    start = path_.poses[i];
+    if (std::hypot(start.x - input.pose.x, start.y - input.pose.y) > ahead) break;
+  }
+  return start;
 }
 
 void Navigator::drive(const NavigatorInput& input, Costmap& costmap, NavigatorOutput& out) {

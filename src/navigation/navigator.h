@@ -9,7 +9,8 @@
 ///   waiting    nothing is driven: the path is blocked, or the laser, the map or the pose cannot be trusted. The goal is
 ///              given up after kNoProgressTime; before the first path, after kFirstPathTime
 ///
-/// Every path begins where the robot can stand at the earliest (stop_pose), if that is free.
+/// Every path begins where the robot can stand at the earliest. This is v²/2a ahead on the path that it replaces, or at
+/// the next corner of that. It is the pose of a robot that stands.
 ///
 /// A path that follow_path gave up is planned again, kAttempts times without kMinProgress in between. No later path
 /// from standstill restarts these times. follow_path refuses what a stop of the robot has revoked.
@@ -28,6 +29,8 @@ inline constexpr double kMinFreeDistance = 4;  ///< m ahead of the robot; farthe
 inline constexpr double kStopDistance = 0.6;   ///< m
 inline constexpr double kMinProgress = 0.3;    ///< m
 inline constexpr int kAttempts = 3;
+inline constexpr double kStopDeceleration = 1.0;  ///< m/s², of the shipped parameters
+inline constexpr double kCorner = 0.6;            ///< rad, at which follow_path turns on the spot
 
 /// The end of the last path that was sent to follow_path.
 struct PathReport {
@@ -82,6 +85,7 @@ class Navigator {
   void drive(const NavigatorInput& input, Costmap& costmap, NavigatorOutput& out);
   void note_progress(const NavigatorInput& input);
   double remaining(const PlanarPose& pose) const;
+  PlanarPose next_start(const NavigatorInput& input) const;
 
   NavigatorState state_ = NavigatorState::kIdle;
   PlanarPose goal_;

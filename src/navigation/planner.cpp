@@ -266,14 +266,6 @@ std::string goal_problem(const Costmap& costmap, const PlanarPose& goal) {
 
 }  // namespace
 
-PlanarPose stop_pose(const PlanarPose& pose, const PlanarMotion& motion) {
-  const double speed = std::hypot(motion.linear, motion.lateral);
-  const double half = std::max(speed / kStopDeceleration, std::abs(motion.angular) / kStopAngularDeceleration) / 2;
-  const double turn = motion.angular * half, c = std::cos(turn / 2), s = std::sin(turn / 2);
-  const double x = motion.linear * half, y = motion.lateral * half;
-  return composed(pose, {c * x - s * y, s * x + c * y, turn});
-}
-
 Plan plan_path(const Costmap& costmap, const PlanarPose& start, const PlanarPose& goal) {
   constexpr double kSamePosition = 0.04;  // m; the end of a path is as exact
   Plan plan;

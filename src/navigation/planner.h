@@ -27,13 +27,6 @@ struct Plan {
   bool partial = false;           ///< the path ends at the border of a window; the goal is outside
 };
 
-/// The robot's deceleration, with which a new path waits for it: those of the shipped parameters.
-inline constexpr double kStopDeceleration = 1.0;         ///< m/s²
-inline constexpr double kStopAngularDeceleration = 4.0;  ///< rad/s²
-
-/// Returns where the robot can stand at the earliest: v²/2a ahead on its arc.
-PlanarPose stop_pose(const PlanarPose& pose, const PlanarMotion& motion);
-
 /// The costmap is up to date (Costmap::update). A start that is not free may be left, as long as every step is freer
 /// than the start or free. A path to a goal outside a window ends at its border, where its cost and the straight
 /// remaining distance are the least together. Else a goal is refused outside the map, in an obstacle, in unknown

@@ -202,17 +202,6 @@ TEST(WindowTest, AGoalOutsideOfAClosedRoomHasNoPath) {
   EXPECT_THAT(plan_path(window, kLeft, {100, 1.6, 1}).problem, HasSubstr("no path"));
 }
 
-TEST(StopPoseTest, ItIsWhereABrakingRobotEnds) {
-  const auto at = [](double linear, double angular) {
-    return stop_pose({1, 2, M_PI / 2}, {.linear = linear, .angular = angular, .lateral = 0});
-  };
-  EXPECT_NEAR(at(0, 0).y, 2, 1e-12);
-  EXPECT_NEAR(at(0.5, 0).y, 2 + 0.25 / 2 / kStopDeceleration, 1e-12);
-  EXPECT_NEAR(at(-0.5, 0).y, 2 - 0.25 / 2 / kStopDeceleration, 1e-12);
-  EXPECT_NEAR(at(0, 1).yaw, M_PI / 2 + 1 / 2.0 / kStopAngularDeceleration, 1e-12);
-  EXPECT_LT(at(0.5, 1).x, 1) << "to the left";
-}
-
 TEST(DoubtTest, AnUntruePoseIsDoubtedAfterHalfASecondAndATrueOneTrustedAgain) {
   const Grid map = two_rooms(0.8);
   Costmap costmap = costmap_of(map);
