@@ -175,7 +175,13 @@ TRIALS: dict[str, tuple[str, Callable[[Any, argparse.Namespace, Runner], Result]
     "navigation": (
         "navigation.bench",
         lambda m, g, _: m.bench(
-            _parts_of("navigation", g), g.first, g.runs, g.programs, say, m.barn.Fields(g.map, g.speed, g.worlds)
+            _parts_of("navigation", g),
+            g.first,
+            g.runs,
+            g.programs,
+            say,
+            m.barn.Fields(g.map, g.speed, g.worlds),
+            logs=g.logs,
         ),
     ),
     "loops": ("loops", lambda m, g, _: m.bench(_parts_of("loops", g), g.programs, g.params, say)),
@@ -281,6 +287,7 @@ def parse(arguments: Sequence[str] | None = None) -> argparse.Namespace:
     parser.add_argument("--robot", choices=OWN, default=DIFFBOT, help=f"{', '.join(BY_ROBOT)}: the robot")
     parser.add_argument("--only", type=_scenarios, metavar="SCENARIO[,…]", help="odometry: these scenarios alone")
     parser.add_argument("--plots", type=Path, help="odometry: folder for pictures")
+    parser.add_argument("--logs", type=Path, help="navigation logs: folder of the logs")
     parser.add_argument("--file", type=Path, help="recordings legs: another recording, of the same form")
     parser.add_argument("--worlds", type=Path, help="navigation barn: folder of public worlds, N.json each")
     parser.add_argument("--map", choices=navigation.MAPS, default=navigation.MAPS[0], help="navigation barn: the map")

@@ -9,21 +9,28 @@ from typing import Any
 from bench.navigation import barn, goals, guard
 from bench.rows import Result, Say, judged
 
-PARTS = ("map", "localization", "goals", "faults", "guard", "barn", "cost")
+PARTS = ("map", "logs", "localization", "goals", "faults", "guard", "barn", "cost")
 MAPS, SPEEDS = tuple(barn.SUCCESSES), tuple(barn.CLIPS)
-MAPPING = ("map", "localization")
+MAPPING = ("map", "logs", "localization")
 
 
 def bench(  # noqa: PLR0917 (the options of the command line)
-    parts: Sequence[str], first: int, runs: int | None, programs: Path, say: Say, fields: barn.Fields
+    parts: Sequence[str],
+    first: int,
+    runs: int | None,
+    programs: Path,
+    say: Say,
+    fields: barn.Fields,
+    *,
+    logs: Path | None = None,
 ) -> Result:
     """The rows of these parts, and whether all bounds hold. `runs`: tours of each scene, drives of each kind, worlds,
-    or blocks of the costs.
+    or blocks of the costs. `logs`: the folder of the part of this name, which is left out without one.
 
     Raises:
         RuntimeError: MRPT is missing.
     """
-    rows = _of_mrpt(parts, first, runs, say) if set(parts) & set(MAPPING) else []
+    rows = _of_mrpt(parts, first, runs, say, logs) if set(parts) & set(MAPPING) else []
     if "goals" in parts:
         rows += goals.goals(first, runs or goals.GOALS, say)
     if "faults" in parts:
@@ -39,14 +46,18 @@ def bench(  # noqa: PLR0917 (the options of the command line)
     return judged("navigation", rows)
 
 
-def _of_mrpt(parts: Sequence[str], first: int, runs: int | None, say: Say) -> list[dict[str, Any]]:
+def _of_mrpt(parts: Sequence[str], first: int, runs: int | None, say: Say, logs: Path | None) -> list[dict[str, Any]]:
     try:
-        from bench.navigation import localizing, mapping  # noqa: PLC0415 (without MRPT the other parts run)
+        from bench.navigation import localizing, mapping, on_logs  # noqa: PLC0415 (without MRPT the other parts run)
     except ImportError:
         raise RuntimeError("MRPT is not installed: scripts/setup --navigation, then build again") from None
     rows: list[dict[str, Any]] = []
     if "map" in parts:
         rows += mapping.rows_of(first, runs or mapping.RUNS, say)
+    if "logs" in parts and logs is None:
+        say("logs: left out without --logs FOLDER")
+    elif "logs" in parts:
+        rows += on_logs.rows_of(logs, first, runs or on_logs.SEEDS, say)
     if "localization" in parts:
         rows += localizing.rows_of(first, runs or localizing.DRIVES, say)
     return rows
