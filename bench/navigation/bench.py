@@ -56,7 +56,7 @@ def _of_mrpt(parts: Sequence[str], first: int, runs: int | None, say: Say, logs:
         rows += mapping.rows_of(first, runs or mapping.RUNS, say)
     if "logs" in parts and logs is None:
         say("logs: left out without --logs FOLDER")
-    elif "logs" in parts:
+    if "logs" in parts and logs is not None:
         rows += on_logs.rows_of(logs, first, runs or on_logs.SEEDS, say)
     if "localization" in parts:
         rows += localizing.rows_of(first, runs or localizing.DRIVES, say)

@@ -49,8 +49,10 @@ def rows_of(folder: Path, first: int, seeds: int, say: Say) -> list[Row]:
     for log in read_folder(folder):
         if log.odometry is not None:
             drives = [log.odometry]
+        elif log.reference is not None:
+            drives = [made(log.reference, seed) for seed in range(first, first + seeds)]
         else:
-            drives = [made(log.reference, seed)[0] for seed in range(first, first + seeds)]
+            raise ValueError(f"{log.name} has neither an odometry nor a reference")
         results = [follow(log, odometry) for odometry in drives]
         rows += _judged(log, results, say)
     return rows
@@ -69,9 +71,9 @@ def _judged(log: LaserLog, results: list[Followed], say: Say) -> list[Row]:
             reference = relation_errors(log.time, log.reference, log.relations)[0]
             rows.append(bounded(f"{log.name}: relations", worst, "m", AS_GOOD * reference))
     elif log.reference is not None:
-        errors = [absolute_error(result.poses, log.reference) for result in results]
-        say(f"{log.name}: absolute error " + ", ".join(f"{metres:.3f} m" for metres in errors))
-        rows.append(bounded(f"{log.name}: absolute error, RMS", max(errors), "m", FARTHEST))
+        distances = [absolute_error(result.poses, log.reference) for result in results]
+        say(f"{log.name}: absolute error " + ", ".join(f"{metres:.3f} m" for metres in distances))
+        rows.append(bounded(f"{log.name}: absolute error, RMS", max(distances), "m", FARTHEST))
     share = max(np.mean(result.lost) for result in results)
     rows.append(plain(f"{log.name}: lost", float(share), "of the scans"))
     rows.append(bounded(f"{log.name}: lost in a row", max(result.longest for result in results), "scans", LOST))
