@@ -53,6 +53,8 @@ def status(address: str, data: bytes | None = None, **headers: str) -> int:
 
 class ConsoleAttackTest(RobotTestCase):
     console: Console
+    awaited = ""
+    """the message that `until` waits for"""
 
     @classmethod
     def setUpClass(cls) -> None:
@@ -99,10 +101,14 @@ class ConsoleAttackTest(RobotTestCase):
             async with self.page(cookie, console) as page:
                 await asyncio.wait_for(play(page), 60)
 
-        asyncio.run(whole())
+        try:
+            asyncio.run(whole())
+        except TimeoutError:
+            self.fail(f"not done within 60 s; the last message that was waited for: {self.awaited}")
 
     async def until(self, page: Any, kind: str, text: str = "") -> dict[str, Any]:
         """The next message of this type; pings are answered."""
+        self.awaited = f"{kind} {text}"
         while True:
             message = json.loads((await page.receive()).data)
             if message["type"] == "ping":
