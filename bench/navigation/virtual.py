@@ -19,6 +19,7 @@ from bench.navigation.scene_map import Map, Obstacle
 from bench.navigation.tour import DIFFBOT, LASER, Machine, Place, Scan, new_loop
 
 SPEED = 0.5  # m/s
+STEERS = True  # with the local controller; else along paths alone
 STEP, SCAN = 0.02, 5  # s between two steps of the law; such steps between two scans
 LONGEST = 240.0  # s for one goal
 STANDING = 10  # scans before and after it
@@ -67,6 +68,7 @@ class Robot:
         machine: Machine = DIFFBOT,
     ) -> None:
         self.machine, self.speed = machine, SPEED
+        self.steers = STEERS
         self.loop: ClosedLoop = new_loop(scene, seed, machine=machine)
         self._obstacles = obstacles
         self._standing = np.concatenate([item.outline(0.0) for item in obstacles if not item.path])
@@ -79,6 +81,7 @@ class Robot:
         self._held_since = 0.0
         self._moved = 0.0
         self._follower: Follower | None = None
+        self._request = (0.0, 0.0)
         self._command = (0.0, 0.0)
         self._state = self._advance(self._command)
         self._problem = ""
@@ -97,6 +100,11 @@ class Robot:
 
     def _assumed(self) -> Place:
         return self.lies.place(self.place) if self.loop.time >= self.lies.since else self.place
+
+    @property
+    def limits(self) -> tuple[float, float, float]:
+        """forward, reverse [m/s], angular [rad/s]"""
+        return (self.speed, 0.3, 1.0) if self.steers else (0.0, 0.0, 0.0)
 
     @property
     def _motion(self) -> tuple[float, float]:
@@ -156,11 +164,14 @@ class Robot:
         path = "none"
         while self.loop.time - begin < limit and not self._arrived():
             path = self._report(path)
-            state, reason, way, cancel = self.navigation.step(
-                self.loop.time, self._problem, self._assumed(), self._motion, path
+            state, reason, way, cancel, request = self.navigation.step(
+                self.loop.time, self._problem, self._assumed(), self._motion, path, self.limits
             )
             if cancel:
+                self._follower, path, self._request = None, "none", (0.0, 0.0)
+            if request is not None:
                 self._follower, path = None, "none"
+            self._request = request or (0.0, 0.0)
             if way is not None:
                 self._follower, path = self._new_follower(way), "active"
             if state in {"reached", "failed"}:
@@ -177,7 +188,7 @@ class Robot:
         return trip
 
     def _stand(self, trip: Trip) -> None:
-        self._follower = None
+        self._follower, self._request = None, (0.0, 0.0)
         for _ in range(STANDING):
             self._until_next_scan(trip)
 
@@ -202,7 +213,7 @@ class Robot:
         return "done" if follower.state is State.DONE else follower.reason
 
     def _follow(self) -> None:
-        self._command = (0.0, 0.0)
+        self._command = self._request
         if self._follower is not None and not self._follower.over:
             motion = self._follower.step(Pose(*self._assumed()), Motion(*self._motion), elapsed=STEP)
             self._command = (motion.linear, motion.angular)

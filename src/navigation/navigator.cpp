@@ -61,12 +61,30 @@ NavigatorOutput Navigator::step(const NavigatorInput& input, Costmap* costmap) {
   out.state = state_;
   if (state_ == NavigatorState::kFailed) reason_ += input.explanation;
   if (state_ != NavigatorState::kReached) out.reason = reason_;
-  if (state_ == NavigatorState::kDriving) out.remaining = remaining(input.pose);
+  if (state_ == NavigatorState::kDriving) out.remaining = steering_ ? least_remaining_ : remaining(input.pose);
   return out;
 }
 
 void Navigator::plan(const NavigatorInput& input, Costmap& costmap, NavigatorOutput& out) {
   planned_at_ = input.now;
+  if (input.limits.forward > 0 && input.now >= path_until_) {
+    costmap.update(input.now, false);
+    to_goal_ = costs_to(costmap, goal_, kNarrowFactor);
+    costs_at_ = input.now;
+    const double left = cost_at(costmap, input.pose);
+    steering_ = std::isfinite(left) && left > kApproach;
+    if (steering_) {
+      if (state_ == NavigatorState::kPlanning) progress_at_ = input.now;
+      out.cancel = state_ == NavigatorState::kPlanning && sent_;
+      state_ = NavigatorState::kDriving;
+      driven_ = sent_ = true;
+      least_remaining_ = left;
+      reason_.clear();
+      if (!controller_) controller_.emplace(costmap.footprint());
+      return steer(input, costmap, out);
+    }
+  }
+  steering_ = false;
   costmap.update(input.now);
   const PlanarPose stop = stop_pose(input.pose, input.motion), start = costmap.free(stop) ? stop : input.pose;
   Plan found = plan_path(costmap, start, goal_);
@@ -95,7 +113,31 @@ void Navigator::plan(const NavigatorInput& input, Costmap& costmap, NavigatorOut
   out.path = std::move(found);
 }
 
+void Navigator::steer(const NavigatorInput& input, Costmap& costmap, NavigatorOutput& out) {
+  costmap.update(input.now, false);
+  if (input.now - costs_at_ >= kReplanPeriod) {
+    to_goal_ = costs_to(costmap, goal_, kNarrowFactor);
+    costs_at_ = input.now;
+  }
+  const double left = cost_at(costmap, input.pose);
+  if (std::isfinite(left)) note_progress(input, left);
+  const bool stuck = input.now - progress_at_ > kStuckTime;
+  if (!std::isfinite(left) || left < kApproach || stuck) {
+    path_until_ = input.now + kStuckTime;
+    return plan(input, costmap, out);
+  }
+  out.request = controller_->step(input.limits, costmap, to_goal_, input.pose, input.motion, input.objects);
+  reason_ = input.now - progress_at_ > kReplanPeriod ? input.slowed_by : "";
+}
+
+double Navigator::cost_at(const Costmap& costmap, const PlanarPose& pose) const {
+  return to_goal_[costmap.grid().index(costmap.grid().cell_at(pose.x, pose.y))];
+}
+
 void Navigator::drive(const NavigatorInput& input, Costmap& costmap, NavigatorOutput& out) {
+  if (steering_) return steer(input, costmap, out);
+  if (input.limits.forward > 0 && input.now >= path_until_ && cost_at(costmap, input.pose) > 2 * kApproach)
+    return plan(input, costmap, out);
   if (input.path.state == PathReport::State::kDone) {
     state_ = path_.partial ? NavigatorState::kWaiting : NavigatorState::kReached;
     return;
@@ -111,7 +153,7 @@ void Navigator::drive(const NavigatorInput& input, Costmap& costmap, NavigatorOu
     costmap.update(input.now);
   }
   const double free = free_distance(costmap, path_.poses, input.pose, passed_);
-  note_progress(input);
+  note_progress(input, remaining(input.pose));
   const bool blocked = free < kMinFreeDistance;
   const bool ends = path_.partial && remaining(input.pose) < kWindow / 4;
   if ((blocked || ends) && input.now - planned_at_ >= kReplanPeriod) plan(input, costmap, out);
@@ -119,8 +161,7 @@ void Navigator::drive(const NavigatorInput& input, Costmap& costmap, NavigatorOu
   if (!blocked) reason_ = input.now - progress_at_ > kReplanPeriod ? input.slowed_by : "";
 }
 
-void Navigator::note_progress(const NavigatorInput& input) {
-  const double left = remaining(input.pose);
+void Navigator::note_progress(const NavigatorInput& input, double left) {
   if (left < least_remaining_ - kMinProgress) {
     least_remaining_ = left;
     attempts_ = 0;

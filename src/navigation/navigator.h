@@ -6,6 +6,9 @@
 ///   driving    follow_path has a path. A path that is blocked within kMinFreeDistance is replaced, at most once per
 ///              kReplanPeriod. If there is no other path, the robot drives on until kStopDistance before the obstacle.
 ///              A path to the border of a window is replaced when less than kWindow/4 of it remain
+///              While the goal is farther than kApproach, a LocalController drives instead, by the costs to the goal,
+///              which are renewed every kReplanPeriod. Where it comes no nearer for kStuckTime, follow_path drives for
+///              as long.
 ///   waiting    nothing is driven: the path is blocked, or the laser, the map or the pose cannot be trusted. The goal is
 ///              given up after kNoProgressTime; before the first path, after kFirstPathTime
 ///
@@ -17,6 +20,7 @@
 #include <optional>
 #include <string>
 
+#include "navigation/local_controller.h"
 #include "navigation/planner.h"
 
 namespace robot_control::navigation {
@@ -26,7 +30,10 @@ inline constexpr double kFirstPathTime = 2;    ///< s, in which a map, a scan an
 inline constexpr double kReplanPeriod = 1;     ///< s
 inline constexpr double kMinFreeDistance = 4;  ///< m ahead of the robot; farther obstacles may have gone until then
 inline constexpr double kStopDistance = 0.6;   ///< m
-inline constexpr double kMinProgress = 0.3;    ///< m
+inline constexpr double kApproach = 0.8;       ///< m of cost to the goal
+inline constexpr double kStuckTime = 4;        ///< s
+inline constexpr double kNarrowFactor = 5;
+inline constexpr double kMinProgress = 0.3;  ///< m
 inline constexpr int kAttempts = 3;
 
 /// The end of the last path that was sent to follow_path.
@@ -44,6 +51,8 @@ struct NavigatorInput {
   PlanarPose pose;          ///< of the base in the map
   PlanarMotion motion;      ///< as measured
   PathReport path;
+  DriveLimits limits;
+  std::vector<MovingObject> objects;  ///< in the map
 };
 
 enum class NavigatorState { kIdle, kPlanning, kDriving, kWaiting, kReached, kFailed };
@@ -53,10 +62,11 @@ const char* name_of(NavigatorState state);
 
 struct NavigatorOutput {
   NavigatorState state = NavigatorState::kIdle;
-  std::string reason;        ///< why it waits, failed or does not come nearer
-  double remaining = 0;      ///< m of the path
-  std::optional<Plan> path;  ///< to be sent to follow_path in place of what it drives
-  bool cancel = false;       ///< follow_path is to stop
+  std::string reason;                   ///< why it waits, failed or does not come nearer
+  double remaining = 0;                 ///< m of the path
+  std::optional<Plan> path;             ///< to be sent to follow_path in place of what it drives
+  bool cancel = false;                  ///< follow_path is to stop, or what was requested by `request`
+  std::optional<PlanarMotion> request;  ///< the velocity to be requested, in place of a path
 };
 
 class Navigator {
@@ -80,7 +90,9 @@ class Navigator {
   void fail(const std::string& reason, NavigatorOutput& out);
   void plan(const NavigatorInput& input, Costmap& costmap, NavigatorOutput& out);
   void drive(const NavigatorInput& input, Costmap& costmap, NavigatorOutput& out);
-  void note_progress(const NavigatorInput& input);
+  void steer(const NavigatorInput& input, Costmap& costmap, NavigatorOutput& out);
+  void note_progress(const NavigatorInput& input, double left);
+  double cost_at(const Costmap& costmap, const PlanarPose& pose) const;
   double remaining(const PlanarPose& pose) const;
 
   NavigatorState state_ = NavigatorState::kIdle;
@@ -93,6 +105,10 @@ class Navigator {
   double least_remaining_ = 0;                    // m
   double planned_at_ = -1e9, updated_at_ = -1e9;  // s
   int attempts_ = 0;
+  std::optional<LocalController> controller_;
+  std::vector<float> to_goal_;  // m, by cell
+  bool steering_ = false;
+  double costs_at_ = -1e9, path_until_ = -1e9;  // s
   std::string reason_;
 };
 

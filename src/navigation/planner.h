@@ -34,6 +34,11 @@ inline constexpr double kStopAngularDeceleration = 4.0;  ///< rad/s²
 /// Returns where the robot can stand at the earliest: v²/2a ahead on its arc.
 PlanarPose stop_pose(const PlanarPose& pose, const PlanarMotion& motion);
 
+/// Returns the cost from each cell to the goal without headings: the length times Costmap::step_cost, and kNarrow times
+/// that where the outline cannot be along any heading but one. Infinite where there is no path even for the inscribed
+/// circle. A goal outside a window counts from the window's border.
+std::vector<float> costs_to(const Costmap& costmap, const PlanarPose& goal, double narrow_factor);
+
 /// The costmap is up to date (Costmap::update). A start that is not free may be left, as long as every step is freer
 /// than the start or free. A path to a goal outside a window ends at its border, where its cost and the straight
 /// remaining distance are the least together. Else a goal is refused outside the map, in an obstacle, in unknown

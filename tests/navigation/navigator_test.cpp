@@ -24,13 +24,23 @@ struct NavigatorTest : testing::Test {
     now_ += kPeriod;
     costmap_.centre_on({pose_.x, pose_.y}, now_);
     costmap_.insert(scan_of(world_, pose_, 180), pose_, now_);
-    out_ = navigator_.step({now_, problem_, explanation_, "", pose_, motion_, report_}, &costmap_);
+    out_ = navigator_.step({now_, problem_, explanation_, "", pose_, motion_, report_, limits_, {}}, &costmap_);
+    if (out_.request) drive(*out_.request);
     if (out_.cancel) report_.state = PathReport::State::kNone;
     if (out_.path) path_ = *out_.path, along_ = 0, report_ = {PathReport::State::kActive, ""}, ++paths_;
     if (report_.state == PathReport::State::kActive && !failing_.empty())
       report_ = {PathReport::State::kFailed, failing_};
     if (paused_) report_.state = PathReport::State::kNone;
     if (report_.state == PathReport::State::kActive) follow();
+  }
+
+  /// The robot has the requested velocity at once.
+  void drive(const PlanarMotion& request) {
+    motion_ = request;
+    pose_ = composed(pose_, {request.linear * kPeriod, request.lateral * kPeriod, request.angular * kPeriod});
+    steered_ += request.linear * kPeriod;
+    for (const Point point : points_of(scan_of(world_, pose_, 180), {}))
+      least_air_ = std::min(least_air_, diffbot().distance(point));
   }
 
   void follow() {
@@ -59,6 +69,8 @@ struct NavigatorTest : testing::Test {
   std::string problem_, explanation_, failing_;
   PlanarPose pose_{1.6, 1.6, 0};
   PlanarMotion motion_;
+  DriveLimits limits_{.forward = 0};  // along paths alone
+  double steered_ = 0;                // m
   double now_ = 100, least_air_ = 1e9;
   int paths_ = 0;
   bool paused_ = false;  // follow_path does not drive
@@ -100,6 +112,32 @@ TEST_F(NavigatorTest, AGoalOutsideAWindowIsReachedByPathsToItsBorder) {
   EXPECT_EQ(out_.state, State::kReached) << out_.reason;
   EXPECT_NEAR(pose_.x, 30, 1e-6);
   EXPECT_GT(paths_, 2);
+}
+
+TEST_F(NavigatorTest, TheLocalControllerDrivesUntilThePathToTheGoalIsShort) {
+  limits_ = DriveLimits();
+  navigator_.begin({4.7, 2.2, 1}, now_);
+  run(60);
+  EXPECT_EQ(out_.state, State::kReached) << out_.reason;
+  EXPECT_NEAR(pose_.x, 4.7, 1e-6);
+  EXPECT_NEAR(pose_.yaw, 1, 1e-6);
+  EXPECT_EQ(paths_, 1);
+  EXPECT_GT(steered_, 2);
+  EXPECT_GT(least_air_, 0);
+}
+
+TEST_F(NavigatorTest, TheLocalControllerWaitsAtAShutDoorAndGoesOn) {
+  limits_ = DriveLimits();
+  navigator_.begin({5.0, 1.6, 0}, now_);
+  run(0.5);
+  box(31, 16);
+  run(8);
+  EXPECT_GT(least_air_, 0);
+  EXPECT_LT(pose_.x, 3.0);
+  box(31, 16, kFreeCell);
+  run(30);
+  EXPECT_EQ(out_.state, State::kReached) << out_.reason;
+  EXPECT_GT(least_air_, 0);
 }
 
 TEST_F(NavigatorTest, AGoalInAWallIsRefusedAtOnce) {

@@ -55,6 +55,13 @@ class Navigation {
     const PlanarPose base = planar_of(odometry);
     const auto seen = in_base_axes(objects_.update(scan, composed(base, planar_of(sensor)), now), base);
     costmap_.set_predicted(from_base_axes(predicted_points(seen, costmap_.footprint()), planar_of(place)));
+    moving_.clear();
+    for (MovingObject object : seen) {
+      object.points = from_base_axes(object.points, planar_of(place));
+      object.velocity = from_base_axes({object.velocity}, {0, 0, place[2]})[0];
+      costmap_.unmark(object.points);
+      moving_.push_back(object);
+    }
     const std::string problem = watch_.problem(now);
     return problem.empty() ? consistency_.problem() : problem;
   }
@@ -72,18 +79,27 @@ class Navigation {
   /// `motion`: linear [m/s], angular [rad/s]. `path`: "none", "active", "done" or why it failed. Returns state, reason,
   /// path or None, whether to stop.
   py::tuple step(double now, const std::string& problem, const Pose& pose, const std::array<double, 2>& motion,
-                 const std::string& path) {
+                 const std::string& path, const std::array<double, 3>& limits) {
     using State = PathReport::State;
     const State state = path == "none"     ? State::kNone
                         : path == "active" ? State::kActive
                         : path == "done"   ? State::kDone
                                            : State::kFailed;
-    const NavigatorOutput out = navigator_.step(
-        {now, problem, consistency_.explanation(), "", planar_of(pose), {motion[0], motion[1], 0}, {state, path}},
-        &costmap_);
+    const NavigatorOutput out = navigator_.step({now,
+                                                 problem,
+                                                 consistency_.explanation(),
+                                                 "",
+                                                 planar_of(pose),
+                                                 {motion[0], motion[1], 0},
+                                                 {state, path},
+                                                 {.forward = limits[0], .reverse = limits[1], .angular = limits[2]},
+                                                 moving_},
+                                                &costmap_);
     py::object way = py::none();
     if (out.path) way = py::cast(poses_of(*out.path));
-    return py::make_tuple(name_of(out.state), out.reason, way, out.cancel);
+    py::object request = py::none();
+    if (out.request) request = py::make_tuple(out.request->linear, out.request->angular);
+    return py::make_tuple(name_of(out.state), out.reason, way, out.cancel, request);
   }
 
  private:
@@ -92,6 +108,7 @@ class Navigation {
   MovingObjects objects_;
   MapConsistency consistency_;
   Navigator navigator_;
+  std::vector<MovingObject> moving_;  // in the map
 };
 
 /// It does what the node collision_guard does with scans, odometry and requests, without ROS.
@@ -157,7 +174,7 @@ PYBIND11_MODULE(_navigation, module) {
       .def("plan", &Navigation::plan, py::arg("start"), py::arg("goal"), py::arg("now"))
       .def("begin", &Navigation::begin, py::arg("goal"), py::arg("now"))
       .def("step", &Navigation::step, py::arg("now"), py::arg("problem"), py::arg("pose"), py::arg("motion"),
-           py::arg("path"));
+           py::arg("path"), py::arg("limits"));
   py::class_<Guard>(module, "Guard")
       .def(py::init<const std::string&>(), py::arg("urdf"))
       .def("move_joints", &Guard::move_joints, py::arg("positions"), py::arg("now"))

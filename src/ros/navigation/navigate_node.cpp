@@ -178,9 +178,16 @@ class NavigateService {
       const GuardReport guard = scans_.guard();
       const std::string slowed_by = path_client_.reason().empty() ? guard.reason : path_client_.reason();
       heed(guard);
-      output_ = navigator_.step(
-          {now(), why, consistency_.explanation(), slowed_by, pose_, scans_.motion(), path_client_.report()},
-          costmap_.get());
+      output_ = navigator_.step({now(),
+                                 why,
+                                 consistency_.explanation(),
+                                 slowed_by,
+                                 pose_,
+                                 scans_.motion(),
+                                 path_client_.report(),
+                                 {.forward = 0},
+                                 {}},
+                                costmap_.get());
       if (output_.cancel) path_client_.cancel();
       if (output_.path)
         path_client_.send(*output_.path, parameters_.map_frame, goal_speed_ > 0 ? goal_speed_ : parameters_.speed,
