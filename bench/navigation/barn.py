@@ -26,6 +26,7 @@ from numpy.typing import NDArray
 from bench.navigation.goals import NEIGHBOURS
 from bench.navigation.scene_map import Obstacle
 from bench.navigation.tour import DIFFBOT, Machine, Place, Scan
+from bench.navigation.trajectories import between, composed
 from bench.navigation.virtual import Robot, Trip
 from bench.robot_corpus import urdf_of
 from bench.rows import Row, Say, bounded
@@ -71,6 +72,18 @@ class Drive:
 
     trip: Trip
     arrived: bool
+
+    @property
+    def touched(self) -> bool:
+        """True if there was no air left."""
+        return self.trip.air <= 0
+
+    @property
+    def end(self) -> str:
+        """How it ended, in words."""
+        if self.touched:
+            return "touched"
+        return "arrived" if self.arrived else f"{self.trip.state or 'too late'}: {self.trip.reason}"
 
 
 def generated(seed: int) -> World:
@@ -212,7 +225,9 @@ class Explorer(Robot):
     def _assumed(self) -> Place:
         if self._mapper is None:
             return self._odometry
-        return composed(self._mapper.pose, composed(inverse(self._origin), self._odometry))
+        since = between(np.array(self._origin), np.array(self._odometry))
+        x, y, yaw = composed(np.array(self._mapper.pose), since).tolist()
+        return x, y, yaw
 
     def _locate(self, scan: Scan) -> str:
         if self._mapper is None:
@@ -225,18 +240,6 @@ class Explorer(Robot):
         return f"the robot is not localised: {self._mapper.reason}" if self._mapper.reason else ""
 
 
-def composed(outer: Place, inner: Place) -> Place:
-    """`inner`, given in the frame of `outer`, in the frame of that."""
-    c, s = math.cos(outer[2]), math.sin(outer[2])
-    return outer[0] + c * inner[0] - s * inner[1], outer[1] + s * inner[0] + c * inner[1], outer[2] + inner[2]
-
-
-def inverse(place: Place) -> Place:
-    """The frame of `place` in its own axes."""
-    c, s = math.cos(place[2]), math.sin(place[2])
-    return -c * place[0] - s * place[1], s * place[0] - c * place[1], -place[2]
-
-
 def rows_of(worlds: list[World], fields: Fields, say: Say, *, real: bool) -> list[Row]:
     """Rows of these worlds."""
     kind, speed = fields.map, fields.speed
@@ -244,16 +247,15 @@ def rows_of(worlds: list[World], fields: Fields, say: Say, *, real: bool) -> lis
     drives = list(Processes().outcomes(drive, tasks, say))
     clip, metric = CLIPS[speed], 0.0
     for world, each in zip(worlds, drives, strict=True):
-        touched = each.trip.air <= 0
         optimal = world.length / OPTIMAL
-        success = each.arrived and not touched
+        success = each.arrived and not each.touched
         share = optimal / min(max(each.trip.seconds, clip * optimal), 8 * optimal) if success else 0.0
         metric += share / len(worlds)
-        say(f"{world.name}: {share:.3f}, {each.trip.seconds:.1f} s, air {each.trip.air:.3f} m, {_end(each, touched)}")
+        say(f"{world.name}: {share:.3f}, {each.trip.seconds:.1f} s, air {each.trip.air:.3f} m, {each.end}")
     name = f"{'jackal' if real else 'diffbot'}, map {kind}, {speed:g} m/s"
-    succeeded = sum(each.arrived and each.trip.air > 0 for each in drives)
+    succeeded = sum(each.arrived and not each.touched for each in drives)
     wrong = sum(each.trip.state == "reached" and not each.arrived for each in drives)
-    touches = sum(each.trip.air <= 0 for each in drives)
+    touches = sum(each.touched for each in drives)
     count = f"of {len(worlds)}"
     return [
         bounded(f"lowest share of successes: {name}", succeeded / len(worlds), count, SUCCESSES[kind]),
@@ -261,12 +263,6 @@ def rows_of(worlds: list[World], fields: Fields, say: Say, *, real: bool) -> lis
         bounded(f"reached elsewhere: {name}", wrong, count, 0),
         bounded(f"lowest metric: {name}", metric, f"of {1 / clip:g}", METRICS[speed]),
     ]
-
-
-def _end(each: Drive, touched: bool) -> str:  # noqa: FBT001
-    if touched:
-        return "touched"
-    return "arrived" if each.arrived else f"{each.trip.state or 'too late'}: {each.trip.reason}"
 
 
 def barn(first: int, runs: int, fields: Fields, say: Say) -> list[Row]:
