@@ -63,14 +63,14 @@ def program() -> str:
 
 
 def await_description() -> str:
-    """The description; empty if a signal came first. Raises ServerValueError: it is no text."""
+    """The description; empty if a signal came first, also while the node was ended.
+    Raises ServerValueError: it is no text.
+    """
+    description = ""
     with ended_by_signals() as signals:
-        while signals.going_on():
-            description = server_description()
-            if description:
-                return description
+        while signals.going_on() and not (description := server_description()):
             time.sleep(POLL_PERIOD)
-    return ""
+    return "" if signals.came else description
 
 
 def main() -> None:
