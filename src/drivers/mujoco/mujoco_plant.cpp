@@ -272,9 +272,9 @@ bool MujocoPlant::advance(std::span<const JointCommand> commands) noexcept {
     const std::size_t joint = model_.actuated[drive];
     const int dof = model_.joint_velocity[joint];
     const double position = data_->qpos[model_.joint_position[joint]];
-    const double velocity = data_->qvel[dof];
+    const double velocity = data_->qvel[dof], measured = position + sensor_errors_.zero_error(drive);
     const double asked = joint < drives_.size() ? drives_[joint].step(commands[joint], velocity)
-                                                : laws_[drive].step(commands[joint], position, velocity);
+                                                : laws_[drive].step(commands[joint], measured, velocity);
     const double wanted = motors_[drive].limited(asked, velocity);
     const double effort = motor_faults_.effort(drive, commands[joint].mode, wanted, position, velocity);
     data_->qfrc_applied[dof] = effort;
