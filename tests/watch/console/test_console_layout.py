@@ -363,3 +363,15 @@ def test_the_labels_are_there_in_chinese(browser, served):
     assert "跟随" in browser.text("look")
     browser.click("help-open")
     assert "旋转视角" in browser.text("help")
+
+
+def test_a_recording_without_a_map_says_how_one_is_recorded(browser, served):
+    def empty():
+        return browser.run("return document.getElementById('no-map').innerText")
+
+    robot = open_page(browser, served, "wheels", control=False)
+    browser.run("document.querySelector('[data-tab=map]').click()")
+    wait_for("the words", lambda: "Start navigation" in empty())
+    robot.over["replay"] = {"at": 1.0, "length": 5.0, "speed": 0.0, "loading": "", "marks": []}
+    wait_for("the words", lambda: "record:=true" in empty())
+    assert "Start navigation" not in empty()

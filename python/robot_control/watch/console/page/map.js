@@ -60,12 +60,14 @@ async function load(name) {
   apply();
 }
 
-on("slow", ({ navigation, goal }) => {
+on("slow", ({ navigation, goal, replay }) => {
   pose = navigation.map ?? null;
   if (pose || map.visible) redraw();
   map.visible = Boolean(pose);
   by("map-tools").hidden = !pose;
   by("no-map").hidden = Boolean(pose);
+  live.hidden = Boolean(replay);
+  recorded.hidden = !replay;
   by("go-here").hidden = !pose || !goal || tab() !== "drive";
   put("goal-state", goal ? `goal: ${goal}` : "navigate does not run");
   if (pose) {
@@ -114,9 +116,11 @@ for (const [name, label] of Object.entries(LAYERS)) {
 }
 apply();
 recoloured();
-const start = make("div");
+const live = make("div"), start = make("div");
+const recorded = make("div", { textContent: words("This recording has no map. record:=true at the start of the robot also records its map.") });
 commands(start, [START]);
-by("no-map").append(words("There is no map. Start navigation:"), start);
+live.append(words("There is no map. Start navigation:"), start);
+by("no-map").append(live, recorded);
 
 /** Returns the place `from` in the map's frame, with the heading towards `to`; both are in odom. */
 export function onMap(from, to) {
