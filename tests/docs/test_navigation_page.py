@@ -1,4 +1,4 @@
-"""The commands of docs/navigation.md are followed, from an empty house to a goal; a program drives as a hand would."""
+"""The commands of docs/navigation.md are followed, from an empty map to a goal; a program drives as a hand would."""
 
 import importlib.util
 import re
@@ -60,8 +60,8 @@ def test_each_message_of_the_page_is_one_of_the_program():
 
 @pytest.mark.nightly
 @pytest.mark.skipif(MRPT is None, reason="slam was built without MRPT: scripts/setup --navigation")
-def test_the_page_of_navigation_is_followed_from_an_empty_house_to_a_goal(tmp_path):
-    house, hand, save, again, goal = next(
+def test_the_page_of_navigation_is_followed_from_an_empty_map_to_a_goal(tmp_path):
+    _install, house, hand, save, again, goal = next(
         block.commands() for block in blocks(ROOT / "docs" / "navigation.md") if "scene:=room" in block.text
     )
     assert hand == "rosrun robot_control teleop.py"
