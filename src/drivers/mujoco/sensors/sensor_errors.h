@@ -5,12 +5,11 @@
 ///
 ///   n(k) = round((q(k) + o)/δ)      position = n(k)·δ      velocity = (n(k) − n(k−1))·δ/T
 ///
-/// On legs o = joint_offset·u of each joint, else it is 0. A drive that holds an angle measures with the same encoder, so
-/// that its law has the same o.
-/// The velocity is computed as in a drive, in steps of δ/T (1.53 rad/s for 4096 counts at 1 kHz); it is 0 in the first
-/// sample. The encoder of a held joint is on its motor, and its gear makes N kHeldGear times larger. With N = 0
-/// encoders are exact. Exact are also other joints, contact forces of wheels, battery and inputs, and efforts, because
-/// a drive measures its own current.
+/// On legs o = joint_offset·u of each joint, else it is 0. A drive that holds an angle measures with the same encoder,
+/// so that its law has the same o. The velocity is computed as in a drive, in steps of δ/T (1.53 rad/s for 4096 counts
+/// at 1 kHz); it is 0 in the first sample. The encoder of a held joint is on its motor, and its gear makes N kHeldGear
+/// times larger. With N = 0 encoders are exact. Exact are also other joints, contact forces of wheels, battery and
+/// inputs, and efforts, because a drive measures its own current.
 ///
 /// The force F on the foot of a robot on legs, base axes, with σ = foot_noise and w, u as below:
 ///
@@ -202,7 +201,9 @@ class SensorErrors {
   void step(Measurement& measurement) noexcept;
 
   /// Returns o in rad of a joint with a motor, in the order of actuated_joint_indices.
-  double zero_error(std::size_t drive) const noexcept { return encoders_[drive].count > 0 ? encoders_[drive].offset : 0; }
+  double zero_error(std::size_t drive) const noexcept {
+    return encoders_[drive].count > 0 ? encoders_[drive].offset : 0;
+  }
 
   const InertialError& gyro() const noexcept { return gyro_; }
   const InertialError& accelerometer() const noexcept { return accelerometer_; }
