@@ -10,8 +10,8 @@ import numpy as np
 from robot_control._mrpt import Mapper
 
 from bench.navigation.laser_logs import Array, LaserLog, read_folder
-from bench.navigation.odometry_model import made
-from bench.navigation.trajectories import absolute_error, relation_errors
+from bench.navigation.odometry_model import field_covariances, made
+from bench.navigation.trajectories import absolute_error, composed, relation_errors
 from bench.rows import Row, Say, bounded, plain
 
 SEEDS = 3  # of an odometry that is made
@@ -33,14 +33,15 @@ class Followed:
         return max((len(list(group)) for lost, group in groupby(self.lost) if lost), default=0)
 
 
-def follow(log: LaserLog, odometry: Array) -> Followed:
-    """Feeds all scans."""
-    mapper, poses, lost = Mapper(), [], []
-    for index, place in enumerate(odometry):
-        mapper.update(log.scan(index), (0.0, 0.0, 0.0), place)
-        poses.append(mapper.pose)
+def follow(log: LaserLog, odometry: Array, covariances: Array) -> Followed:
+    """Feeds all scans. The poses are those of the last graph."""
+    mapper, anchors, lost = Mapper(), [], []
+    for index, (place, covariance) in enumerate(zip(odometry, covariances, strict=True)):
+        mapper.update(log.scan(index), (0.0, 0.0, 0.0), place, covariance)
+        anchors.append(mapper.anchor)
         lost.append(mapper.reason != "")
-    return Followed(np.array(poses), lost)
+    nodes = np.array(mapper.nodes)[[node for node, _ in anchors]]
+    return Followed(composed(nodes, np.array([relative for _, relative in anchors])), lost)
 
 
 def rows_of(folder: Path, first: int, seeds: int, say: Say) -> list[Row]:
@@ -48,12 +49,12 @@ def rows_of(folder: Path, first: int, seeds: int, say: Say) -> list[Row]:
     rows = []
     for log in read_folder(folder):
         if log.odometry is not None:
-            drives = [log.odometry]
+            drives = [(log.odometry, field_covariances(log.odometry))]
         elif log.reference is not None:
             drives = [made(log.reference, seed) for seed in range(first, first + seeds)]
         else:
             raise ValueError(f"{log.name} has neither an odometry nor a reference")
-        results = [follow(log, odometry) for odometry in drives]
+        results = [follow(log, odometry, covariances) for odometry, covariances in drives]
         rows += _judged(log, results, say)
     return rows
 

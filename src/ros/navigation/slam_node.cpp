@@ -3,7 +3,7 @@
 #include <optional>
 
 #include "navigation/map_file.h"
-#include "navigation/mrpt/mapper.h"
+#include "navigation/mapping/mapper.h"
 #include "ros/navigation/map_service.h"
 #include "ros/navigation/map_topics.h"
 #include "ros/navigation/navigation_messages.h"
@@ -30,7 +30,7 @@ class SlamService {
 
  private:
   void use(const PlacedScan& scan) {
-    mapper_.update(scan.scan, scan.laser, scan.odometry.mean);
+    mapper_.update(scan.scan, scan.laser, scan.odometry);
     changed_ = used_ = true;
     stamp_ = scan.stamp;
   }
