@@ -78,7 +78,7 @@ bool saw_free(const Node& node, const Eigen::Vector2d& at) {
   const double ray = std::round(
       (turn * node.scan.angle_increment < 0 ? turn + std::copysign(2 * M_PI, node.scan.angle_increment) : turn) /
       node.scan.angle_increment);
-  if (!(ray < static_cast<double>(node.scan.ranges.size()))) return false;
+  if (!(ray >= 0 && ray < static_cast<double>(node.scan.ranges.size()))) return false;
   const float range = node.scan.ranges[static_cast<std::size_t>(ray)];
   const double free = node.scan.hit(range) ? range : node.scan.nothing(range) ? node.scan.range_max : 0;
   return std::hypot(seen.x, seen.y) < free - kFreeMargin;
