@@ -7,7 +7,7 @@
 
 namespace robot_control::navigation {
 
-std::string ScanWatch::structure_problem(const Scan& scan) const {
+std::string scan_problem(const Scan& scan) {
   const std::size_t rays = scan.ranges.size();
   if (rays < 2 || rays > kMaxRays) return formatted("scan has %zu rays: allowed are 2 to %zu", rays, kMaxRays);
   if (!std::isfinite(scan.angle_min) || !std::isfinite(scan.angle_increment) || scan.angle_increment == 0) {
@@ -59,7 +59,7 @@ std::string ScanWatch::remark_on(const Scan& scan) const {
 
 std::string ScanWatch::receive(const Scan& scan, const std::string& publisher, double stamp, double now, double moved) {
   const auto refuse = [&](const std::string& why) { return refused_ = why; };
-  if (const std::string why = structure_problem(scan); !why.empty()) return refuse(why);
+  if (const std::string why = scan_problem(scan); !why.empty()) return refuse(why);
   const bool bound = std::abs(now - received_) < kPublisherTimeout;
   if (bound && publisher != publisher_) {
     return refuse("scan has two publishers, " + publisher_ + " and " + publisher + ": stop one of them");

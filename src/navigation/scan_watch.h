@@ -23,6 +23,9 @@ inline constexpr double kPublisherTimeout = 1;  ///< s
 inline constexpr double kMaxOdd = 0.01;         ///< of the rays; an echo at exactly range_max is rarer
 inline constexpr double kFrozenMotion = 0.05;   ///< m or rad
 
+/// Returns why a message with this scan is refused whatever was received before; "" if it is not.
+std::string scan_problem(const Scan& scan);
+
 class ScanWatch {
  public:
   /// Returns why the message is refused; "" if it is accepted. `stamp` and `now` are s on the clock of stamps, `moved`
@@ -37,7 +40,6 @@ class ScanWatch {
   std::string problem(double now) const;
 
  private:
-  std::string structure_problem(const Scan& scan) const;
   std::string remark_on(const Scan& scan) const;
 
   std::string publisher_, remark_, refused_ = "no scan received: start the driver of the laser, which publishes scan";

@@ -8,7 +8,7 @@
 
 #include "bindings/navigation/conversions.h"
 #include "bindings/numpy_version.h"
-#include "navigation/mapping/mapper.h"
+#include "navigation/mapping/saved_map.h"
 #include "navigation/mrpt/localizer.h"
 
 namespace py = pybind11;
@@ -55,8 +55,10 @@ PYBIND11_MODULE(_mrpt, module) {
   robot_control::check_numpy_version();
   py::class_<Mapper>(module, "Mapper")
       .def(py::init<>())
-      .def(py::init([](const py::tuple& map, const Pose& pose) { return Mapper(grid_of(map), planar_of(pose)); }),
-           py::arg("map"), py::arg("pose"))
+      .def(py::init([](const py::tuple& map) { return Mapper(grid_of(map)); }), py::arg("map"))
+      .def_static("load", &load_map, py::arg("path"))
+      .def("save", [](const Mapper& mapper, const std::string& path) { save_map(path, mapper); }, py::arg("path"))
+      .def("set_pose", [](Mapper& mapper, const Pose& pose) { mapper.set_pose(planar_of(pose)); }, py::arg("pose"))
       .def(
           "update",
           [](Mapper& mapper, const py::dict& scan, const Pose& sensor, const Pose& odometry,
@@ -73,7 +75,7 @@ PYBIND11_MODULE(_mrpt, module) {
       .def_property_readonly("nodes",
                              [](const Mapper& mapper) {
                                std::vector<Pose> poses;
-                               for (const Node& node : mapper.graph().nodes) poses.push_back(pose_of(node.pose));
+                               for (const GraphNode& node : mapper.graph().nodes) poses.push_back(pose_of(node.pose));
                                return poses;
                              })
       .def_property_readonly(

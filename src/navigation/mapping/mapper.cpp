@@ -72,7 +72,7 @@ double difference(const PlanarPose& relative, const Scan& scan) {
 }
 
 /// Returns whether this scan saw free space at this place of its base.
-bool saw_free(const Node& node, const Eigen::Vector2d& at) {
+bool saw_free(const GraphNode& node, const Eigen::Vector2d& at) {
   const PlanarPose seen = composed(inverse(node.laser), {at.x(), at.y(), 0});
   const double turn = std::remainder(std::atan2(seen.y, seen.x) - node.scan.angle_min, 2 * M_PI);
   const double ray = std::round(
@@ -149,7 +149,7 @@ struct Mapper::Parts {
 
   void draw_again() {
     grid = RayGrid(saved);
-    for (const Node& node : graph.nodes) draw(node.scan, node.laser, node.pose);
+    for (const GraphNode& node : graph.nodes) draw(node.scan, node.laser, node.pose);
   }
 
   void add_node(const Scan& scan, const PlanarPose& laser) {
@@ -199,7 +199,7 @@ struct Mapper::Parts {
     if (recent.size() < kMinRecent) return;
     std::vector<WallPoint> points, all = walls_of(saved);
     for (const auto& [pose, some] : recent) append(points, moved(some, inverse(step(pose))));
-    for (const Node& node : graph.nodes) append(all, moved(walls_of(node.scan, node.laser), node.pose));
+    for (const GraphNode& node : graph.nodes) append(all, moved(walls_of(node.scan, node.laser), node.pose));
     PointField field(thinned(all, kWideCell / 2), kWideCell);
     Eigen::AlignedBox2d box;
     for (const WallPoint& point : field.points()) box.extend(point.at);
@@ -207,7 +207,7 @@ struct Mapper::Parts {
     const auto found = field.search(few(thinned(points, kWideCell)),
                                     {{middle.x(), middle.y(), 0}, half.maxCoeff(), M_PI}, kFoundScore);
     if (!found) return;
-    const auto away = [&](const Node& node) {
+    const auto away = [&](const GraphNode& node) {
       return difference(composed(inverse(node.pose), found->pose), node.scan);
     };
     const auto nearest = std::ranges::min_element(graph.nodes, {}, away);
@@ -245,12 +245,18 @@ struct Mapper::Parts {
     refer_to(best->node, {relative, turn * matched_at.covariance * turn.transpose()});
   }
 
-  void begin(const PlanarPose& pose) {
-    const auto away = [&](const Node& node) { return std::hypot(node.pose.x - pose.x, node.pose.y - pose.y); };
+  void set_pose(const PlanarPose& pose) {
+    const Eigen::Matrix3d spread = at_least(Eigen::Matrix3d::Zero(), kNear);
+    odometry_at = odometry;
+    first = true;
+    if (graph.nodes.empty()) {
+      matched_at = {pose, spread};
+      return;
+    }
+    const auto away = [&](const GraphNode& node) { return std::hypot(node.pose.x - pose.x, node.pose.y - pose.y); };
     const auto nearest = std::ranges::min_element(graph.nodes, {}, away);
     refer_to(static_cast<std::size_t>(nearest - graph.nodes.begin()),
-             {composed(inverse(nearest->pose), pose), at_least(Eigen::Matrix3d::Zero(), kNear)});
-    draw_again();
+             {composed(inverse(nearest->pose), pose), spread});
   }
 };
 
@@ -259,15 +265,21 @@ Mapper::~Mapper() = default;
 Mapper::Mapper(Mapper&&) noexcept = default;
 Mapper& Mapper::operator=(Mapper&&) noexcept = default;
 
-Mapper::Mapper(const Grid& saved, const PlanarPose& pose) : Mapper() {
-  parts_->saved = saved;
+Mapper::Mapper(Grid saved) : Mapper() {
+  parts_->saved = std::move(saved);
   parts_->graph.nodes.push_back({});
-  parts_->begin(pose);
+  parts_->draw_again();
+  set_pose({});
 }
 
-Mapper::Mapper(PoseGraph saved, const PlanarPose& pose) : Mapper() {
+Mapper::Mapper(PoseGraph saved) : Mapper() {
   parts_->graph = std::move(saved);
-  parts_->begin(pose);
+  parts_->draw_again();
+  set_pose({});
+}
+
+void Mapper::set_pose(const PlanarPose& pose) {
+  parts_->set_pose(pose);
 }
 
 void Mapper::update(const Scan& scan, const PlanarPose& sensor, const UncertainPose& odometry) {

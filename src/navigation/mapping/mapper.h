@@ -36,14 +36,15 @@ class Mapper {
   /// The map begins with the first walls in sight. Its origin is the pose of the first scan's robot.
   Mapper();
 
-  /// The map begins with `saved`, in which the robot is near `pose`.
-  Mapper(const Grid& saved, const PlanarPose& pose);
-
-  /// The map goes on with `saved`, in which the robot is near `pose`.
-  Mapper(PoseGraph saved, const PlanarPose& pose);
+  /// The map goes on with `saved`, in which the robot is near the origin.
+  explicit Mapper(Grid saved);
+  explicit Mapper(PoseGraph saved);
   ~Mapper();
   Mapper(Mapper&&) noexcept;
   Mapper& operator=(Mapper&&) noexcept;
+
+  /// The robot is near `pose`, as after `initialpose`. The next scan is matched there.
+  void set_pose(const PlanarPose& pose);
 
   /// Takes the next scan. `sensor` is the pose of the laser in the base, `odometry` that of the base in odom when the
   /// scan was made.

@@ -64,7 +64,7 @@ std::vector<Reached> PoseGraph::reach(std::size_t start, double length) const {
 
 void PoseGraph::optimise() {
   std::vector<std::array<double, 3>> poses;
-  for (const Node& node : nodes) poses.push_back({node.pose.x, node.pose.y, node.pose.yaw});
+  for (const GraphNode& node : nodes) poses.push_back({node.pose.x, node.pose.y, node.pose.yaw});
   ceres::Problem problem;
   for (const Edge& edge : edges) {
     const Eigen::Matrix3d root = Eigen::LLT<Eigen::Matrix3d>(edge.measured.covariance.inverse()).matrixU();

@@ -12,7 +12,7 @@
 
 namespace robot_control::navigation {
 
-struct Node {
+struct GraphNode {
   PlanarPose pose;  ///< of the base in the map
   Scan scan;
   PlanarPose laser;  ///< in the base
@@ -32,7 +32,7 @@ struct Reached {
 };
 
 struct PoseGraph {
-  std::vector<Node> nodes;
+  std::vector<GraphNode> nodes;
   std::vector<Edge> edges;
 
   /// Returns the nodes within `length` m along the edges, the nearest first, with the covariance along them.

@@ -9,6 +9,7 @@ from robot_control.installed_files import share_file
 from bench.navigation.moved import distances
 from bench.navigation.scene_map import read_scene
 from bench.navigation.tour import LASER, drive, errors, new_loop
+from bench.navigation.trajectories import between, composed
 
 mrpt = pytest.importorskip("robot_control._mrpt", reason="built without MRPT: scripts/setup --navigation")
 
@@ -71,13 +72,41 @@ def test_what_is_seen_again_adds_little(sights):
 def test_a_saved_map_goes_on_where_the_robot_is(sights, grid):
     """The odometry begins again, at another place of the map."""
     again = sights[len(sights) // 2 :]
-    mapper = mrpt.Mapper(grid, again[0].truth)
+    mapper = mrpt.Mapper(grid)
+    mapper.set_pose(again[0].truth)
     off = errors(again, mapped(again, mapper))
     assert np.max(np.hypot(off[:, 0], off[:, 1])) < 0.08
 
 
+def test_a_saved_map_with_its_graph_goes_on_as_if_it_had_not_been_saved(sights, tmp_path):
+    first, rest = sights[: len(sights) // 2], sights[len(sights) // 2 :]
+    mapper = mrpt.Mapper()
+    mapped(first, mapper)
+    mapper.save(str(tmp_path / "house.yaml"))
+    again = mrpt.Mapper.load(str(tmp_path / "house.yaml"))
+    assert again.nodes == mapper.nodes
+    again.set_pose(mapper.pose)
+    off = errors(rest, mapped(rest, again))
+    assert np.max(np.hypot(off[:, 0], off[:, 1])) < 0.05
+    assert len(again.nodes) < 1.3 * len(mapper.nodes)
+
+
+def test_a_robot_that_was_carried_elsewhere_is_found_in_its_own_map(sights):
+    """Its odometry has not noticed."""
+    mapper = mrpt.Mapper()
+    mapped(sights, mapper)
+    nodes = len(mapper.nodes)
+    back = [sight for sight in sights if sight.truth[0] < 0.5 and sight.time > sights[40].time][::-1]
+    jump = composed(sights[-1].odometry, between(back[0].odometry, np.zeros(3)))
+    for sight in back:
+        mapper.update(sight.scan, LASER, composed(jump, sight.odometry), sights[-1].covariance)
+    assert mapper.reason == ""
+    assert np.hypot(*(np.array(mapper.pose) - back[-1].truth)[:2]) < 0.1
+    assert len(mapper.nodes) < 1.3 * nodes
+
+
 def test_a_scan_of_another_place_does_not_change_the_map(sights, grid):
-    mapper = mrpt.Mapper(grid, (0.0, 0.0, 0.0))
+    mapper = mrpt.Mapper(grid)
     elsewhere = list(drive(new_loop("loop", 3), ROUND))[:20]
     mapped(elsewhere, mapper)
     assert "drive on in a mapped area" in mapper.reason
@@ -109,7 +138,7 @@ def test_a_map_whose_origin_lies_within_a_cell_keeps_its_walls_and_places(sights
     x, y, resolution, cells = grid
     shift = np.array([0.5 * resolution, -0.3 * resolution, 0.0])
     moved = (x + shift[0], y + shift[1], resolution, cells)
-    assert np.array_equal(mrpt.Mapper(moved, (0.0, 0.0, 0.0)).map[3] >= 65, cells >= 65)
+    assert np.array_equal(mrpt.Mapper(moved).map[3] >= 65, cells >= 65)
     localizer, given = mrpt.Localizer(moved, 1), mrpt.Localizer(grid, 1)
     localizer.set_pose(sights[0].truth + shift, KNOWN)
     given.set_pose(sights[0].truth, KNOWN)
