@@ -67,7 +67,7 @@ TEST_F(RayGridTest, ASavedGridKeepsItsCellsAndGrows) {
   const Grid saved = grid_.grid();
   RayGrid grown(saved);
   EXPECT_EQ(grown.grid().cells, saved.cells);
-  grown.insert(scan_of(3), {20, 0, 0});
+  grown.insert(scan_of(3), {20.02, 0.02, 0});
   EXPECT_GE(at(grown.grid(), 3.02, 0.02), kOccupiedFrom);
   EXPECT_GE(at(grown.grid(), 17.02, 0.02), kOccupiedFrom);
 }

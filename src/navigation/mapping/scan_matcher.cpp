@@ -35,6 +35,7 @@ std::vector<Pair> pairs_of(const PointField& walls, const std::vector<WallPoint>
     const double off = line ? normal.dot(offset) : offset.norm();
     const double weight = 1 / (1 + off * off / (kOutlier * kOutlier));
     pairs.push_back({point, offset, normal, weight / (kPointDeviation * kPointDeviation)});
+    if (std::abs(off) > kOutlier) continue;
     ++result.matched;
     result.explained[i] = true;
   }

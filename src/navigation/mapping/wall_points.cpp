@@ -7,7 +7,7 @@ namespace robot_control::navigation {
 namespace {
 
 constexpr double kLineRadius = 0.15;  // m
-constexpr double kRays = 2.5;         // the radius contains at least so many steps between rays
+constexpr double kGaps = 2.5;         // the radius contains at least so many gaps to the nearer neighbour
 constexpr double kFlat = 0.1;         // variance across a line, of that along it
 
 Eigen::Vector2d end_of_ray(const Scan& scan, std::size_t ray) {
@@ -15,8 +15,10 @@ Eigen::Vector2d end_of_ray(const Scan& scan, std::size_t ray) {
 }
 
 /// Returns the normal of the line of those echoes beside this one that lie within the radius; zero without a line.
-Eigen::Vector2d normal_at(const Scan& scan, const std::vector<std::optional<Eigen::Vector2d>>& ends, std::size_t ray) {
-  const double radius = std::max(kLineRadius, kRays * scan.ranges[ray] * std::abs(scan.angle_increment));
+Eigen::Vector2d normal_at(const std::vector<std::optional<Eigen::Vector2d>>& ends, std::size_t ray) {
+  const auto gap = [&](std::size_t i) { return i < ends.size() && ends[i] ? (*ends[i] - *ends[ray]).norm() : HUGE_VAL; };
+  const double nearer = std::min(gap(ray - 1), gap(ray + 1));
+  const double radius = std::isfinite(nearer) ? std::max(kLineRadius, kGaps * nearer) : kLineRadius;
   Eigen::Vector2d sum = Eigen::Vector2d::Zero();
   Eigen::Matrix2d squares = Eigen::Matrix2d::Zero();
   int count = 0;
@@ -46,7 +48,7 @@ std::vector<WallPoint> walls_of(const Scan& scan, const PlanarPose& laser) {
   std::vector<WallPoint> points;
   for (std::size_t ray = 0; ray < ends.size(); ++ray) {
     if (!ends[ray] || (!points.empty() && (points.back().at - *ends[ray]).norm() < kPointDistance)) continue;
-    points.push_back({*ends[ray], normal_at(scan, ends, ray)});
+    points.push_back({*ends[ray], normal_at(ends, ray)});
   }
   return moved(std::move(points), laser);
 }
