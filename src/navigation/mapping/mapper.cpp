@@ -19,11 +19,12 @@ constexpr double kCell = 0.05, kWideCell = 0.1;    // m, of a field; of that of 
 constexpr double kBasin = 0.15, kTurnBasin = 0.1;  // m, rad, from which a match finds the pose without a search
 constexpr double kMaxSearch = 10;                  // m
 constexpr int kMinPoints = 20;                     // fewer tell nothing
-constexpr double kMinMatched = 0.5;                // of those that match or contradict
+constexpr double kMinMatched = 0.75;               // of those that match or contradict; 0.85 and more on true ways
 constexpr double kFreeMargin = 0.3;                // m before a wall, within which a point does not contradict
 constexpr double kTrackScore = 0.3, kLoopScore = 0.55,
                  kFoundScore = 0.65;  // of a search in the window, for a loop, in the whole map
-constexpr double kLoopMatched = 0.8;  // as kMinMatched
+constexpr double kJump = 2, kTurnJump = 0.5;  // m, rad, of an odometry that slipped
+constexpr double kUnlike = 0.9;               // of the score of the best place, above which another one is as good
 constexpr std::size_t kSearchPoints = 250;
 constexpr std::size_t kMaxRecent = 8, kMinRecent = 3;  // scans of a robot that is lost, kNodeDistance apart
 const Eigen::Vector3d kNear(0.3, 0.3, 0.2);            // deviation of a given pose
@@ -182,13 +183,15 @@ struct Mapper::Parts {
     const auto found = there.search(few(here), window_of(expected), kLoopScore);
     if (!found) return false;
     const Match closed = match(there, here, found->pose, expected);
-    if (closed.matched < kMinPoints || share_of(closed, here, best->node) < kLoopMatched) return false;
+    if (closed.matched < kMinPoints || share_of(closed, here, best->node) < kMinMatched) return false;
     graph.edges.push_back({best->node, reference, closed.pose, true});
     return true;
   }
 
-  /// Searches the last scans of a lost robot in the whole map.
-  void find_again(const std::vector<WallPoint>& seen) {
+  /// Searches the scan of a lost robot near the expected pose, then the last ones in the whole map.
+  void find_again(const std::vector<WallPoint>& seen, const UncertainPose& expected) {
+    if (const auto near_by = walls->search(few(seen), {expected.mean, kJump, kTurnJump}, kFoundScore))
+      return resume(reference, near_by->pose, seen);
     const auto step = [&](const PlanarPose& before) { return composed(inverse(before), odometry.mean); };
     const PlanarPose* last = recent.empty() ? nullptr : &recent.back().first;
     if (last != nullptr && std::hypot(step(*last).x, step(*last).y) < kNodeDistance / 2 &&
@@ -204,17 +207,27 @@ struct Mapper::Parts {
     Eigen::AlignedBox2d box;
     for (const WallPoint& point : field.points()) box.extend(point.at);
     const Eigen::Vector2d middle = box.center(), half = box.sizes() / 2;
-    const auto found = field.search(few(thinned(points, kWideCell)),
-                                    {{middle.x(), middle.y(), 0}, half.maxCoeff(), M_PI}, kFoundScore);
-    if (!found) return;
+    points = few(thinned(points, kWideCell));
+    const SearchWindow everywhere{{middle.x(), middle.y(), 0}, half.maxCoeff(), M_PI};
+    const auto found = field.search(points, everywhere, kFoundScore);
+    if (!found || field.search(points, everywhere, kUnlike * found->score, &found->pose)) return;
     const auto away = [&](const GraphNode& node) {
       return difference(composed(inverse(node.pose), found->pose), node.scan);
     };
     const auto nearest = std::ranges::min_element(graph.nodes, {}, away);
+    resume(static_cast<std::size_t>(nearest - graph.nodes.begin()), composed(inverse(nearest->pose), found->pose), seen);
+  }
+
+  /// Goes on at this pose in the frame of the node if the points match there.
+  void resume(std::size_t node, const PlanarPose& pose, const std::vector<WallPoint>& seen) {
+    const UncertainPose before = matched_at;
+    const std::size_t from = reference;
+    const UncertainPose found{pose, at_least(Eigen::Matrix3d::Zero(), {kWideCell, kWideCell, 0.05})};
+    refer_to(node, found);
+    const Match there = match(*walls, seen, pose, found);
+    if (there.matched < kMinPoints || share_of(there, seen, node) < kMinMatched) return refer_to(from, before);
     odometry_at = odometry;
-    refer_to(static_cast<std::size_t>(nearest - graph.nodes.begin()),
-             {composed(inverse(nearest->pose), found->pose),
-              at_least(Eigen::Matrix3d::Zero(), {kWideCell, kWideCell, 0.05})});
+    matched_at = there.pose;
   }
 
   void match_with_walls(const Scan& scan, const PlanarPose& laser) {
@@ -228,7 +241,7 @@ struct Mapper::Parts {
     const Match found = match(*walls, seen, start, expected);
     share = share_of(found, seen, reference);
     lost = share < kMinMatched;
-    if (lost) return find_again(seen);
+    if (lost) return find_again(seen, expected);
     recent.clear();
     matched_at = found.matched < kMinPoints ? expected : found.pose;
     odometry_at = odometry;

@@ -83,7 +83,8 @@ void PointField::make_levels() {
   }
 }
 
-std::optional<Found> PointField::search(const std::vector<WallPoint>& seen, const SearchWindow& window, double least) {
+std::optional<Found> PointField::search(const std::vector<WallPoint>& seen, const SearchWindow& window, double least,
+                                        const PlanarPose* known) {
   if (seen.empty() || points_.empty()) return std::nullopt;
   make_levels();
   const double step = resolution_ / kTurnReach;
@@ -120,9 +121,12 @@ std::optional<Found> PointField::search(const std::vector<WallPoint>& seen, cons
     const Branch best = open.top();
     open.pop();
     if (best.level == 0) {
-      return Found{{window.middle.x + best.column * resolution_, window.middle.y + best.row * resolution_,
-                    window.middle.yaw + (best.heading - headings) * step},
-                   best.score};
+      const PlanarPose pose{window.middle.x + best.column * resolution_, window.middle.y + best.row * resolution_,
+                            window.middle.yaw + (best.heading - headings) * step};
+      if (known == nullptr || std::hypot(pose.x - known->x, pose.y - known->y) > kSamePlace ||
+          std::abs(std::remainder(pose.yaw - known->yaw, 2 * M_PI)) > kSameHeading)
+        return Found{pose, best.score};
+      continue;
     }
     const int level = best.level - 1, half = 1 << level;
     for (const int y : {0, half}) {

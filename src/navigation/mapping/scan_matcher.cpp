@@ -28,11 +28,10 @@ std::vector<Pair> pairs_of(const PointField& walls, const std::vector<WallPoint>
     const Eigen::Vector2d point = turn * seen[i].at;
     const WallPoint* wall = walls.nearest(point + at);
     if (wall == nullptr) continue;
-    const bool line = !wall->normal.isZero() && !seen[i].normal.isZero();
-    if (line && wall->normal.dot(turn * seen[i].normal) < kSameSide) continue;
-    const Eigen::Vector2d offset = point + at - wall->at;
-    const Eigen::Vector2d normal = line ? wall->normal : Eigen::Vector2d::Zero();
-    const double off = line ? normal.dot(offset) : offset.norm();
+    const Eigen::Vector2d faced = turn * seen[i].normal;
+    if (!wall->normal.isZero() && !faced.isZero() && wall->normal.dot(faced) < kSameSide) continue;
+    const Eigen::Vector2d offset = point + at - wall->at, normal = wall->normal.isZero() ? faced : wall->normal;
+    const double off = normal.isZero() ? offset.norm() : normal.dot(offset);
     const double weight = 1 / (1 + off * off / (kOutlier * kOutlier));
     pairs.push_back({point, offset, normal, weight / (kPointDeviation * kPointDeviation)});
     if (std::abs(off) > kOutlier) continue;
