@@ -184,8 +184,10 @@ struct Mapper::Parts {
     const UncertainPose expected = inverse(best->relative);
     PointField there(walls_around(best->node, graph.reach(best->node, kLocalLength), kLocalLength), kCell);
     const std::vector<WallPoint> here = thinned(walls_around(reference, near, kLastLength), 2 * kCell);
-    const auto found = there.search(few(here), window_of(expected), kLoopScore);
-    if (!found) return false;
+    const std::vector<WallPoint> points = few(here);
+    const SearchWindow window = window_of(expected);
+    const auto found = there.search(points, window, kLoopScore);
+    if (!found || there.search(points, window, kUnlike * found->score, &found->pose)) return false;
     const Match closed = match(there, here, found->pose, expected);
     if (closed.matched < kMinPoints || share_of(closed, here, best->node) < kMinMatched) return false;
     graph.edges.push_back({best->node, reference, closed.pose, true});

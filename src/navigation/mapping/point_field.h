@@ -29,7 +29,7 @@ struct Found {
 class PointField {
  public:
   static constexpr int kReach = 6;                           ///< cells
-  static constexpr double kSamePlace = 1, kSameHeading = 0.5;  ///< m, rad
+  static constexpr double kSamePlace = 0.5, kSameHeading = 0.5;  ///< m, rad
 
   PointField(std::vector<WallPoint> points, double resolution);
 
