@@ -16,13 +16,11 @@ constexpr double kNodeDistance = 0.6, kNodeTurn = 15 * M_PI / 180;    // m, rad 
 constexpr double kLocalLength = 6,
                  kLastLength = 3;                  // m along the edges: of the walls to match with, of those to search
 constexpr double kCell = 0.05, kWideCell = 0.1;    // m, of a field; of that of the whole map
-constexpr double kBasin = 0.15, kTurnBasin = 0.1;  // m, rad, from which a match finds the pose without a search
 constexpr double kMaxSearch = 10;                  // m
 constexpr int kMinPoints = 20;                     // fewer tell nothing
 constexpr double kMinMatched = 0.75;               // of those that match or contradict; 0.85 and more on true ways
 constexpr double kFreeMargin = 0.3;                // m before a wall, within which a point does not contradict
-constexpr double kTrackScore = 0.3, kLoopScore = 0.55,
-                 kFoundScore = 0.65;  // of a search in the window, for a loop, in the whole map
+constexpr double kLoopScore = 0.55, kFoundScore = 0.65;  // of a search for a loop, for a lost robot
 constexpr double kJump = 2, kTurnJump = 0.5;  // m, rad, of an odometry that slipped
 constexpr double kUnlike = 0.9;               // of the score of the best place, above which another one is as good
 constexpr std::size_t kSearchPoints = 250;
@@ -239,12 +237,7 @@ struct Mapper::Parts {
   void match_with_walls(const Scan& scan, const PlanarPose& laser) {
     const std::vector<WallPoint> seen = walls_of(scan, laser);
     const UncertainPose expected = predicted();
-    PlanarPose start = expected.mean;
-    const SearchWindow window = window_of(expected);
-    if (window.distance > kBasin || window.turn > kTurnBasin) {
-      if (const auto found = walls->search(few(seen), window, kTrackScore)) start = found->pose;
-    }
-    const Match found = match(*walls, seen, start, expected);
+    const Match found = match(*walls, seen, expected.mean, expected);
     share = share_of(found, seen, reference);
     lost = share < kMinMatched;
     if (lost) return find_again(seen, expected);
