@@ -128,7 +128,7 @@ MAY_INCLUDE = {
     # Maps, costmap, planner: services beside the loop, without ROS.
     "navigation": {"signals", "files", "machine", "parameters"},
     "navigation/guard": {"navigation", "machine", "signals"},
-    "navigation/mapping": {"navigation"},
+    "navigation/mapping": {"navigation", "files", "signals"},
     "navigation/mrpt": {"navigation"},
     "ros/navigation": {
         "signals",

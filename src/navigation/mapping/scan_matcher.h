@@ -16,7 +16,7 @@
 
 namespace robot_control::navigation {
 
-inline constexpr double kObserved = 0.04;  ///< normals that err by 0.1 rad hold 0.01
+inline constexpr double kObserved = 0.03;  ///< normals that err by 0.1 rad hold 0.01
 
 struct Match {
   UncertainPose pose;
