@@ -3,16 +3,15 @@
 from __future__ import annotations
 
 import tempfile
-from pathlib import Path
 
 import numpy as np
 from robot_control._mrpt import Mapper
 
-from bench.navigation.localizing import FOUND, KIDNAPS, SCENE, SEARCH, carried
+from bench.navigation.localizing import FOUND, SCENE, SEARCH, carried
 from bench.navigation.tour import LASER, SCAN_PERIOD, TOURS, Sight, drive, new_loop
 from bench.rows import Row, Say, bounded
 
-MISSED = 2  # of KIDNAPS
+KIDNAPS, MISSED = 20, 2
 
 
 def follow(mapper: Mapper, sights: list[Sight]) -> list[bool]:

@@ -57,8 +57,10 @@ PYBIND11_MODULE(_mrpt, module) {
       .def(py::init<>())
       .def(py::init([](const py::tuple& map) { return Mapper(grid_of(map)); }), py::arg("map"))
       .def_static("load", &load_map, py::arg("path"))
-      .def("save", [](const Mapper& mapper, const std::string& path) { save_map(path, mapper); }, py::arg("path"))
-      .def("set_pose", [](Mapper& mapper, const Pose& pose) { mapper.set_pose(planar_of(pose)); }, py::arg("pose"))
+      .def(
+          "save", [](const Mapper& mapper, const std::string& path) { save_map(path, mapper); }, py::arg("path"))
+      .def(
+          "set_pose", [](Mapper& mapper, const Pose& pose) { mapper.set_pose(planar_of(pose)); }, py::arg("pose"))
       .def(
           "update",
           [](Mapper& mapper, const py::dict& scan, const Pose& sensor, const Pose& odometry,

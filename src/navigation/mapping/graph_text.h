@@ -1,6 +1,6 @@
 #pragma once
-/// A PoseGraph as text of g2o (R. Kümmerle et al., g2o: a general framework for graph optimization, ICRA 2011) with SCAN
-/// lines, which g2o ignores. Units are m and rad.
+/// A PoseGraph as text of g2o (R. Kümmerle et al., g2o: a general framework for graph optimization, ICRA 2011) with
+/// SCAN lines, which g2o ignores. Units are m and rad.
 ///
 ///   VERTEX_SE2 i x y yaw                                              node i = 0, 1, …
 ///   SCAN x y yaw angle_min angle_increment range_min range_max r …    of this node, with the pose of the laser in it

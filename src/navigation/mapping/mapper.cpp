@@ -14,15 +14,15 @@ namespace {
 constexpr double kMatchDistance = 0.05, kMatchTurn = 2 * M_PI / 180;  // m, rad between two matches
 constexpr double kNodeDistance = 0.6, kNodeTurn = 15 * M_PI / 180;    // m, rad between two nodes
 constexpr double kLocalLength = 6,
-                 kLastLength = 3;                  // m along the edges: of the walls to match with, of those to search
-constexpr double kCell = 0.05, kWideCell = 0.1;    // m, of a field; of that of the whole map
-constexpr double kMaxSearch = 10;                  // m
-constexpr int kMinPoints = 20;                     // fewer tell nothing
-constexpr double kMinMatched = 0.75;               // of those that match or contradict; 0.85 and more on true ways
-constexpr double kFreeMargin = 0.3;                // m before a wall, within which a point does not contradict
+                 kLastLength = 3;                // m along the edges: of the walls to match with, of those to search
+constexpr double kCell = 0.05, kWideCell = 0.1;  // m, of a field; of that of the whole map
+constexpr double kMaxSearch = 10;                // m
+constexpr int kMinPoints = 20;                   // fewer tell nothing
+constexpr double kMinMatched = 0.75;             // of those that match or contradict; 0.85 and more on true ways
+constexpr double kFreeMargin = 0.3;              // m before a wall, within which a point does not contradict
 constexpr double kLoopScore = 0.55, kFoundScore = 0.65;  // of a search for a loop, for a lost robot
-constexpr double kJump = 2, kTurnJump = 0.5;  // m, rad, of an odometry that slipped
-constexpr double kUnlike = 0.9;               // of the score of the best place, above which another one is as good
+constexpr double kJump = 2, kTurnJump = 0.5;             // m, rad, of an odometry that slipped
+constexpr double kUnlike = 0.9;  // of the score of the best place, above which another one is as good
 constexpr std::size_t kSearchPoints = 250;
 constexpr std::size_t kMaxRecent = 8, kMinRecent = 3;  // scans of a robot that is lost, kNodeDistance apart
 const Eigen::Vector3d kNear(0.3, 0.3, 0.2);            // deviation of a given pose
@@ -219,7 +219,8 @@ struct Mapper::Parts {
       return difference(composed(inverse(node.pose), found->pose), node.scan);
     };
     const auto nearest = std::ranges::min_element(graph.nodes, {}, away);
-    resume(static_cast<std::size_t>(nearest - graph.nodes.begin()), composed(inverse(nearest->pose), found->pose), seen);
+    resume(static_cast<std::size_t>(nearest - graph.nodes.begin()), composed(inverse(nearest->pose), found->pose),
+           seen);
   }
 
   /// Goes on at this pose in the frame of the node if the points match there.
@@ -267,8 +268,7 @@ struct Mapper::Parts {
     }
     const auto away = [&](const GraphNode& node) { return std::hypot(node.pose.x - pose.x, node.pose.y - pose.y); };
     const auto nearest = std::ranges::min_element(graph.nodes, {}, away);
-    refer_to(static_cast<std::size_t>(nearest - graph.nodes.begin()),
-             {composed(inverse(nearest->pose), pose), spread});
+    refer_to(static_cast<std::size_t>(nearest - graph.nodes.begin()), {composed(inverse(nearest->pose), pose), spread});
   }
 };
 

@@ -2,7 +2,8 @@
 /// A Mapper builds a map from a laser and an odometry, and says where the robot is in it.
 ///
 /// The map is a graph of scans (PoseGraph). The reference is the node whose pose is most like that of the robot. Each
-/// scan is matched with the walls of the nodes within kLocalLength of it along the edges. A pose that is like no node becomes one, with the match as its edge.
+/// scan is matched with the walls of the nodes within kLocalLength of it along the edges. A pose that is like no node
+/// becomes one, with the match as its edge.
 ///
 /// A far node of the graph may be near a new one, by the covariance of the way between them. A search for the walls
 /// that were seen last then closes the loop. The graph is optimised, and the map is drawn again.

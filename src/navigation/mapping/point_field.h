@@ -28,7 +28,7 @@ struct Found {
 
 class PointField {
  public:
-  static constexpr int kReach = 6;                           ///< cells
+  static constexpr int kReach = 6;                               ///< cells
   static constexpr double kSamePlace = 0.5, kSameHeading = 0.5;  ///< m, rad
 
   PointField(std::vector<WallPoint> points, double resolution);
@@ -38,8 +38,8 @@ class PointField {
   /// Returns the nearest point within kReach; nullptr without one.
   const WallPoint* nearest(const Eigen::Vector2d& at) const noexcept;
 
-  /// Returns the best pose of the points in the window, if its score is `least` or more. It is not within kSamePlace and
-  /// kSameHeading of `known`.
+  /// Returns the best pose of the points in the window, if its score is `least` or more. It is not within kSamePlace
+  /// and kSameHeading of `known`.
   std::optional<Found> search(const std::vector<WallPoint>& seen, const SearchWindow& window, double least,
                               const PlanarPose* known = nullptr);
 

@@ -27,7 +27,8 @@ std::string sum_of(std::string_view lines, const Grid& grid) {
   Checksum sum;
   sum.mix(lines);
   sum.mix(std::string_view(reinterpret_cast<const char*>(grid.cells.data()), grid.cells.size()));
-  for (const double value : {grid.resolution, grid.origin_x, grid.origin_y}) sum.mix(std::bit_cast<std::uint64_t>(value));
+  for (const double value : {grid.resolution, grid.origin_x, grid.origin_y})
+    sum.mix(std::bit_cast<std::uint64_t>(value));
   return kSum + hex(sum.sum()) + "\n";
 }
 

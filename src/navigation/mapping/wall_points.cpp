@@ -16,7 +16,9 @@ Eigen::Vector2d end_of_ray(const Scan& scan, std::size_t ray) {
 
 /// Returns the normal of the line of those echoes beside this one that lie within the radius; zero without a line.
 Eigen::Vector2d normal_at(const std::vector<std::optional<Eigen::Vector2d>>& ends, std::size_t ray) {
-  const auto gap = [&](std::size_t i) { return i < ends.size() && ends[i] ? (*ends[i] - *ends[ray]).norm() : HUGE_VAL; };
+  const auto gap = [&](std::size_t i) {
+    return i < ends.size() && ends[i] ? (*ends[i] - *ends[ray]).norm() : HUGE_VAL;
+  };
   const double nearer = std::min(gap(ray - 1), gap(ray + 1));
   const double radius = std::isfinite(nearer) ? std::max(kLineRadius, kGaps * nearer) : kLineRadius;
   Eigen::Vector2d sum = Eigen::Vector2d::Zero();
