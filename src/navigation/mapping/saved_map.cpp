@@ -42,7 +42,7 @@ PoseGraph read_graph(const std::string& path, const Grid& grid) try {
   return graph_of(lines);
 } catch (const MapError& error) {
   throw MapError(fit_for_message(path + ": " + error.what() +
-                                 "; restore both files, or delete this one to go on with the picture alone"));
+                                 "; restore both files, or delete this one to continue with the picture"));
 }
 
 }  // namespace

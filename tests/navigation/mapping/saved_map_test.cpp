@@ -123,7 +123,7 @@ TEST_F(SavedMapTest, AGraphThatIsCutOffAnywhereIsRefusedInOneSentence) {
     write(".g2o", whole.substr(0, length));
     ASSERT_THAT(refusal(), HasSubstr("house.g2o: its last line must be the sum")) << length;
   }
-  EXPECT_THAT(refusal(), HasSubstr("or delete this one to go on with the picture alone"));
+  EXPECT_THAT(refusal(), HasSubstr("or delete this one to continue with the picture"));
 }
 
 TEST_F(SavedMapTest, AGraphBesideAnotherPictureIsRefused) {

@@ -30,7 +30,7 @@ TEST_F(ScanMatcherTest, FindsThePoseInARoom) {
   EXPECT_GE(found.matched, static_cast<int>(room().size()) - 8) << "in a corner the nearest wall is that beside it";
 }
 
-/// Nothing in sight tells where along the corridor the robot is.
+/// All walls in sight are parallel.
 TEST_F(ScanMatcherTest, AlongACorridorTheOdometryDecides) {
   const Match found = match({corridor(), 0.05}, corridor(), {0.1, -0.1, 0.03}, predicted({0.1, -0.1, 0.03}, 0.2, 0.1));
   EXPECT_NEAR(found.pose.mean.x, 0.1, 0.01);
