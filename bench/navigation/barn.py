@@ -25,7 +25,7 @@ from numpy.typing import NDArray
 
 from bench.navigation.goals import NEIGHBOURS
 from bench.navigation.scene_map import Obstacle
-from bench.navigation.tour import DIFFBOT, Machine, Place, Scan
+from bench.navigation.tour import DIFFBOT, Machine, Place, Scan, covariance_of
 from bench.navigation.trajectories import between, composed
 from bench.navigation.virtual import Robot, Trip
 from bench.robot_corpus import urdf_of
@@ -232,7 +232,7 @@ class Explorer(Robot):
     def _locate(self, scan: Scan) -> str:
         if self._mapper is None:
             return ""
-        self._mapper.update(scan, self.machine.laser, self._odometry)
+        self._mapper.update(scan, self.machine.laser, self._odometry, covariance_of(self._state))
         self._origin = self._odometry
         if self._scans % self.MAP_PERIOD == 0:
             self.navigation.set_map(self._mapper.map, unknown_is_free=True)

@@ -48,12 +48,14 @@ def bench(  # noqa: PLR0917 (the options of the command line)
 
 def _of_mrpt(parts: Sequence[str], first: int, runs: int | None, say: Say, logs: Path | None) -> list[dict[str, Any]]:
     try:
-        from bench.navigation import localizing, mapping, on_logs  # noqa: PLC0415 (without MRPT the other parts run)
+        from bench.navigation import carried, localizing, mapping, on_logs, ring  # noqa: PLC0415 (without MRPT the other parts run)
     except ImportError:
         raise RuntimeError("MRPT is not installed: scripts/setup --navigation, then build again") from None
     rows: list[dict[str, Any]] = []
     if "map" in parts:
         rows += mapping.rows_of(first, runs or mapping.RUNS, say)
+        rows += ring.rows_of(first, runs or ring.SEEDS, say)
+        rows += carried.rows_of(first, runs or carried.KIDNAPS, say)
     if "logs" in parts and logs is None:
         say("logs: left out without --logs FOLDER")
     if "logs" in parts and logs is not None:

@@ -78,23 +78,30 @@ def judge_drive(grid: Map, sights: list[Sight], seed: int) -> dict[str, float]:
     }
 
 
-def kidnapped(grid: Map, sights: list[Sight], seed: int) -> float:
-    """The time [s] after which a robot that was carried elsewhere is called lost."""
+def carried(sights: list[Sight], seed: int, count: int) -> tuple[list[Sight], list[Sight]]:
+    """100 scans before a robot was carried elsewhere, and `count` scans after it; its odometry has not noticed."""
     numbers = np.random.default_rng(seed)
-    count = round(2 * NOTICED / SCAN_PERIOD)
     while True:
         before, after = (int(number) for number in numbers.integers(100, len(sights) - count, 2))
         if np.hypot(*(sights[before].truth - sights[after].truth)[:2]) > FAR:
             break
-    localizer = Localizer(grid, seed)
-    localizer.set_pose(sights[before - 100].truth, np.diag([0.01, 0.01, 0.003]))
-    follow(localizer, sights[before - 100 : before])
-    carried = composed(sights[before].odometry, inverse(sights[after].odometry))
+    way = composed(sights[before].odometry, inverse(sights[after].odometry))
+    more = sights[before].covariance - sights[after].covariance
     moved = [
-        replace(sight, odometry=composed(carried, sight.odometry), covariance=sight.covariance)
+        replace(sight, odometry=composed(way, sight.odometry), covariance=sight.covariance + more)
         for sight in sights[after : after + count]
     ]
-    states = [state for state, _, _ in follow(localizer, moved)]
+    return sights[before - 100 : before], moved
+
+
+def kidnapped(grid: Map, sights: list[Sight], seed: int) -> float:
+    """The time [s] after which a robot that was carried elsewhere is called lost."""
+    count = round(2 * NOTICED / SCAN_PERIOD)
+    before, after = carried(sights, seed, count)
+    localizer = Localizer(grid, seed)
+    localizer.set_pose(before[0].truth, np.diag([0.01, 0.01, 0.003]))
+    follow(localizer, before)
+    states = [state for state, _, _ in follow(localizer, after)]
     return SCAN_PERIOD * (states.index("lost") if "lost" in states else count)
 
 

@@ -24,7 +24,7 @@ def build_map(sights: list[Sight]) -> tuple[Map, NDArray[np.float64], float]:
     mapper, poses = Mapper(), []
     begin = time.process_time()
     for sight in sights:
-        mapper.update(sight.scan, LASER, sight.odometry)
+        mapper.update(sight.scan, LASER, sight.odometry, sight.covariance)
         poses.append(mapper.pose)
     return mapper.map, np.array(poses), time.process_time() - begin
 

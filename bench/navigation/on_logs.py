@@ -10,14 +10,17 @@ import numpy as np
 from robot_control._mrpt import Mapper
 
 from bench.navigation.laser_logs import Array, LaserLog, read_folder
-from bench.navigation.odometry_model import made
-from bench.navigation.trajectories import absolute_error, relation_errors
+from bench.navigation.odometry_model import FIELD, covariances, made
+from bench.navigation.trajectories import absolute_error, composed, relation_errors
 from bench.rows import Row, Say, bounded, plain
 
 SEEDS = 3  # of an odometry that is made
 AS_GOOD = 1.2  # of the relations' error of the reference that others made
 FARTHEST = 0.3  # m, RMS
 LOST = 20  # scans
+
+Anchor = tuple[int, tuple[float, float, float]]
+"""a node and a pose in its frame"""
 
 
 @dataclass
@@ -33,14 +36,20 @@ class Followed:
         return max((len(list(group)) for lost, group in groupby(self.lost) if lost), default=0)
 
 
-def follow(log: LaserLog, odometry: Array) -> Followed:
-    """Feeds all scans."""
-    mapper, poses, lost = Mapper(), [], []
-    for index, place in enumerate(odometry):
-        mapper.update(log.scan(index), (0.0, 0.0, 0.0), place)
-        poses.append(mapper.pose)
+def follow(log: LaserLog, odometry: Array, spreads: Array) -> Followed:
+    """Feeds all scans. The poses are those of the last graph."""
+    mapper, anchors, lost = Mapper(), [], []
+    for index, (place, covariance) in enumerate(zip(odometry, spreads, strict=True)):
+        mapper.update(log.scan(index), (0.0, 0.0, 0.0), place, covariance)
+        anchors.append(mapper.anchor)
         lost.append(mapper.reason != "")
-    return Followed(np.array(poses), lost)
+    return Followed(placed(mapper, anchors), lost)
+
+
+def placed(mapper: Mapper, anchors: list[Anchor]) -> Array:
+    """The poses (n, 3) of these anchors in the present graph."""
+    nodes = np.array(mapper.nodes)[[node for node, _ in anchors]]
+    return composed(nodes, np.array([relative for _, relative in anchors]))
 
 
 def rows_of(folder: Path, first: int, seeds: int, say: Say) -> list[Row]:
@@ -48,12 +57,13 @@ def rows_of(folder: Path, first: int, seeds: int, say: Say) -> list[Row]:
     rows = []
     for log in read_folder(folder):
         if log.odometry is not None:
-            drives = [log.odometry]
+            drives = [(log.odometry, covariances(log.odometry, FIELD))]
         elif log.reference is not None:
-            drives = [made(log.reference, seed) for seed in range(first, first + seeds)]
+            odometries = [made(log.reference, seed) for seed in range(first, first + seeds)]
+            drives = [(odometry, covariances(odometry)) for odometry in odometries]
         else:
             raise ValueError(f"{log.name} has neither an odometry nor a reference")
-        results = [follow(log, odometry) for odometry in drives]
+        results = [follow(log, odometry, spreads) for odometry, spreads in drives]
         rows += _judged(log, results, say)
     return rows
 

@@ -69,17 +69,22 @@ def new_loop(
     return ClosedLoop({"mujoco_plant": values}, seed=seed, urdf=machine.urdf, scene=path)
 
 
+def covariance_of(state: dict[str, float]) -> NDArray[np.float64]:
+    """The covariance (3, 3) of the odometry: x, y, yaw."""
+    xy, xa, ya = (state[f"estimate_{name}_covariance"] for name in ("xy", "x_yaw", "y_yaw"))
+    x, y, a = (state[f"estimate_{name}_variance"] for name in ("x", "y", "yaw"))
+    return np.array([[x, xy, xa], [xy, y, ya], [xa, ya, a]])
+
+
 def look(loop: ClosedLoop, command: tuple[float, float]) -> Sight:
     """Drives with this command until the next scan."""
     log = loop.run(SCAN_PERIOD, command)
     last = {name: float(values[-1]) for name, values in log.items()}
-    xy, xa, ya = (last[f"estimate_{name}_covariance"] for name in ("xy", "x_yaw", "y_yaw"))
-    x, y, a = (last[f"estimate_{name}_variance"] for name in ("x", "y", "yaw"))
     return Sight(
         last["time"],
         np.array([last["truth_x"], last["truth_y"], last["truth_yaw"]]),
         np.array([last["estimate_x"], last["estimate_y"], last["estimate_yaw"]]),
-        np.array([[x, xy, xa], [xy, y, ya], [xa, ya, a]]),
+        covariance_of(last),
         loop.scan(),
     )
 

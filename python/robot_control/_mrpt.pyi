@@ -9,11 +9,17 @@ _Pose: TypeAlias = Sequence[float] | NDArray[np.float64]
 _Scan: TypeAlias = Mapping[str, Any]
 
 class Mapper:
-    def __init__(self, map: _Map = ..., pose: _Pose = ...) -> None: ...  # noqa: A002 (the name that C++ gives)
-    def update(self, scan: _Scan, sensor: _Pose, odometry: _Pose) -> None: ...
+    def __init__(self, map: _Map = ...) -> None: ...  # noqa: A002 (the name that C++ gives)
+    @staticmethod
+    def load(path: str) -> Mapper: ...
+    def save(self, path: str) -> None: ...
+    def set_pose(self, pose: _Pose) -> None: ...
+    def update(self, scan: _Scan, sensor: _Pose, odometry: _Pose, covariance: ArrayLike) -> None: ...
     pose: tuple[float, float, float]
+    anchor: tuple[int, tuple[float, float, float]]
+    nodes: list[tuple[float, float, float]]
+    closed: int
     matched: float
-    points: int
     reason: str
     map: _Map
 

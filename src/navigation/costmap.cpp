@@ -115,7 +115,7 @@ Agreement Costmap::insert(const Scan& scan, const PlanarPose& sensor, double now
   for (std::size_t ray = 0; ray < scan.ranges.size(); ++ray) {
     const float range = scan.ranges[ray];
     const bool hit = scan.hit(range);
-    if (!hit && !(range > scan.range_max)) continue;
+    if (!hit && !scan.nothing(range)) continue;
     const double length = hit ? range : scan.range_max, angle = sensor.yaw + scan.angle(ray);
     bool passed = false;
     follow_ray(grid_, sensor, angle, length - grid_.resolution, [&](std::size_t cell, double along) {

@@ -7,7 +7,7 @@
 
 namespace robot_control::navigation {
 
-std::string ScanWatch::structure_problem(const Scan& scan) const {
+std::string scan_problem(const Scan& scan) {
   const std::size_t rays = scan.ranges.size();
   if (rays < 2 || rays > kMaxRays) return formatted("scan has %zu rays: allowed are 2 to %zu", rays, kMaxRays);
   if (!std::isfinite(scan.angle_min) || !std::isfinite(scan.angle_increment) || scan.angle_increment == 0) {
@@ -36,9 +36,30 @@ std::string ScanWatch::structure_problem(const Scan& scan) const {
   return "";
 }
 
+std::string ScanWatch::remark_on(const Scan& scan) const {
+  const auto share = [&](double value) {
+    const auto count = std::ranges::count(scan.ranges, static_cast<float>(value));
+    return static_cast<double>(count) / static_cast<double>(scan.ranges.size());
+  };
+  if (const double at_max = share(scan.range_max); at_max >= kMaxOdd) {
+    return formatted(
+        "scan has exactly range_max (%g m) in %.0f %% of its rays, which counts as no echo: set +inf in the driver of "
+        "the laser",
+        scan.range_max, 100 * at_max);
+  }
+  if (const double zero = share(0); zero >= kMaxOdd && scan.range_min == 0) {
+    return formatted(
+        "scan has 0 m in %.0f %% of its rays and range_min 0 m; they count as not measured: set range_min in the "
+        "driver "
+        "of the laser",
+        100 * zero);
+  }
+  return "";
+}
+
 std::string ScanWatch::receive(const Scan& scan, const std::string& publisher, double stamp, double now, double moved) {
   const auto refuse = [&](const std::string& why) { return refused_ = why; };
-  if (const std::string why = structure_problem(scan); !why.empty()) return refuse(why);
+  if (const std::string why = scan_problem(scan); !why.empty()) return refuse(why);
   const bool bound = std::abs(now - received_) < kPublisherTimeout;
   if (bound && publisher != publisher_) {
     return refuse("scan has two publishers, " + publisher_ + " and " + publisher + ": stop one of them");
@@ -48,13 +69,14 @@ std::string ScanWatch::receive(const Scan& scan, const std::string& publisher, d
         formatted("the stamps of scan go back by %.3f s: check the clock of the laser's computer", stamp_ - stamp));
   }
   blind_ = std::none_of(scan.ranges.begin(), scan.ranges.end(),
-                        [&](float range) { return scan.hit(range) || range > scan.range_max; });
+                        [&](float range) { return scan.hit(range) || scan.nothing(range); });
   const bool nothing =
       std::none_of(scan.ranges.begin(), scan.ranges.end(), [&](float range) { return scan.hit(range); });
   if (scan.ranges != ranges_ || nothing) changed_at_ = moved;
   ranges_ = scan.ranges;
   publisher_ = publisher, stamp_ = stamp, received_ = now, moved_ = moved;
   refused_.clear();
+  remark_ = remark_on(scan);
   return "";
 }
 

@@ -20,7 +20,11 @@ namespace robot_control::navigation {
 inline constexpr std::size_t kMaxRays = 20'000;
 inline constexpr double kScanTimeout = 0.5;     ///< s
 inline constexpr double kPublisherTimeout = 1;  ///< s
+inline constexpr double kMaxOdd = 0.01;         ///< of the rays; an echo at exactly range_max is rarer
 inline constexpr double kFrozenMotion = 0.05;   ///< m or rad
+
+/// Returns why a message with this scan is refused whatever was received before; "" if it is not.
+std::string scan_problem(const Scan& scan);
 
 class ScanWatch {
  public:
@@ -28,13 +32,17 @@ class ScanWatch {
   /// is how far the robot has driven and turned so far, m + rad.
   std::string receive(const Scan& scan, const std::string& publisher, double stamp, double now, double moved);
 
+  /// Returns which rule of sensor_msgs/LaserScan the newest scan breaks although it counts; "" if it breaks none. At
+  /// least kMaxOdd of its rays then have exactly range_max, or 0 with a range_min of 0.
+  const std::string& remark() const noexcept { return remark_; }
+
   /// Returns why the newest scan does not count at this time; "" if it does.
   std::string problem(double now) const;
 
  private:
-  std::string structure_problem(const Scan& scan) const;
+  std::string remark_on(const Scan& scan) const;
 
-  std::string publisher_, refused_ = "no scan received: start the driver of the laser, which publishes scan";
+  std::string publisher_, remark_, refused_ = "no scan received: start the driver of the laser, which publishes scan";
   double received_ = -1e9, stamp_ = -1e9;  // s
   std::vector<float> ranges_;
   double changed_at_ = 0, moved_ = 0;  // m + rad, at the last change of the ranges; now

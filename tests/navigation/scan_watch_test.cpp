@@ -89,4 +89,22 @@ TEST_F(ScanWatchTest, AnOpenFieldIsNotFrozenAndACoveredLaserIsBlind) {
   EXPECT_THAT(watch_.problem(10.2), HasSubstr("no measured range"));
 }
 
+TEST_F(ScanWatchTest, ADriverThatReportsRangeMaxOrZeroForNoEchoIsNamedAndCounts) {
+  Scan scan = healthy();
+  watch_.receive(scan, "laser", 10, 10, 0);
+  EXPECT_EQ(watch_.remark(), "");
+  std::fill_n(scan.ranges.begin(), 90, 8.0F);
+  EXPECT_EQ(watch_.receive(scan, "laser", 10.1, 10.1, 0), "");
+  EXPECT_THAT(watch_.remark(), HasSubstr("exactly range_max (8 m) in 25 % of its rays"));
+  std::fill_n(scan.ranges.begin(), 90, 0.0F);
+  watch_.receive(scan, "laser", 10.2, 10.2, 0);
+  EXPECT_EQ(watch_.remark(), "");
+  scan.range_min = 0;
+  watch_.receive(scan, "laser", 10.3, 10.3, 0);
+  EXPECT_THAT(watch_.remark(), HasSubstr("0 m in 25 % of its rays"));
+  EXPECT_EQ(watch_.problem(10.3), "");
+  watch_.receive(healthy(8.0F), "laser", 10.4, 10.4, 0);
+  EXPECT_EQ(watch_.problem(10.4), "") << "an open field";
+}
+
 }  // namespace robot_control::navigation::tests

@@ -123,13 +123,23 @@ MAY_INCLUDE = {
     # The laws of a log, run again from its rows.
     "log/replay": LOOP,
     "simulation": ALL - {"simulation"} | {"simulation/machines"},
-    "bindings": ALL | {"log/replay", "navigation", "navigation/guard", "navigation/mrpt"},
+    "bindings": ALL | {"log/replay", "navigation", "navigation/guard", "navigation/mapping", "navigation/mrpt"},
     "ros": LOOP | {"files", "machine/description"},
     # Maps, costmap, planner: services beside the loop, without ROS.
     "navigation": {"signals", "files", "machine", "parameters"},
     "navigation/guard": {"navigation", "machine", "signals"},
+    "navigation/mapping": {"navigation", "files", "signals"},
     "navigation/mrpt": {"navigation"},
-    "ros/navigation": {"signals", "navigation", "navigation/guard", "navigation/mrpt", "ros", "configuration", "files"},
+    "ros/navigation": {
+        "signals",
+        "navigation",
+        "navigation/guard",
+        "navigation/mapping",
+        "navigation/mrpt",
+        "ros",
+        "configuration",
+        "files",
+    },
     "main": {
         "signals",
         "ros",
@@ -340,7 +350,7 @@ def test_only_ros_and_main_see_ros():
     assert violations(rule) == []
 
 
-def test_only_mapping_and_localisation_see_mrpt():
+def test_only_localisation_sees_mrpt():
     def rule(path):
         if folder(path) != "navigation/mrpt":
             yield from (name for name in foreign_includes(path) if name.startswith("mrpt/"))

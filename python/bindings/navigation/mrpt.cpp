@@ -4,10 +4,12 @@
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
+#include <algorithm>
+
 #include "bindings/navigation/conversions.h"
 #include "bindings/numpy_version.h"
+#include "navigation/mapping/saved_map.h"
 #include "navigation/mrpt/localizer.h"
-#include "navigation/mrpt/mapper.h"
 
 namespace py = pybind11;
 
@@ -53,17 +55,34 @@ PYBIND11_MODULE(_mrpt, module) {
   robot_control::check_numpy_version();
   py::class_<Mapper>(module, "Mapper")
       .def(py::init<>())
-      .def(py::init([](const py::tuple& map, const Pose& pose) { return Mapper(grid_of(map), planar_of(pose)); }),
-           py::arg("map"), py::arg("pose"))
+      .def(py::init([](const py::tuple& map) { return Mapper(grid_of(map)); }), py::arg("map"))
+      .def_static("load", &load_map, py::arg("path"))
+      .def(
+          "save", [](const Mapper& mapper, const std::string& path) { save_map(path, mapper); }, py::arg("path"))
+      .def(
+          "set_pose", [](Mapper& mapper, const Pose& pose) { mapper.set_pose(planar_of(pose)); }, py::arg("pose"))
       .def(
           "update",
-          [](Mapper& mapper, const py::dict& scan, const Pose& sensor, const Pose& odometry) {
-            mapper.update(scan_of(scan), planar_of(sensor), planar_of(odometry));
+          [](Mapper& mapper, const py::dict& scan, const Pose& sensor, const Pose& odometry,
+             const Eigen::Matrix3d& covariance) {
+            mapper.update(scan_of(scan), planar_of(sensor), uncertain(odometry, covariance));
           },
-          py::arg("scan"), py::arg("sensor"), py::arg("odometry"))
+          py::arg("scan"), py::arg("sensor"), py::arg("odometry"), py::arg("covariance"))
       .def_property_readonly("pose", [](const Mapper& mapper) { return pose_of(mapper.pose()); })
+      .def_property_readonly("anchor",
+                             [](const Mapper& mapper) {
+                               const Anchor anchor = mapper.anchor();
+                               return py::make_tuple(anchor.node, pose_of(anchor.relative));
+                             })
+      .def_property_readonly("nodes",
+                             [](const Mapper& mapper) {
+                               std::vector<Pose> poses;
+                               for (const GraphNode& node : mapper.graph().nodes) poses.push_back(pose_of(node.pose));
+                               return poses;
+                             })
+      .def_property_readonly(
+          "closed", [](const Mapper& mapper) { return std::ranges::count_if(mapper.graph().edges, &Edge::closes); })
       .def_property_readonly("matched", &Mapper::matched)
-      .def_property_readonly("points", &Mapper::points)
       .def_property_readonly("reason", &Mapper::reason)
       .def_property_readonly("map", [](const Mapper& mapper) { return numpy_of(mapper.grid()); });
   bind_localizer(module);

@@ -17,7 +17,7 @@ constexpr double kDegrees = 180 / M_PI;
 constexpr double kJump = 0.5;  // m, rad beyond kMaxObjectSpeed
 
 bool echo(const Scan& scan, std::size_t ray) {
-  return scan.ranges[ray] >= scan.range_min && scan.ranges[ray] < kFarEcho * scan.range_max;
+  return scan.hit(scan.ranges[ray]);
 }
 
 double distance(Point a, Point b) {
@@ -34,7 +34,7 @@ double ray_towards(const Scan& scan, const PlanarPose& sensor, Point at) {
 bool in_view(const Scan& scan, const PlanarPose& sensor, Point at) {
   const double range = distance({sensor.x, sensor.y}, at);
   return ray_towards(scan, sensor, at) <= static_cast<double>(scan.ranges.size() - 1) && range >= scan.range_min &&
-         range <= kFarEcho * scan.range_max;
+         range <= kSureEcho * scan.range_max;
 }
 
 }  // namespace

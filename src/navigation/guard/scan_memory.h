@@ -1,9 +1,8 @@
 #pragma once
 /// A ScanMemory holds what one laser has seen, in odom, and doubts scans that contradict it.
 ///
-/// An echo is a range from range_min up to kFarEcho·range_max. Some drivers report range_max where nothing came back. A
-/// ray without an echo is evidence of nothing, neither of an obstacle nor of free space. A point that was seen is
-/// forgotten
+/// A ray without an echo (Scan::hit) is evidence of nothing, neither of an obstacle nor of free space. Points beyond
+/// kSureEcho·range_max count as out of view, because noise may take their echo. A point that was seen is forgotten
 ///
 ///   at once          if the rays on both sides have echoes kMinPassing behind it, or one of them has its echo there,
 ///                    which then takes its place
@@ -25,7 +24,7 @@
 
 namespace robot_control::navigation {
 
-inline constexpr double kFarEcho = 0.95;         ///< of range_max
+inline constexpr double kSureEcho = 0.95;        ///< of range_max
 inline constexpr double kRecall = 1.0;           ///< s; the robot turns by 60° or drives 0.5 m
 inline constexpr double kMaxObjectSpeed = 2.5;   ///< m/s
 inline constexpr double kFrozenRange = 0.03;     ///< m, three deviations of the noise

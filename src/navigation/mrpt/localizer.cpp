@@ -8,7 +8,6 @@
 #include <mrpt/random/RandomGenerators.h>
 #include <mrpt/slam/CMonteCarloLocalization2D.h>
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
@@ -33,25 +32,6 @@ constexpr double kSmallSpread = 0.3;  // m, below which a search has found the p
 constexpr double kMinStep = 0.02, kMinTurn = 0.02;
 constexpr double kMapDeviation = 0.02;       // m: a wall lies anywhere in its cell, and the map has errors of its own
 constexpr double kHeadingDeviation = 0.005;  // rad, likewise
-
-/// Returns the positive part of a symmetric matrix, with each variance at least that of `least`.
-Eigen::Matrix3d at_least(const Eigen::Matrix3d& matrix, const Eigen::Vector3d& least) {
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> parts((matrix + matrix.transpose()) / 2);
-  Eigen::Matrix3d result =
-      parts.eigenvectors() * parts.eigenvalues().cwiseMax(0).asDiagonal() * parts.eigenvectors().transpose();
-  result.diagonal() += least.cwiseProduct(least);
-  return result;
-}
-
-/// Returns the covariance of the motion between two poses of the odometry, in the axes of the first one.
-Eigen::Matrix3d growth(const UncertainPose& from, const UncertainPose& to) {
-  Eigen::Matrix3d f = Eigen::Matrix3d::Identity(), r = Eigen::Matrix3d::Identity();
-  f(0, 2) = -(to.mean.y - from.mean.y);
-  f(1, 2) = to.mean.x - from.mean.x;
-  const double c = std::cos(from.mean.yaw), s = std::sin(from.mean.yaw);
-  r.topLeftCorner<2, 2>() << c, -s, s, c;
-  return r.transpose() * (to.covariance - f * from.covariance * f.transpose()) * r;
-}
 
 mrpt::bayes::CParticleFilter filter() {
   mrpt::bayes::CParticleFilter result;

@@ -11,7 +11,6 @@
 /// The number of particles adapts to their spread (KLD sampling). A global start begins with kGlobalParticles all over
 /// the free cells and keeps that many until the spread is small. The same seed and calls give the same poses.
 
-#include <Eigen/Core>
 #include <cstdint>
 #include <memory>
 #include <string>
@@ -19,17 +18,12 @@
 
 #include "navigation/grid.h"
 #include "navigation/scan.h"
+#include "navigation/uncertain_pose.h"
 
 namespace robot_control::navigation {
 
 inline constexpr double kUpdateDistance = 0.1;  ///< m
 inline constexpr double kUpdateTurn = 0.1;      ///< rad
-
-/// A pose with its covariance: x m, y m, yaw rad.
-struct UncertainPose {
-  PlanarPose mean;
-  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
-};
 
 enum class Localization {
   kNoPose,     ///< neither a pose nor a global start was given

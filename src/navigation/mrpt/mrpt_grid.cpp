@@ -26,23 +26,6 @@ mrpt::maps::COccupancyGridMap2D mrpt_grid(const Grid& grid) {
   return map;
 }
 
-Grid grid_of(const mrpt::maps::COccupancyGridMap2D& map) {
-  Grid grid{.columns = static_cast<int>(map.getSizeX()),
-            .rows = static_cast<int>(map.getSizeY()),
-            .resolution = map.getResolution(),
-            .origin_x = map.getXMin(),
-            .origin_y = map.getYMin(),
-            .cells = {}};
-  const float untouched = mrpt::maps::COccupancyGridMap2D::l2p(0);
-  for (int row = 0; row < grid.rows; ++row) {
-    for (int column = 0; column < grid.columns; ++column) {
-      const float free = map.getCell(column, row);
-      grid.cells.push_back(free == untouched ? kUnknownCell : static_cast<std::int8_t>(std::lround(100 * (1 - free))));
-    }
-  }
-  return grid;
-}
-
 mrpt::maps::CSimplePointsMap wall_points(const Grid& grid) {
   mrpt::maps::CSimplePointsMap points;
   for (int row = 0; row < grid.rows; ++row) {

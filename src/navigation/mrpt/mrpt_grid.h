@@ -15,9 +15,6 @@ PlanarPose align(Grid& grid);
 /// The grid is aligned.
 mrpt::maps::COccupancyGridMap2D mrpt_grid(const Grid& grid);
 
-/// Cells with the probability one half are unknown.
-Grid grid_of(const mrpt::maps::COccupancyGridMap2D& map);
-
 /// Returns the middles of all occupied cells.
 mrpt::maps::CSimplePointsMap wall_points(const Grid& grid);
 

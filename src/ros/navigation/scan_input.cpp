@@ -37,6 +37,7 @@ void ScanInput::receive(const sensor_msgs::LaserScan& message, const std::string
     ROS_WARN_THROTTLE(10, "%s", refused.c_str());
     return;
   }
+  if (!watch_.remark().empty()) ROS_WARN_THROTTLE(60, "%s", watch_.remark().c_str());
   pending_ = message;
   use_pending();
 }

@@ -1,9 +1,6 @@
 #include "ros/navigation/slam_node.h"
 
-#include <optional>
-
-#include "navigation/map_file.h"
-#include "navigation/mrpt/mapper.h"
+#include "navigation/mapping/saved_map.h"
 #include "ros/navigation/map_service.h"
 #include "ros/navigation/map_topics.h"
 #include "ros/navigation/navigation_messages.h"
@@ -30,7 +27,7 @@ class SlamService {
 
  private:
   void use(const PlacedScan& scan) {
-    mapper_.update(scan.scan, scan.laser, scan.odometry.mean);
+    mapper_.update(scan.scan, scan.laser, scan.odometry);
     changed_ = used_ = true;
     stamp_ = scan.stamp;
   }
@@ -49,14 +46,12 @@ class SlamService {
   }
 
   std::string save(const std::string& path) {
-    const Grid grid = mapper_.grid();
-    write_map(path, grid);
-    return "saved " + path + ": " + std::to_string(grid.columns) + " x " + std::to_string(grid.rows) + " cells";
+    save_map(path, mapper_);
+    return "saved " + path + ": " + std::to_string(mapper_.graph().nodes.size()) + " nodes";
   }
 
   std::string load(const std::string& path) {
-    saved_ = read_map(path);
-    mapper_ = Mapper(*saved_, {});
+    mapper_ = load_map(path);
     used_ = false;
     changed_ = true;
     return "goes on with " + path + ", with the robot at its origin until initialpose is set";
@@ -65,17 +60,12 @@ class SlamService {
   void receive_pose(const geometry_msgs::PoseWithCovarianceStamped& message) {
     const auto pose = given_pose(message);
     if (!pose) return;
-    if (!saved_) {
-      ROS_WARN("initialpose is refused: this map began at the pose of the robot; load a saved map first");
-      return;
-    }
-    mapper_ = Mapper(*saved_, pose->mean);
+    mapper_.set_pose(pose->mean);
     used_ = false;
   }
 
   ros::NodeHandle handle_;
   Mapper mapper_;
-  std::optional<Grid> saved_;
   bool changed_ = false, used_ = false;
   ros::Time stamp_;
   MapTopics topics_{handle_};

@@ -1,5 +1,6 @@
 """Mapping and localisation in virtual time, on a short drive in the scene `room`."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -9,6 +10,7 @@ from robot_control.installed_files import share_file
 from bench.navigation.moved import distances
 from bench.navigation.scene_map import read_scene
 from bench.navigation.tour import LASER, drive, errors, new_loop
+from bench.navigation.trajectories import composed
 
 mrpt = pytest.importorskip("robot_control._mrpt", reason="built without MRPT: scripts/setup --navigation")
 
@@ -24,7 +26,7 @@ def sights():
 def mapped(sights, mapper):
     poses = []
     for sight in sights:
-        mapper.update(sight.scan, LASER, sight.odometry)
+        mapper.update(sight.scan, LASER, sight.odometry, sight.covariance)
         poses.append(mapper.pose)
     return np.array(poses)
 
@@ -52,35 +54,60 @@ def test_the_map_shows_the_true_walls_and_the_pose_in_it(sights):
 def test_a_map_begins_with_the_first_wall_in_sight(sights):
     mapper = mrpt.Mapper()
     nothing = dict(sights[0].scan, ranges=np.full(len(sights[0].scan["ranges"]), np.inf, dtype=np.float32))
-    mapper.update(nothing, LASER, sights[0].odometry)
+    mapper.update(nothing, LASER, sights[0].odometry, sights[0].covariance)
     mapped(sights[:20], mapper)
-    assert mapper.points > 100
+    assert len(mapper.nodes) == 1
     assert mapper.reason == ""
 
 
 def test_what_is_seen_again_adds_little(sights):
     mapper = mrpt.Mapper()
     mapped(sights, mapper)
-    once = mapper.points
+    once = len(mapper.nodes)
     for _ in range(4):
         mapped(sights[::-1], mapper)
         mapped(sights, mapper)
-    assert mapper.points < 1.3 * once
+    assert len(mapper.nodes) < 1.3 * once
 
 
 def test_a_saved_map_goes_on_where_the_robot_is(sights, grid):
     """The odometry begins again, at another place of the map."""
     again = sights[len(sights) // 2 :]
-    mapper = mrpt.Mapper(grid, again[0].truth)
+    mapper = mrpt.Mapper(grid)
+    mapper.set_pose(again[0].truth)
     off = errors(again, mapped(again, mapper))
     assert np.max(np.hypot(off[:, 0], off[:, 1])) < 0.08
 
 
+def test_a_saved_map_with_its_graph_goes_on_as_if_it_had_not_been_saved(sights, tmp_path):
+    first, rest = sights[: len(sights) // 2], sights[len(sights) // 2 :]
+    mapper = mrpt.Mapper()
+    mapped(first, mapper)
+    mapper.save(str(tmp_path / "house.yaml"))
+    again = mrpt.Mapper.load(str(tmp_path / "house.yaml"))
+    assert again.nodes == mapper.nodes
+    again.set_pose(mapper.pose)
+    off = errors(rest, mapped(rest, again))
+    assert np.max(np.hypot(off[:, 0], off[:, 1])) < 0.05
+    assert len(again.nodes) < 1.3 * len(mapper.nodes)
+
+
+def test_a_robot_whose_odometry_jumps_is_found_in_its_own_map(sights):
+    half = len(sights) // 2
+    mapper = mrpt.Mapper()
+    mapped(sights[:half], mapper)
+    jump = np.array([0.8, 0.7, 0.3])
+    for sight in sights[half:]:
+        mapper.update(sight.scan, LASER, composed(jump, sight.odometry), sight.covariance)
+    assert mapper.reason == ""
+    assert np.hypot(*(np.array(mapper.pose) - sights[-1].truth)[:2]) < 0.1
+
+
 def test_a_scan_of_another_place_does_not_change_the_map(sights, grid):
-    mapper = mrpt.Mapper(grid, (0.0, 0.0, 0.0))
-    elsewhere = list(drive(new_loop("loop", 3), ROUND))[:20]
-    mapped(elsewhere, mapper)
-    assert "drive back to a mapped area" in mapper.reason
+    mapper = mrpt.Mapper(grid)
+    ranges = np.full(len(sights[0].scan["ranges"]), 0.5, dtype=np.float32)
+    mapped([replace(sight, scan=dict(sight.scan, ranges=ranges)) for sight in sights[:20]], mapper)
+    assert "drive on in a mapped area" in mapper.reason
     assert np.array_equal(mapper.map[3] >= 65, grid[3] >= 65)
 
 
@@ -109,7 +136,7 @@ def test_a_map_whose_origin_lies_within_a_cell_keeps_its_walls_and_places(sights
     x, y, resolution, cells = grid
     shift = np.array([0.5 * resolution, -0.3 * resolution, 0.0])
     moved = (x + shift[0], y + shift[1], resolution, cells)
-    assert np.array_equal(mrpt.Mapper(moved, (0.0, 0.0, 0.0)).map[3] >= 65, cells >= 65)
+    assert np.array_equal(mrpt.Mapper(moved).map[3] >= 65, cells >= 65)
     localizer, given = mrpt.Localizer(moved, 1), mrpt.Localizer(grid, 1)
     localizer.set_pose(sights[0].truth + shift, KNOWN)
     given.set_pose(sights[0].truth, KNOWN)
