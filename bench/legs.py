@@ -48,6 +48,9 @@ PARTS = (
     "leaning_walks",
     "weak_hips",
     "slopes",
+    "steps",
+    "stairs",
+    "terrain",
 )
 SEEDS = {
     "postures": 8,
@@ -67,6 +70,9 @@ SEEDS = {
     "leaning_walks": 84,
     "weak_hips": 50,
     "slopes": 8,
+    "steps": 40,
+    "stairs": 40,
+    "terrain": 40,
 }
 """of each robot; others have one"""
 OWN_ROBOT = ("cost", "walking_cost", "pose", "circle", "odometry", "contact", "trot", "gaits")
@@ -176,6 +182,8 @@ WITHOUT_BOUND = (
     "mean error of",
     "error of height",
     "stands on ",
+    "crossed, ",
+    "speed, ",
 )
 """beginnings of figures that are measured alone"""
 

@@ -40,7 +40,10 @@ constexpr NamedRow kRows[] = {{"postures", postures},
                               {"walking_replayed", walking_replayed},
                               {"leaning_walks", leaning_walks},
                               {"weak_hips", weak_hips},
-                              {"slopes", slopes}};
+                              {"slopes", slopes},
+                              {"steps", steps},
+                              {"stairs", stairs},
+                              {"terrain", terrain}};
 
 int run(int argc, char** argv) {
   const auto found = std::find_if(std::begin(kRows), std::end(kRows),

@@ -77,6 +77,14 @@ void weak_hips(const LegModel& model, std::uint64_t seed, WorstValues& worst);
 /// A robot that lies on slopes of 10, 15 and 20° is to stand up. The seed chooses one of eight headings.
 void slopes(const LegModel& model, std::uint64_t seed, WorstValues& worst);
 
+/// Walks of 0.4 m/s over a course, with the errors of the field. Five consecutive seeds begin at five places and
+/// headings. Heights are those of a leg of kReferenceLeg. A step up, and down again.
+void steps(const LegModel& model, std::uint64_t seed, WorstValues& worst);
+/// Five stairs up, and down again.
+void stairs(const LegModel& model, std::uint64_t seed, WorstValues& worst);
+/// Rough floors, bars, a gap and a patch of ice.
+void terrain(const LegModel& model, std::uint64_t seed, WorstValues& worst);
+
 inline constexpr double kPi = 3.14159265358979323846;
 inline constexpr double kSway = 0.5;            ///< Hz
 inline constexpr double kTurnedOver = kPi / 3;  ///< rad

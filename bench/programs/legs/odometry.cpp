@@ -102,6 +102,9 @@ void drive(const LegModel& model, const Course& course, std::uint64_t seed, Wors
   };
   run(course.seconds, [&](double t) { return walk(course.speed(t)); });
   run(kStand, [](double) { return Request{}; });
+  if (robot.permit().causes != 0)
+    std::fprintf(stderr, "%s, seed %llu: stopped by %s\n", course.name.c_str(), static_cast<unsigned long long>(seed),
+                 robot.causes().c_str());
   const Difference end(robot.state().base, robot.truth());
   const double error = 100 * end.pose.head<2>().norm() / travelled;
   const Vector3d plain = vector_of(beside.state().plain.position) - vector_of(robot.truth().pose_world.position);

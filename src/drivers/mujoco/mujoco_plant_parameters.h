@@ -39,6 +39,37 @@ inline Keys keys(LaserParameters& laser) {
   };
 }
 
+enum class TerrainKind { kNone, kStairs, kRough, kBars, kGap, kIce };
+
+inline std::vector<Word> words_of(TerrainKind) {
+  return {{"none", TerrainKind::kNone}, {"stairs", TerrainKind::kStairs}, {"rough", TerrainKind::kRough},
+          {"bars", TerrainKind::kBars}, {"gap", TerrainKind::kGap},       {"ice", TerrainKind::kIce}};
+}
+
+/// An uneven floor before the robot (terrain.h), in the map `terrain` of the plant's block.
+struct TerrainParameters {
+  TerrainKind kind = TerrainKind::kNone;
+  double height = 0.1;      ///< m
+  double length = 0.3;      ///< m
+  std::uint64_t count = 5;  ///< steps, rows of tiles or bars
+  double distance = 0.75;   ///< m
+  double heading = 0;       ///< rad
+  double friction = 1;      ///< of the boxes; ice has kIceFriction of it
+};
+
+inline Keys keys(TerrainParameters& terrain) {
+  const std::string_view group = "terrain";
+  return {
+      {"kind", &terrain.kind, {}, 0, 0, 0, {}, group},
+      {"height", &terrain.height, "m", 0, 1, 0, {}, group},
+      {"length", &terrain.length, "m", 0.02, 100, 0, {}, group},
+      {"count", &terrain.count, {}, 1, 100, 0, {}, group},
+      {"distance", &terrain.distance, "m", 0, 100, 0, {}, group},
+      {"heading", &terrain.heading, "rad", -3.2, 3.2, 0, {}, group},
+      {"friction", &terrain.friction, {}, 0, 10, 0, {}, group},
+  };
+}
+
 enum class TyreModel {
   kBrush,   ///< tyre.h: Coulomb friction that is also correct while sliding
   kNative,  ///< MuJoCo's own contact friction
@@ -65,8 +96,10 @@ struct MujocoPlantParameters : Errors {
   // These members describe the ground.
   TyreModel tyre = TyreModel::kBrush;
   std::optional<double>
-      ground_friction;  ///< friction of all the ground; without it each shape of the scene has its own
-  double slope = 0;     ///< rad by which the whole world is tilted: uphill along x of the start pose
+      ground_friction;       ///< friction of all the ground; without it each shape of the scene has its own
+  double slope = 0;          ///< rad by which the whole world is tilted
+  double slope_heading = 0;  ///< rad, direction uphill from x of the start pose
+  TerrainParameters terrain;
 
   // These members describe the brake of each wheel. Missing values are derived from the robot
   // (gate/wheeled/wheel_stop.h).
@@ -125,6 +158,7 @@ inline Keys keys(MujocoPlantParameters& plant) {
           {"tyre", &plant.tyre},
           {"ground_friction", &plant.ground_friction, {}, 0, 10, kOptional},
           {"slope", &plant.slope, "rad", -1, 1},
+          {"slope_heading", &plant.slope_heading, "rad", -3.2, 3.2},
           {"brake_effort", &plant.brake_effort, "N·m", 0.001, 10000, kOptional},
           {"brake_damping", &plant.brake_damping, "N·m·s/rad", 0, 10000, kOptional},
           {"brake_stiffness", &plant.brake_stiffness, "N·m/rad", 0, 1.0e6, kOptional},
@@ -163,6 +197,7 @@ inline Keys keys(MujocoPlantParameters& plant) {
           {"push_duration", &plant.push_duration, "s", 0, 1.0e6, kZeroIsOff},
       },
       keys(plant.laser),
+      keys(plant.terrain),
   });
 }
 

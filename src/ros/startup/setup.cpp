@@ -30,8 +30,8 @@ std::string installed_config() {
 /// Keys of a block that launch files set from their arguments; roslaunch prints them.
 constexpr const char* kSetByLaunch =
     "driver drives urdf kind clock command_script bus wait_for_nodes wait_for_telemetry latch_file directory "
-    "record black_box clearance scene seed cycles laser.rate map map_frame initial_pose speed "
-    "unknown_is_free";
+    "record black_box clearance scene seed cycles terrain.kind laser.rate map map_frame initial_pose "
+    "speed unknown_is_free";
 
 constexpr const char* kYamlPath = "the path of a YAML file";
 

@@ -73,7 +73,7 @@ class Writer {
     write_body(0, base);
     // A viewer then opens with the robot in view instead of all the ground.
     text += "<statistic extent=\"1\"" + attribute("center", mjcf_numbers(base.translation())) + "/>\n";
-    text += "<asset>\n" + assets_ + "</asset>\n<worldbody>\n" + bodies_ + "</worldbody>\n";
+    text += "<asset>\n" + assets_ + "</asset>\n<worldbody>\n" + place.terrain + bodies_ + "</worldbody>\n";
     text += "<equality>\n" + equalities_ + "</equality>\n<sensor>\n";
     text += "<gyro" + attribute("name", kMjcfGyro) + attribute("site", kMjcfImu) +
             " noise=\"0\" cutoff=\"0\"/>\n</sensor>\n</mujoco>\n";

@@ -53,6 +53,7 @@ std::string mjcf_wheel_name(std::size_t wheel);
 struct MjcfPlace {
   std::string scene_file;                           ///< scene that the text includes; empty: the robot alone
   std::array<double, 7> pose{0, 0, 0, 1, 0, 0, 0};  ///< pose of the base: x y z, quaternion w x y z
+  std::string terrain;                              ///< shapes of the body world
   bool at_rest = false;                             ///< the bodies lie where their joints rest, not at zero
 };
 

@@ -16,6 +16,7 @@
 
 #include "drivers/driver.h"
 #include "drivers/mujoco/model/mjcf.h"
+#include "drivers/mujoco/model/terrain.h"
 #include "drivers/mujoco/mujoco_errors.h"
 #include "files/given_path.h"
 #include "files/input_file.h"
@@ -130,7 +131,7 @@ int find(const mjModel& model, mjtObj type, const std::string& name) {
   return mj_name2id(&model, type, name.c_str());
 }
 
-MjcfPlace place_of(const mjModel& scene, const std::filesystem::path& path, double height) {
+MjcfPlace place_of(const mjModel& scene, const std::filesystem::path& path, const Terrain& terrain, double height) {
   const int site = find(scene, mjOBJ_SITE, kMjcfStart);
   if (site < 0) {
     throw DriverError(
@@ -142,10 +143,11 @@ MjcfPlace place_of(const mjModel& scene, const std::filesystem::path& path, doub
   const mjtNum* matrix = data->site_xmat + 9 * site;
   MjcfPlace place;
   place.scene_file = path.filename().string();
-  for (int axis = 0; axis < 3; ++axis) {
-    place.pose[static_cast<std::size_t>(axis)] = data->site_xpos[3 * site + axis] + height * matrix[3 * axis + 2];
-  }
+  mju_copy3(place.pose.data(), data->site_xpos + 3 * site);
   mju_mat2Quat(place.pose.data() + 3, matrix);
+  place.terrain = terrain.mjcf(place.pose);
+  const double above = height + terrain.start_height();
+  for (int axis = 0; axis < 3; ++axis) place.pose[static_cast<std::size_t>(axis)] += above * matrix[3 * axis + 2];
   return place;
 }
 
@@ -158,17 +160,18 @@ void check_mass(const MujocoModel& robot, const std::string& path) {
 }
 
 // Sets the options of the plant; `start` is the pose of the base at its start.
-void set_options(mjModel& model, double timestep, double slope, const std::array<double, 7>& start) {
+void set_options(mjModel& model, double timestep, const MujocoPlantParameters& parameters,
+                 const std::array<double, 7>& start) {
   model.opt.timestep = timestep;
   model.opt.integrator = mjINT_EULER;
   model.opt.solver = mjSOL_NEWTON;
   model.opt.cone = mjCONE_ELLIPTIC;
   model.opt.impratio = 100;
-  if (slope == 0) return;
-  const mjtNum lateral[3] = {0, 1, 0};
+  if (parameters.slope == 0) return;
+  const mjtNum lateral[3] = {-std::sin(parameters.slope_heading), std::cos(parameters.slope_heading), 0};
   mjtNum axis[3], turn[4];
   mju_rotVecQuat(axis, lateral, start.data() + 3);
-  mju_axisAngle2Quat(turn, axis, slope);
+  mju_axisAngle2Quat(turn, axis, parameters.slope);
   const mjtNum level[3] = {model.opt.gravity[0], model.opt.gravity[1], model.opt.gravity[2]};
   mju_rotVecQuat(model.opt.gravity, level, turn);
 }
@@ -244,7 +247,8 @@ MujocoModel compiled(const MachineModel& robot, const MujocoPlantParameters& par
   result.substeps = static_cast<int>(std::ceil(period / kMaxStep - 1e-9));
   const double step = period / result.substeps;
   result.robot = true_robot(robot, parameters, step);
-  MjcfPlace place = place_of(*load(scene.string(), nullptr, scene.string()), scene, standing_height(result.robot));
+  MjcfPlace place = place_of(*load(scene.string(), nullptr, scene.string()), scene,
+                             Terrain(parameters.terrain, parameters.seed), standing_height(result.robot));
 
   place.at_rest = at_rest;
   const std::string name = scene.stem().string() + "+robot.xml";
@@ -252,7 +256,7 @@ MujocoModel compiled(const MachineModel& robot, const MujocoPlantParameters& par
   files.add(name, robot_mjcf(result.robot, parameters, place));
   // The text is loaded in the scene's directory, so that relative paths in the scene stay valid.
   result.model = load((scene.parent_path() / name).string(), files.get(), robot.source + " in scene " + scene.string());
-  set_options(*result.model, step, parameters.slope, place.pose);
+  set_options(*result.model, step, parameters, place.pose);
   apply_angles(result.robot, *result.model);
   find_addresses(result);
   for (std::size_t joint = 0; at_rest && joint < result.robot.joints.size(); ++joint)
