@@ -68,6 +68,7 @@ void Estimator::step(const SensorFrame& sensors, double dt, StateFrame& out) noe
 
 void Estimator::advance(const SensorFrame& sensors, double dt) noexcept {
   State& s = state_;
+  s.core.show(dt);
   read(sensors, dt);
   if (std::exchange(s.restart_pending, false)) {
     s.core.shift(0, 0, square(Tuning::kRestart) + square(s.wheels.mean_speed() * dt));

@@ -30,7 +30,7 @@ void Estimator::fill(const SensorFrame& sensors, StateFrame& out) const noexcept
 
 void Estimator::fill_pose(BaseState& base) const noexcept {
   const Prediction ahead = prediction();
-  PlanarPose middle = state_.core.pose();
+  PlanarPose middle = state_.core.shown_pose();
   middle.yaw += ahead.turn;
   const Turn yaw(middle.yaw);
   middle.x += yaw.cos * ahead.distance;

@@ -25,6 +25,7 @@ void PlanarCore::forget(int first, int count) noexcept {
 void PlanarCore::place(const PlanarPose& pose) noexcept {
   forget(kX, 4);
   (*state_).segment<4>(kX) << pose.x, pose.y, pose.yaw, pose.yaw;
+  (*hidden_).setZero();
   doubt_ = apart_ = 0;
   placed_x_ = pose.x;
   placed_y_ = pose.y;
@@ -189,12 +190,14 @@ void PlanarCore::correct(Vector gain, const Vector& ph, double s, double innovat
   (*held_).segment(kX, held) += change.segment(kX, held);
   change.segment(kX, held).setZero();
   *state_ += change;
+  *hidden_ += change.segment<3>(kX);
   (*state_)[kOffset] = std::clamp((*state_)[kOffset], -Tuning::kMaxOffset, Tuning::kMaxOffset);
   const Matrix half = gain * (s / 2 * gain - ph).transpose();
   *covariance_ += half + half.transpose();
 }
 
 void PlanarCore::apply_held(int first, int count) noexcept {
+  if (first == kX) *hidden_ += (*held_).segment<3>(kX);
   (*state_).segment(first, count) += (*held_).segment(first, count);
   (*held_).segment(first, count).setZero();
 }
@@ -213,6 +216,7 @@ void PlanarCore::rest(double mean, double variance, bool keeps_pose) noexcept {
 Eigen::Matrix4d PlanarCore::pose_covariance() const noexcept {
   const Eigen::Vector4d held = (*held_).head<4>();
   Eigen::Matrix4d covariance = (*covariance_).topLeftCorner<4, 4>() + held * held.transpose();
+  covariance.bottomRightCorner<3, 3>() += *hidden_ * (*hidden_).transpose();
   const double x = (*state_)[kX], y = (*state_)[kY];
   const Eigen::Vector4d across(0, doubted_y_ - y, x - doubted_x_, 1);
   covariance += square(doubt_) * across * across.transpose();

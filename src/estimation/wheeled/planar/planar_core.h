@@ -24,6 +24,8 @@
 /// The deviation of a state is that of P + δ δᵀ. A first rest measures b. It applies δ to the pose if that of the
 /// heading exceeds kSignificant deviations of P. These hold the walk of the bias and the noise of the rest.
 ///
+/// A correction moves the pose at once, and the shown pose by a low pass over kShowTime, so that odom does not jump.
+///
 /// An innovation beyond kHuber deviations widens its own to that. Beyond kGate deviations wheels and gyro contradict
 /// each other. The heading then follows the gyro. Its doubt, a deviation beside P, grows by the angle between both.
 /// Wheels that are dragged may turn the robot by any part of their own turn. Each block in which both agree takes
@@ -109,10 +111,15 @@ class PlanarCore {
   bool contradicted() const noexcept { return doubt_ > Tuning::kUnknownHeading; }
   /// Measures the bias by the gyro's mean at rest, rad/s. With `keeps_pose` the pose is not corrected.
   void rest(double mean, double variance, bool keeps_pose) noexcept;
+  /// The shown pose follows the corrections for dt s.
+  void show(double dt) noexcept { *hidden_ *= std::max(0.0, 1 - dt / Tuning::kShowTime); }
   void age(double dt) noexcept { (*covariance_)(kBias, kBias) += square(params_.gyro_bias_walk) * dt; }
   void open_bias(double variance) noexcept { (*covariance_)(kBias, kBias) += variance; }
 
   PlanarPose pose() const noexcept { return {(*state_)[kX], (*state_)[kY], (*state_)[kYaw]}; }
+  PlanarPose shown_pose() const noexcept {
+    return {(*state_)[kX] - (*hidden_)[0], (*state_)[kY] - (*hidden_)[1], (*state_)[kYaw] - (*hidden_)[2]};
+  }
   double bias() const noexcept { return (*state_)[kBias]; }                        ///< rad/s
   double ratio() const noexcept { return (*state_)[kRatio]; }                      ///< ε
   double base() const noexcept { return (*state_)[kBase]; }                        ///< β
@@ -124,7 +131,7 @@ class PlanarCore {
   }
 
   const Stored<Matrix>& covariance() const noexcept { return covariance_; }  ///< P, without doubt and held corrections
-  Eigen::Matrix4d pose_covariance() const noexcept;  ///< covariance of τ, x, y, yaw, with the doubt
+  Eigen::Matrix4d pose_covariance() const noexcept;  ///< covariance of τ, x, y, yaw as shown, with the doubt
   double variance(int i) const noexcept { return std::max(0.0, (*covariance_)(i, i)) + square((*held_)[i]); }
   double deviation(int i) const noexcept { return std::sqrt(variance(i)); }
   double bias_variance() const noexcept { return variance(kBias); }  ///< (rad/s)²
@@ -144,7 +151,8 @@ class PlanarCore {
   PlanarCoreParams params_;
   Stored<Vector> state_;
   Stored<Matrix> covariance_;
-  Stored<Vector> held_;  ///< corrections that were not applied
+  Stored<Vector> held_;             ///< corrections that were not applied
+  Stored<Eigen::Vector3d> hidden_;  ///< corrections of x, y, yaw that are not shown yet
   bool turned_ = false;  ///< The first rest has corrected the pose.
   WheelNoise noise_;
   WheelCalibration start_;                ///< calibration at the start

@@ -161,6 +161,30 @@ PlanarCore rested_late(double bias) {
   return core;
 }
 
+// The rest corrects the path of 240 s at once, and odom follows without a jump.
+TEST(PlanarCoreShown, FollowsACorrectionByALowPass) {
+  constexpr double kBias = 0.1 * std::numbers::pi / 180, kCycle = 1e-3;
+  PlanarCore core = rested_late(kBias);
+  const PlanarPose pose = core.pose(), before = core.shown_pose();
+  const double corrected = std::hypot(pose.x - before.x, pose.y - before.y);
+  EXPECT_GT(corrected, 10);
+  EXPECT_NEAR(before.yaw, 240 * kBias, 1e-9) << "as it drove";
+  double farthest = 0;
+  PlanarPose last = before;
+  for (double time = 0; time < 10 * Tuning::kShowTime; time += kCycle) {
+    core.show(kCycle);
+    const PlanarPose shown = core.shown_pose();
+    farthest = std::max(farthest, std::hypot(shown.x - last.x, shown.y - last.y));
+    last = shown;
+  }
+  EXPECT_NEAR(farthest, corrected * kCycle / Tuning::kShowTime, 1e-6);
+  EXPECT_NEAR(last.x, pose.x, 1e-3 * corrected);
+  EXPECT_NEAR(last.y, pose.y, 1e-3 * corrected);
+  EXPECT_NEAR(last.yaw, pose.yaw, 1e-3);
+  core.place({1, 2, 3});
+  EXPECT_EQ(core.shown_pose().x, 1) << "a pose that is set is shown at once";
+}
+
 // A bias of 0.007 °/s is within its walk and the noise of the rest: the path stays, and its deviation holds the rest.
 TEST(CoreLateRest, TurnsNoPathWithinItsDeviation) {
   constexpr double kBias = 0.007 * std::numbers::pi / 180;
