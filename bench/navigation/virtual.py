@@ -79,6 +79,7 @@ class Robot:
         self._held_since = 0.0
         self._moved = 0.0
         self._follower: Follower | None = None
+        self._request = (0.0, 0.0)
         self._command = (0.0, 0.0)
         self._state = self._advance(self._command)
         self._problem = ""
@@ -156,13 +157,14 @@ class Robot:
         path = "none"
         while self.loop.time - begin < limit and not self._arrived():
             path = self._report(path)
-            state, reason, way, cancel = self.navigation.step(
-                self.loop.time, self._problem, self._assumed(), self._motion, path
+            state, reason, way, cancel, request = self.navigation.step(
+                self.loop.time, self._problem, self._assumed(), self._motion, path, self.speed
             )
-            if cancel:
+            if cancel or way is not None:
                 self._follower, path = None, "none"
-            if way is not None:
+            if way is not None and request is None:
                 self._follower, path = self._new_follower(way), "active"
+            self._request = request or (0.0, 0.0)
             if state in {"reached", "failed"}:
                 trip.state, trip.reason = state, reason
                 break
@@ -177,7 +179,7 @@ class Robot:
         return trip
 
     def _stand(self, trip: Trip) -> None:
-        self._follower = None
+        self._follower, self._request = None, (0.0, 0.0)
         for _ in range(STANDING):
             self._until_next_scan(trip)
 
@@ -202,7 +204,7 @@ class Robot:
         return "done" if follower.state is State.DONE else follower.reason
 
     def _follow(self) -> None:
-        self._command = (0.0, 0.0)
+        self._command = self._request
         if self._follower is not None and not self._follower.over:
             motion = self._follower.step(Pose(*self._assumed()), Motion(*self._motion), elapsed=STEP)
             self._command = (motion.linear, motion.angular)

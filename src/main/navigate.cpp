@@ -2,10 +2,9 @@
 
 int main(int argc, char** argv) {
   using namespace robot_control;
-  return run_node(
-      argc, argv,
-      {.name = "navigate",
-       .purpose = "Plans a path to a goal on the map, sends it to follow_path, and reports why a goal is not reached.",
-       .make = navigation::make_navigate,
-       .in_loop = false});
+  return run_node(argc, argv,
+                  {.name = "navigate",
+                   .purpose = "Steers to a goal on the map through follow_path, and reports why a goal is not reached.",
+                   .make = navigation::make_navigate,
+                   .in_loop = false});
 }

@@ -154,6 +154,13 @@ void Costmap::set_predicted(const std::vector<Point>& points) {
   }
 }
 
+void Costmap::unmark(const std::vector<Point>& points) {
+  for (const Point point : points) {
+    const Cell cell = grid_.cell_at(point.x, point.y);
+    if (grid_.contains(cell)) marked_[grid_.index(cell)] = kNotMarked;
+  }
+}
+
 void Costmap::block(Point point, double now) {
   const Cell at = grid_.cell_at(point.x, point.y);
   for (const Cell cell : {at, Cell{at.column - 1, at.row}, Cell{at.column + 1, at.row}, Cell{at.column, at.row - 1},
@@ -162,7 +169,7 @@ void Costmap::block(Point point, double now) {
   }
 }
 
-void Costmap::update(double now) {
+void Costmap::update(double now, bool predicted) {
   std::erase_if(blocked_, [&](const auto& cell) { return cell.second < now - kMemory; });
   std::vector<bool> occupied(grid_.cells.size());
   for (std::size_t i = 0; i < occupied.size(); ++i) {
@@ -170,7 +177,9 @@ void Costmap::update(double now) {
     occupied[i] = wall_distance_[i] == 0 || marked || (unknown_[i] && !unknown_is_free_);
   }
   if (std::isfinite(now)) {
-    for (const std::size_t cell : predicted_) occupied[cell] = true;
+    if (predicted) {
+      for (const std::size_t cell : predicted_) occupied[cell] = true;
+    }
     for (const auto& [cell, at] : blocked_) occupied[cell] = true;
   }
   distance_ = distances(occupied, grid_.columns, grid_.resolution, farthest_);

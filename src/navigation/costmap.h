@@ -75,8 +75,12 @@ class Costmap {
   /// kMemory, whatever a ray says: there is less room than the map and the scans show.
   void block(Point point, double now);
 
-  /// Updates the distances, which the functions below use. Takes about 20 ns a cell.
-  void update(double now);
+  /// Removes the marks at these points of moving objects, which are foreseen instead.
+  void unmark(const std::vector<Point>& points);
+
+  /// Updates the distances, which the functions below use; `predicted`: with the points of set_predicted. Takes about
+  /// 20 ns a cell.
+  void update(double now, bool predicted = true);
 
   bool occupied(Cell cell) const noexcept { return distance_[grid_.index(cell)] == 0; }
   bool unknown(Cell cell) const noexcept { return unknown_[grid_.index(cell)]; }

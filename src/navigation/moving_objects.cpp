@@ -123,4 +123,14 @@ std::vector<Point> predicted_points(const std::vector<MovingObject>& objects, co
   return places;
 }
 
+std::vector<MovingObject> foresee(std::vector<MovingObject> objects, const PlanarPose& base, Costmap& costmap) {
+  costmap.set_predicted(from_base_axes(predicted_points(objects, costmap.footprint()), base));
+  for (MovingObject& object : objects) {
+    object.points = from_base_axes(std::move(object.points), base);
+    object.velocity = from_base_axes({object.velocity}, {0, 0, base.yaw})[0];
+    costmap.unmark(object.points);
+  }
+  return objects;
+}
+
 }  // namespace robot_control::navigation

@@ -53,4 +53,8 @@ std::vector<MovingObject> in_base_axes(std::vector<MovingObject> objects, const 
 /// touch the outline at its present pose is left out: waiting there is no safer than driving on.
 std::vector<Point> predicted_points(const std::vector<MovingObject>& objects, const Footprint& footprint);
 
+/// Returns the objects, given in base axes, in the frame in which `base` is given. The costmap gets their predicted
+/// points for paths, and loses the marks of their present ones: the LocalController has their velocities.
+std::vector<MovingObject> foresee(std::vector<MovingObject> objects, const PlanarPose& base, Costmap& costmap);
+
 }  // namespace robot_control::navigation

@@ -14,7 +14,14 @@ namespace {
 
 /// s between two updates of the distances: 20 ns a cell are 5 % of one processor at most.
 double update_period(const Costmap& costmap) {
-  return std::max(0.2, 4e-7 * static_cast<double>(costmap.grid().cells.size()));
+  return 4e-7 * static_cast<double>(costmap.grid().cells.size());
+}
+
+/// Returns whether something moves within kEvadeDistance.
+bool near(const std::vector<MovingObject>& objects, const PlanarPose& pose) {
+  return std::ranges::any_of(objects, [&](const MovingObject& object) {
+    return std::hypot(object.points[0].x - pose.x, object.points[0].y - pose.y) < kEvadeDistance;
+  });
 }
 
 }  // namespace
@@ -36,10 +43,12 @@ void Navigator::begin(const PlanarPose& goal, double now) {
 void Navigator::wait(const std::string& reason, NavigatorOutput& out) {
   out.cancel = std::exchange(sent_, false);
   if (driven_) state_ = NavigatorState::kWaiting;
+  steering_ = false;
   reason_ = reason;
 }
 
 void Navigator::fail(const std::string& reason, NavigatorOutput& out) {
+  out = {};
   out.cancel = std::exchange(sent_, false);
   state_ = NavigatorState::kFailed;
   reason_ = reason;
@@ -62,33 +71,30 @@ NavigatorOutput Navigator::step(const NavigatorInput& input, Costmap* costmap) {
   out.state = state_;
   if (state_ == NavigatorState::kFailed) reason_ += input.explanation;
   if (state_ != NavigatorState::kReached) out.reason = reason_;
-  if (state_ == NavigatorState::kDriving) out.remaining = remaining(input.pose);
+  if (state_ == NavigatorState::kDriving) out.remaining = steering_ ? least_remaining_ : remaining(input.pose);
   return out;
 }
 
 void Navigator::plan(const NavigatorInput& input, Costmap& costmap, NavigatorOutput& out) {
   planned_at_ = input.now;
   costmap.update(input.now);
-  const PlanarPose stop = next_start(input), start = costmap.free(stop) ? stop : input.pose;
-  Plan found = plan_path(costmap, start, goal_);
+  Plan found = plan_path(costmap, input.pose, goal_);
   if (!found.problem.empty()) {
     const std::string blocked = found.problem;
-    if (state_ == NavigatorState::kDriving) {  // the present path may still be free for a while
-      reason_ = blocked;
-      return;
-    }
     if (!driven_) {
       costmap.update(std::numeric_limits<double>::infinity());  // the map alone
-      found = plan_path(costmap, start, goal_);
+      found = plan_path(costmap, input.pose, goal_);
       costmap.update(input.now);
       if (!found.problem.empty()) return fail(found.problem, out);
       driven_ = true;  // there is a path once the obstacle has gone
     }
     return wait(blocked, out);
   }
+  if (begin_steering(input, costmap, found, out)) return;
   if (state_ != NavigatorState::kDriving && attempts_++ <= kAttempts) progress_at_ = input.now;
   state_ = NavigatorState::kDriving;
   driven_ = sent_ = true;
+  steering_ = false;
   passed_ = 0;
   path_ = found;
   least_remaining_ = found.length;
@@ -96,45 +102,86 @@ void Navigator::plan(const NavigatorInput& input, Costmap& costmap, NavigatorOut
   out.path = std::move(found);
 }
 
-PlanarPose Navigator::next_start(const NavigatorInput& input) const {
-  const double ahead = input.motion.linear * input.motion.linear / (2 * kStopDeceleration);
-  PlanarPose start = input.pose;
-  if (state_ != NavigatorState::kDriving || ahead < kSpacing / 2) return start;
-  for (std::size_t i = passed_; i < path_.poses.size(); ++i) {
-    const double turn = std::abs(std::remainder(path_.poses[i].yaw - start.yaw, 2 * M_PI));
-    if (i > passed_ && turn > kCorner) break;
-    start = path_.poses[i];
-    if (std::hypot(start.x - input.pose.x, start.y - input.pose.y) > ahead) break;
+/// Returns false if the robot is near the goal, or stuck.
+bool Navigator::begin_steering(const NavigatorInput& input, Costmap& costmap, const Plan& way, NavigatorOutput& out) {
+  if (input.now < path_until_) return false;
+  costmap.update(input.now, false);
+  costs_at_ = -1e9;
+  const double left = update_costs(input, costmap);
+  if (!std::isfinite(left) || left < kApproach) return false;
+  if (state_ == NavigatorState::kPlanning) progress_at_ = input.now;
+  if (state_ != NavigatorState::kDriving) ++attempts_;
+  state_ = NavigatorState::kDriving;
+  driven_ = sent_ = steering_ = true;
+  steered_at_ = input.now;
+  least_remaining_ = left;
+  reason_.clear();
+  if (!controller_) controller_.emplace(costmap.footprint());
+  controller_->reset();
+  out.path = way;
+  steer(input, costmap, out);
+  return true;
+}
+
+void Navigator::steer(const NavigatorInput& input, Costmap& costmap, NavigatorOutput& out) {
+  if (input.now - updated_at_ >= update_period(costmap)) {
+    updated_at_ = input.now;
+    costmap.update(input.now, false);
   }
-  return start;
+  const double left = update_costs(input, costmap);
+  note_progress(input, left);
+  const bool paused = input.path.state == PathReport::State::kPaused;
+  if (paused || near(input.objects, input.pose)) steered_at_ = input.now;
+  const bool stuck = input.now - std::max(progress_at_, steered_at_) > kStuckTime;
+  if (left < kApproach || stuck) {
+    path_until_ = input.now + kStuckTime;
+    return plan(input, costmap, out);
+  }
+  out.request = controller_->step(input.limits, costmap, to_goal_, input.pose, input.motion, input.objects);
+  reason_ = input.now - progress_at_ > kReplanPeriod ? input.slowed_by : "";
+}
+
+double Navigator::update_costs(const NavigatorInput& input, const Costmap& costmap) {
+  if (input.now - costs_at_ >= kReplanPeriod) {
+    costs_at_ = input.now;
+    CostsToGoal found = costs_to(costmap, goal_, kNarrowFactor);
+    if (to_goal_.costs.empty() || std::isfinite(found.at(input.pose.x, input.pose.y))) to_goal_ = std::move(found);
+  }
+  return to_goal_.at(input.pose.x, input.pose.y);
 }
 
 void Navigator::drive(const NavigatorInput& input, Costmap& costmap, NavigatorOutput& out) {
+  if (input.path.state == PathReport::State::kFailed) {
+    if (attempts_ > kAttempts) return fail(input.path.reason, out);
+    state_ = NavigatorState::kWaiting;
+    steering_ = false;
+    reason_ = input.path.reason;
+    return;
+  }
+  if (steering_) return steer(input, costmap, out);
   if (input.path.state == PathReport::State::kDone) {
     state_ = path_.partial ? NavigatorState::kWaiting : NavigatorState::kReached;
     return;
   }
-  if (input.path.state == PathReport::State::kFailed) {
-    if (attempts_ > kAttempts) return fail(input.path.reason, out);
-    state_ = NavigatorState::kWaiting;
-    reason_ = input.path.reason;
-    return;
-  }
+  const bool paused = input.path.state == PathReport::State::kPaused;
+  const double left = update_costs(input, costmap);
+  if (!paused && input.now >= path_until_ && std::isfinite(left) && left > 2 * kApproach)
+    return plan(input, costmap, out);
   if (input.now - updated_at_ >= update_period(costmap)) {
     updated_at_ = input.now;
     costmap.update(input.now);
   }
-  const double free = free_distance(costmap, path_.poses, input.pose, passed_);
-  note_progress(input);
-  const bool blocked = free < kMinFreeDistance;
-  const bool ends = path_.partial && remaining(input.pose) < kWindow / 4;
-  if ((blocked || ends) && input.now - planned_at_ >= kReplanPeriod) plan(input, costmap, out);
-  if (blocked && !out.path && free < kStopDistance) wait(reason_.empty() ? "the path is blocked" : reason_, out);
-  if (!blocked) reason_ = input.now - progress_at_ > kReplanPeriod ? input.slowed_by : "";
+  const bool blocked = free_distance(costmap, path_.poses, input.pose, passed_) < kStopDistance;
+  note_progress(input, remaining(input.pose));
+  if (blocked && !paused) {
+    if (input.now - planned_at_ >= kReplanPeriod) plan(input, costmap, out);
+    if (state_ == NavigatorState::kDriving && !out.path) wait("the path is blocked", out);
+  } else {
+    reason_ = input.now - progress_at_ > kReplanPeriod ? input.slowed_by : "";
+  }
 }
 
-void Navigator::note_progress(const NavigatorInput& input) {
-  const double left = remaining(input.pose);
+void Navigator::note_progress(const NavigatorInput& input, double left) {
   if (left < least_remaining_ - kMinProgress) {
     least_remaining_ = left;
     attempts_ = 0;

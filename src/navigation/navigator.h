@@ -1,23 +1,25 @@
 #pragma once
-/// Brings a robot to a goal: plans, watches the path, plans again, waits and gives up. It reads no clock and knows no
-/// ROS; follow_path drives what it plans.
+/// Brings a robot to a goal: plans, drives, watches, waits and gives up. It reads no clock and knows no ROS;
+/// follow_path drives the velocities and paths that it requests.
 ///
 ///   planning   the first plan of a goal; a goal that the map alone does not allow is refused at once
-///   driving    follow_path has a path. A path that is blocked within kMinFreeDistance is replaced, at most once per
-///              kReplanPeriod. If there is no other path, the robot drives on until kStopDistance before the obstacle.
-///              A path to the border of a window is replaced when less than kWindow/4 of it remain
-///   waiting    nothing is driven: the path is blocked, or the laser, the map or the pose cannot be trusted. The goal is
-///              given up after kNoProgressTime; before the first path, after kFirstPathTime
+///   driving    while the cost to the goal is above kApproach, a LocalController chooses the velocity. The costs are
+///              computed again every kReplanPeriod; those that do not reach the robot are not used, because an obstacle
+///              may go away. The rest is a path, which ends exactly at the goal. A path also replaces the
+///              LocalController for kStuckTime if the robot came no nearer for as long, and nothing moved within
+///              kEvadeDistance of it
+///   waiting    nothing is driven: there is no path, it is blocked within kStopDistance, or the laser, the map or the
+///              pose cannot be trusted. The goal is given up after kNoProgressTime; before the first path, after
+///              kFirstPathTime
 ///
-/// Every path begins where the robot can stand at the earliest. This is v²/2a ahead on the path that it replaces, or at
-/// the next corner of that. It is the pose of a robot that stands.
-///
-/// A path that follow_path gave up is planned again, kAttempts times without kMinProgress in between. No later path
-/// from standstill restarts these times. follow_path refuses what a stop of the robot has revoked.
+/// After follow_path has given up, a path is planned again, kAttempts times without kMinProgress in between. No later
+/// path from standstill restarts these times. follow_path refuses what a stop of the robot has revoked. While it is
+/// paused, it keeps what it has.
 
 #include <optional>
 #include <string>
 
+#include "navigation/local_controller.h"
 #include "navigation/planner.h"
 
 namespace robot_control::navigation {
@@ -25,16 +27,17 @@ namespace robot_control::navigation {
 inline constexpr double kNoProgressTime = 20;  ///< s
 inline constexpr double kFirstPathTime = 2;    ///< s, in which a map, a scan and tf arrive after a start
 inline constexpr double kReplanPeriod = 1;     ///< s
-inline constexpr double kMinFreeDistance = 4;  ///< m ahead of the robot; farther obstacles may have gone until then
 inline constexpr double kStopDistance = 0.6;   ///< m
+inline constexpr double kApproach = 0.8;       ///< m of cost to the goal
+inline constexpr double kStuckTime = 4;        ///< s
+inline constexpr double kEvadeDistance = 2;    ///< m
+inline constexpr double kNarrowFactor = 5;     ///< of the costs where the robot cannot turn
 inline constexpr double kMinProgress = 0.3;    ///< m
 inline constexpr int kAttempts = 3;
-inline constexpr double kStopDeceleration = 1.0;  ///< m/s², of the shipped parameters
-inline constexpr double kCorner = 0.6;            ///< rad, at which follow_path turns on the spot
 
-/// The end of the last path that was sent to follow_path.
+/// The state of the last path that was sent to follow_path.
 struct PathReport {
-  enum class State { kNone, kActive, kDone, kFailed };
+  enum class State { kNone, kActive, kPaused, kDone, kFailed };
   State state = State::kNone;
   std::string reason;  ///< of a failure
 };
@@ -47,6 +50,8 @@ struct NavigatorInput {
   PlanarPose pose;          ///< of the base in the map
   PlanarMotion motion;      ///< as measured
   PathReport path;
+  DriveLimits limits;                 ///< of the goal
+  std::vector<MovingObject> objects;  ///< in the map
 };
 
 enum class NavigatorState { kIdle, kPlanning, kDriving, kWaiting, kReached, kFailed };
@@ -57,9 +62,11 @@ const char* name_of(NavigatorState state);
 struct NavigatorOutput {
   NavigatorState state = NavigatorState::kIdle;
   std::string reason;        ///< why it waits, failed or does not come nearer
-  double remaining = 0;      ///< m of the path
+  double remaining = 0;      ///< m of the path, of which those near obstacles count up to twice
   std::optional<Plan> path;  ///< to be sent to follow_path in place of what it drives
-  bool cancel = false;       ///< follow_path is to stop
+  std::optional<PlanarMotion>
+      request;          ///< the velocity to be driven; that path, and those before it, only show the way
+  bool cancel = false;  ///< follow_path is to stop
 };
 
 class Navigator {
@@ -83,9 +90,11 @@ class Navigator {
   void fail(const std::string& reason, NavigatorOutput& out);
   void plan(const NavigatorInput& input, Costmap& costmap, NavigatorOutput& out);
   void drive(const NavigatorInput& input, Costmap& costmap, NavigatorOutput& out);
-  void note_progress(const NavigatorInput& input);
+  bool begin_steering(const NavigatorInput& input, Costmap& costmap, const Plan& way, NavigatorOutput& out);
+  void steer(const NavigatorInput& input, Costmap& costmap, NavigatorOutput& out);
+  double update_costs(const NavigatorInput& input, const Costmap& costmap);
+  void note_progress(const NavigatorInput& input, double left);
   double remaining(const PlanarPose& pose) const;
-  PlanarPose next_start(const NavigatorInput& input) const;
 
   NavigatorState state_ = NavigatorState::kIdle;
   PlanarPose goal_;
@@ -97,6 +106,10 @@ class Navigator {
   double least_remaining_ = 0;                    // m
   double planned_at_ = -1e9, updated_at_ = -1e9;  // s
   int attempts_ = 0;
+  std::optional<LocalController> controller_;
+  CostsToGoal to_goal_;
+  bool steering_ = false;
+  double costs_at_ = -1e9, steered_at_ = -1e9, path_until_ = -1e9;  // s
   std::string reason_;
 };
 

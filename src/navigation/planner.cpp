@@ -56,42 +56,6 @@ bool at_border(const Costmap& costmap, Cell cell) {
          !(costmap.interior({cell.column - 1, cell.row - 1}) && costmap.interior({cell.column + 1, cell.row + 1}));
 }
 
-/// Costs from each cell to the goal without headings; kUnreached where there is no path even for the inscribed circle.
-std::vector<float> costs_to(const Costmap& costmap, const PlanarPose& goal) {
-  const Grid& grid = costmap.grid();
-  std::vector<float> costs(grid.cells.size(), kUnreached);
-  std::priority_queue<Open> open;
-  const auto begin = [&](std::size_t index, double cost) {
-    costs[index] = static_cast<float>(cost);
-    open.push({costs[index], index});
-  };
-  if (beyond(costmap, goal)) {
-    for (std::size_t i = 0; i < costs.size(); ++i) {
-      const Cell cell = grid.cell_of(i);
-      if (at_border(costmap, cell) && costmap.distance(cell) >= costmap.footprint().inscribed)
-        begin(i, std::hypot(grid.x_of(cell.column) - goal.x, grid.y_of(cell.row) - goal.y));
-    }
-  } else {
-    begin(grid.index(grid.cell_at(goal.x, goal.y)), 0);
-  }
-  while (!open.empty()) {
-    const Open top = open.top();
-    open.pop();
-    if (top.cost > costs[top.state]) continue;
-    const Cell cell = grid.cell_of(top.state);
-    for (const Cell step : kSteps) {
-      const Cell next{cell.column + step.column, cell.row + step.row};
-      if (!grid.contains(next) || costmap.distance(next) < costmap.footprint().inscribed) continue;
-      const double length = std::hypot(step.column, step.row) * grid.resolution;
-      const auto cost = static_cast<float>(top.cost + length * costmap.step_cost(next));
-      if (cost >= costs[grid.index(next)]) continue;
-      costs[grid.index(next)] = cost;
-      open.push({cost, grid.index(next)});
-    }
-  }
-  return costs;
-}
-
 /// Returns whether the outline may go from one pose to the next. The next pose is free, or neither is free and the next
 /// one has no less clearance.
 bool may_go(const Costmap& costmap, const PlanarPose& from, const PlanarPose& to) {
@@ -111,7 +75,7 @@ class Search {
         goal_(goal),
         beyond_(beyond(costmap, goal)),
         goal_cell_(grid_.cell_at(goal.x, goal.y)),
-        to_goal_(costs_to(costmap, goal)) {
+        to_goal_(costs_to(costmap, goal, 1).costs) {
     // The turn from the start's own heading to that of a sector may be free where the nearest sector is not.
     const Cell cell = grid_.cell_at(start.x, start.y);
     for (int i = 0; i < kSectors; ++i) {
@@ -265,6 +229,50 @@ std::string goal_problem(const Costmap& costmap, const PlanarPose& goal) {
 }
 
 }  // namespace
+
+double CostsToGoal::at(double x, double y) const noexcept {
+  const Cell cell = grid.cell_at(x, y);
+  return grid.contains(cell) ? costs[grid.index(cell)] : kUnreached;
+}
+
+CostsToGoal costs_to(const Costmap& costmap, const PlanarPose& goal, double narrow_factor) {
+  const double narrow = costmap.footprint().half_width + kPadding;
+  const Grid& grid = costmap.grid();
+  CostsToGoal result{{grid.columns, grid.rows, grid.resolution, grid.origin_x, grid.origin_y, {}},
+                     std::vector(grid.cells.size(), kUnreached)};
+  std::vector<float>& costs = result.costs;
+  std::priority_queue<Open> open;
+  const auto begin = [&](std::size_t index, double cost) {
+    costs[index] = static_cast<float>(cost);
+    open.push({costs[index], index});
+  };
+  if (beyond(costmap, goal)) {
+    for (std::size_t i = 0; i < costs.size(); ++i) {
+      const Cell cell = grid.cell_of(i);
+      if (at_border(costmap, cell) && costmap.distance(cell) >= costmap.footprint().inscribed)
+        begin(i, std::hypot(grid.x_of(cell.column) - goal.x, grid.y_of(cell.row) - goal.y));
+    }
+  } else {
+    begin(grid.index(grid.cell_at(goal.x, goal.y)), 0);
+  }
+  while (!open.empty()) {
+    const Open top = open.top();
+    open.pop();
+    if (top.cost > costs[top.state]) continue;
+    const Cell cell = grid.cell_of(top.state);
+    for (const Cell step : kSteps) {
+      const Cell next{cell.column + step.column, cell.row + step.row};
+      if (!grid.contains(next) || costmap.distance(next) < costmap.footprint().inscribed) continue;
+      const double length = std::hypot(step.column, step.row) * grid.resolution;
+      const double factor = costmap.distance(next) < narrow ? narrow_factor : 1;
+      const auto cost = static_cast<float>(top.cost + length * factor * costmap.step_cost(next));
+      if (cost >= costs[grid.index(next)]) continue;
+      costs[grid.index(next)] = cost;
+      open.push({cost, grid.index(next)});
+    }
+  }
+  return result;
+}
 
 Plan plan_path(const Costmap& costmap, const PlanarPose& start, const PlanarPose& goal) {
   constexpr double kSamePosition = 0.04;  // m; the end of a path is as exact

@@ -27,6 +27,20 @@ struct Plan {
   bool partial = false;           ///< the path ends at the border of a window; the goal is outside
 };
 
+/// The cost from each cell to a goal, without headings. It is infinite where there is no path even for the inscribed
+/// circle.
+struct CostsToGoal {
+  Grid grid;  ///< without cells
+  std::vector<float> costs;
+
+  /// Returns that of the cell; infinite outside the grid.
+  double at(double x, double y) const noexcept;
+};
+
+/// The costs are length times Costmap::step_cost, and `narrow_factor` times that where the outline cannot be along any
+/// heading but one. A goal outside a window counts from the window's border.
+CostsToGoal costs_to(const Costmap& costmap, const PlanarPose& goal, double narrow_factor);
+
 /// The costmap is up to date (Costmap::update). A start that is not free may be left, as long as every step is freer
 /// than the start or free. A path to a goal outside a window ends at its border, where its cost and the straight
 /// remaining distance are the least together. Else a goal is refused outside the map, in an obstacle, in unknown

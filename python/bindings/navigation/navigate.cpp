@@ -53,8 +53,8 @@ class Navigation {
     costmap_.centre_on({place[0], place[1]}, now);
     consistency_.update(costmap_.insert(scan, composed(planar_of(place), planar_of(sensor)), now));
     const PlanarPose base = planar_of(odometry);
-    const auto seen = in_base_axes(objects_.update(scan, composed(base, planar_of(sensor)), now), base);
-    costmap_.set_predicted(from_base_axes(predicted_points(seen, costmap_.footprint()), planar_of(place)));
+    moving_ = foresee(in_base_axes(objects_.update(scan, composed(base, planar_of(sensor)), now), base),
+                      planar_of(place), costmap_);
     const std::string problem = watch_.problem(now);
     return problem.empty() ? consistency_.problem() : problem;
   }
@@ -69,21 +69,29 @@ class Navigation {
   }
   void begin(const Pose& goal, double now) { navigator_.begin(planar_of(goal), now); }
 
-  /// `motion`: linear [m/s], angular [rad/s]. `path`: "none", "active", "done" or why it failed. Returns state, reason,
-  /// path or None, whether to stop.
+  /// `motion`: linear [m/s], angular [rad/s]. `path`: "none", "active", "done" or why it failed. `speed`: of the goal,
+  /// m/s. Returns state, reason, path or None, whether to stop, the requested motion or None.
   py::tuple step(double now, const std::string& problem, const Pose& pose, const std::array<double, 2>& motion,
-                 const std::string& path) {
+                 const std::string& path, double speed) {
     using State = PathReport::State;
     const State state = path == "none"     ? State::kNone
                         : path == "active" ? State::kActive
                         : path == "done"   ? State::kDone
                                            : State::kFailed;
-    const NavigatorOutput out = navigator_.step(
-        {now, problem, consistency_.explanation(), "", planar_of(pose), {motion[0], motion[1], 0}, {state, path}},
-        &costmap_);
-    py::object way = py::none();
+    const NavigatorOutput out = navigator_.step({now,
+                                                 problem,
+                                                 consistency_.explanation(),
+                                                 "",
+                                                 planar_of(pose),
+                                                 {motion[0], motion[1], 0},
+                                                 {state, path},
+                                                 {.forward = speed},
+                                                 moving_},
+                                                &costmap_);
+    py::object way = py::none(), request = py::none();
     if (out.path) way = py::cast(poses_of(*out.path));
-    return py::make_tuple(name_of(out.state), out.reason, way, out.cancel);
+    if (out.request) request = py::make_tuple(out.request->linear, out.request->angular);
+    return py::make_tuple(name_of(out.state), out.reason, way, out.cancel, request);
   }
 
  private:
@@ -92,6 +100,7 @@ class Navigation {
   MovingObjects objects_;
   MapConsistency consistency_;
   Navigator navigator_;
+  std::vector<MovingObject> moving_;  // in the map
 };
 
 /// It does what the node collision_guard does with scans, odometry and requests, without ROS.
@@ -157,7 +166,7 @@ PYBIND11_MODULE(_navigation, module) {
       .def("plan", &Navigation::plan, py::arg("start"), py::arg("goal"), py::arg("now"))
       .def("begin", &Navigation::begin, py::arg("goal"), py::arg("now"))
       .def("step", &Navigation::step, py::arg("now"), py::arg("problem"), py::arg("pose"), py::arg("motion"),
-           py::arg("path"));
+           py::arg("path"), py::arg("speed"));
   py::class_<Guard>(module, "Guard")
       .def(py::init<const std::string&>(), py::arg("urdf"))
       .def("move_joints", &Guard::move_joints, py::arg("positions"), py::arg("now"))

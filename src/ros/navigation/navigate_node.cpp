@@ -17,6 +17,7 @@
 #include "ros/nodes/service_node.h"
 #include "ros/reports/diagnostics.h"
 #include "signals/formatted_text.h"
+#include "signals/robot_kinds.h"
 
 namespace robot_control::navigation {
 namespace {
@@ -24,6 +25,7 @@ namespace {
 constexpr double kPeriod = 0.1;      // s
 constexpr double kTfTimeout = 0.3;   // s for which a scan waits for tf
 constexpr double kMaxPoseAge = 1.0;  // s; a localisation is as slow as its scans
+constexpr double kMaxLateral = 0.3;  // m/s; as teleop.py
 
 constexpr const char* kDescription = "robot_description";
 constexpr std::uint32_t kMapOverhead = 1024;  // bytes of a message beside its cells
@@ -34,18 +36,42 @@ Footprint read_footprint(const ros::NodeHandle& handle) {
   return footprint_of_urdf(urdf, handle.resolveName(kDescription));
 }
 
+/// Returns the limits of the controller of this kind of robot, within those of follow_path.
+DriveLimits limits_of(const Parameters& parameters, bool on_legs) {
+  DriveLimits limits;
+  const auto limit = [&](const auto& drive) {
+    limits.forward = drive.max_linear_speed;
+    limits.reverse = std::min(limits.reverse, drive.max_linear_speed);
+    limits.angular = std::min(limits.angular, drive.max_angular_speed);
+    limits.linear_acceleration = drive.max_linear_acceleration;
+    limits.angular_acceleration = drive.max_angular_acceleration;
+  };
+  if (on_legs) {
+    limit(parameters.leg_control);
+    limits.lateral = std::min(kMaxLateral, parameters.leg_control.max_lateral_speed);
+  } else {
+    limit(parameters.controller);
+    limits.reverse = std::min(limits.reverse, -parameters.controller.min_linear_speed.value_or(-limits.reverse));
+  }
+  return limits;
+}
+
 class NavigateService {
  public:
   explicit NavigateService(const Parameters& parameters)
       : parameters_(parameters.navigate),
+        limits_(limits_of(parameters, false)),
         footprint_(read_footprint(handle_)),
-        scans_(handle_, footprint_),
+        scans_(handle_),
         path_client_(handle_),
         servers_(
             handle_, [this](const GoalServers::Goal& goal) { begin(goal); }, [this] { cancel("cancelled"); }) {
     allow_messages_of(kMaxCells + kMapOverhead);
     map_.connect(handle_, [this](const nav_msgs::OccupancyGrid& message) { receive_map(message); });
     localized_.connect(handle_, [this](const LocalizationState& message) { localization_ = message; });
+    kind_.connect(handle_, [this, parameters](const RobotKind& message) {
+      limits_ = limits_of(parameters, message.kind == kLeggedKind);
+    });
     costmap_topic_ = handle_.advertise<nav_msgs::OccupancyGrid>("costmap", 1, true);
     clear_ = handle_.advertiseService("clear_costmaps", &NavigateService::clear, this);
     timer_ = handle_.createWallTimer(ros::WallDuration(kPeriod), [this](const ros::WallTimerEvent&) { step(); });
@@ -109,8 +135,8 @@ class NavigateService {
     const auto base = frames_.lookup(parameters_.map_frame, scans_.input().base_frame(), seen.stamp, scan_problem_);
     if (!base) return;
     costmap_->centre_on({base->pose.x, base->pose.y}, now());
-    costmap_->set_predicted(from_base_axes(waiting_->predicted, base->pose));
     consistency_.update(costmap_->insert(seen.scan, composed(base->pose, seen.laser), now()));
+    moving_ = foresee(waiting_->moving, base->pose, *costmap_);
     waiting_.reset();
     seen_at_ = time;
   }
@@ -178,13 +204,16 @@ class NavigateService {
       const GuardReport guard = scans_.guard();
       const std::string slowed_by = path_client_.reason().empty() ? guard.reason : path_client_.reason();
       heed(guard);
-      output_ = navigator_.step(
-          {now(), why, consistency_.explanation(), slowed_by, pose_, scans_.motion(), path_client_.report()},
-          costmap_.get());
+      DriveLimits limits = limits_;
+      limits.forward = std::min(limits.forward, goal_speed_ > 0 ? goal_speed_ : parameters_.speed);
+      output_ = navigator_.step({now(), why, consistency_.explanation(), slowed_by, pose_, scans_.motion(),
+                                 path_client_.report(), limits, moving_},
+                                costmap_.get());
       if (output_.cancel) path_client_.cancel();
       if (output_.path)
-        path_client_.send(*output_.path, parameters_.map_frame, goal_speed_ > 0 ? goal_speed_ : parameters_.speed,
+        path_client_.send(*output_.path, parameters_.map_frame, limits.forward, output_.request.has_value(),
                           requested_);
+      if (output_.request) path_client_.steer(*output_.request);
       if (output_.state == NavigatorState::kReached) conclude(true, false, "reached");
       if (output_.state == NavigatorState::kFailed) conclude(false, false, output_.reason);
       servers_.feedback(output_, pose_, parameters_.map_frame);
@@ -221,6 +250,7 @@ class NavigateService {
 
   ros::NodeHandle handle_;
   const NavigateParameters parameters_;
+  DriveLimits limits_;
   const Footprint footprint_;
   ScanStore scans_;
   const Frames& frames_ = scans_.input().frames();
@@ -230,6 +260,7 @@ class NavigateService {
   GoalServers servers_;
   InputTopic<BoundedOccupancyGrid> map_{"map", 1};
   InputTopic<BoundedLocalizationState> localized_{"localization_state", 1};
+  InputTopic<BoundedRobotKind> kind_{"robot_kind", 1};
   LocalizationState localization_;  // the newest
   ros::Publisher costmap_topic_;
   ros::ServiceServer clear_;
@@ -242,6 +273,7 @@ class NavigateService {
   ros::Time seen_at_, requested_;
   std::string scan_problem_, last_;
   MapConsistency consistency_;
+  std::vector<MovingObject> moving_;  // in the map
   PlanarPose pose_;
   NavigatorOutput output_;
 };

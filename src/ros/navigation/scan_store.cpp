@@ -16,9 +16,8 @@ ros::NodeHandle with_queue(ros::NodeHandle handle, ros::CallbackQueue& queue) {
 
 }  // namespace
 
-ScanStore::ScanStore(const ros::NodeHandle& handle, Footprint footprint)
-    : footprint_(std::move(footprint)),
-      handle_(with_queue(handle, queue_)),
+ScanStore::ScanStore(const ros::NodeHandle& handle)
+    : handle_(with_queue(handle, queue_)),
       input_(
           handle_, "scan", [this](const PlacedScan& scan) { use(scan); },
           [this](const nav_msgs::Odometry& odometry) { receive(odometry); }) {
@@ -55,9 +54,7 @@ void ScanStore::receive(const nav_msgs::Odometry& message) {
 void ScanStore::use(const PlacedScan& scan) {
   const std::lock_guard lock(mutex_);
   const PlanarPose& base = scan.odometry.mean;
-  const std::vector<MovingObject> objects =
-      in_base_axes(objects_.update(scan.scan, composed(base, scan.laser), scan.stamp.toSec()), base);
-  newest_ = {scan, predicted_points(objects, footprint_)};
+  newest_ = {scan, in_base_axes(objects_.update(scan.scan, composed(base, scan.laser), scan.stamp.toSec()), base)};
 }
 
 void ScanStore::receive(const GuardState& message) {

@@ -7,7 +7,6 @@
 #include <optional>
 #include <string>
 
-#include "navigation/footprint.h"
 #include "navigation/moving_objects.h"
 #include "ros/navigation/scan_input.h"
 
@@ -15,7 +14,7 @@ namespace robot_control::navigation {
 
 struct StoredScan {
   PlacedScan seen;
-  std::vector<Point> predicted;  ///< in base axes: points that moving objects will occupy
+  std::vector<MovingObject> moving;  ///< in base axes
 };
 
 /// The last report of the guard; after kScanTimeout it is as if there were none.
@@ -28,7 +27,7 @@ struct GuardReport {
 
 class ScanStore {
  public:
-  ScanStore(const ros::NodeHandle& handle, Footprint footprint);
+  explicit ScanStore(const ros::NodeHandle& handle);
   ~ScanStore() { spinner_.stop(); }
 
   const ScanInput& input() const noexcept { return input_; }
@@ -49,7 +48,6 @@ class ScanStore {
   void receive(const GuardState& message);
   void receive(const nav_msgs::Odometry& message);
 
-  const Footprint footprint_;
   ros::CallbackQueue queue_;
   ros::NodeHandle handle_;  // of this queue
 

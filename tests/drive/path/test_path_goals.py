@@ -6,13 +6,16 @@ import math
 from types import SimpleNamespace
 
 import pytest
-from geometry_msgs.msg import PoseStamped
+from genpy import Time
+from geometry_msgs.msg import PoseStamped, TwistStamped
 from nav_msgs.msg import Odometry
 from robot_control.drive.follow_path import main as server
 from robot_control.drive.follow_path.main import Server, TimedGoal
 from robot_control.drive.path import run
+from robot_control.drive.path.follower import STAND
 from robot_control.msg import FollowPathActionGoal
 from robot_control.robot import boundary as crossing
+from robot_control.robot.command import Command
 from support.mutants import mutants
 from support.timed import timed
 
@@ -70,7 +73,9 @@ def follow_path(monkeypatch):
     made = Server.__new__(Server)
     made._began, made._action, made._services = -math.inf, Results(), SimpleNamespace(drive=None)
     made._idle = SimpleNamespace(clear=lambda: None, set=lambda: None)
-    made._topic = SimpleNamespace(send=lambda *_: None)
+    made.sent = []
+    made._topic = SimpleNamespace(send=lambda command, *_: made.sent.append(command))
+    made._velocity = STAND, Time(), -math.inf
     made._wanted = SimpleNamespace(publish=lambda *_: None)
     made._tf = SimpleNamespace(lookup=lambda *_: (_ for _ in ()).throw(server.PathError("no tf")))
     odometry = Odometry()
@@ -95,6 +100,20 @@ def executed(follow_path, payload):
     follow_path._going_on = going_on
     timed(lambda data: follow_path._execute(TimedGoal().deserialize(data).goal), payload)
     return follow_path._action.reasons[-1]
+
+
+def test_a_steered_goal_sends_the_velocities_that_are_not_older(follow_path):
+    goal, velocity = goal_of([(4.0, 0.0, 0.0)]), TwistStamped()
+    goal.goal.steered, velocity.twist.linear.x, velocity.twist.linear.y = True, 0.4, 0.1
+    follow_path._action.current_goal.goal.header.stamp, velocity.header.stamp = Time(7, 5), Time(7, 4)
+    follow_path._receive_velocity(velocity)
+    assert executed(follow_path, wire(goal)) == "interrupted"
+    assert set(follow_path.sent) == {Command()}
+    velocity.header.stamp = Time(7, 5)
+    follow_path._receive_velocity(velocity)
+    assert executed(follow_path, wire(goal)) == "interrupted"
+    assert Command(0.4, 0.0, 0.1) in follow_path.sent
+    assert follow_path.sent[-1] == Command()
 
 
 def test_a_turn_alone_and_a_path_are_driven_and_what_is_none_is_refused(follow_path):

@@ -142,3 +142,18 @@ class NavigationTest(RobotTestCase):
         self.assertTrue(client.wait_for_result(rospy.Duration(10.0)))
         self.assertEqual((client.get_state(), client.get_result().reason), (PREEMPTED, "cancelled"))
         self.robot.await_rest()
+
+    @again_after_a_stall
+    def test_a_stop_ends_the_goal_and_nothing_moves_after_its_reset(self) -> None:
+        client = actionlib.SimpleActionClient("navigate_to", NavigateToAction)
+        self.assertTrue(client.wait_for_server(rospy.Duration(30.0)))
+        client.send_goal(NavigateToGoal(target=self.pose(6.8 if self.robot.pose.x < 4 else 0.0, 0.0)))
+        self.await_motion(0.1)
+        self.robot.call("e_stop_trigger")
+        self.robot.release()
+        before = self.robot.pose
+        self.assertTrue(client.wait_for_result(rospy.Duration(20.0)), self.navigate.output)
+        self.assertEqual(client.get_state(), ABORTED)
+        self.assertIn("an earlier path does not start or continue by itself", client.get_result().reason)
+        self.assertTrue(self.robot.rests())
+        self.assertLess(math.hypot(self.robot.pose.x - before.x, self.robot.pose.y - before.y), 0.01)

@@ -6,20 +6,23 @@ import argparse
 import math
 import threading
 import time
+from collections.abc import Callable
 
 import actionlib
 import rospy
 from actionlib_msgs.msg import GoalID
+from geometry_msgs.msg import TwistStamped
 from nav_msgs.msg import Path
 
 import robot_control.msg as messages
-from robot_control.drive.path.follower import Follower, FollowParameters, State
+from robot_control.drive.path.follower import STAND, Follower, FollowParameters, Motion, State
 from robot_control.drive.path.frames import Tf, located
 from robot_control.drive.path.pieces import route
 from robot_control.drive.path.robot import SOURCE, Robot
 from robot_control.drive.path.run import Drive, PauseServices, points_of, shown
+from robot_control.drive.path.steered import Steered
 from robot_control.drive.path.waypoints import PathError, checked, limited, shortened
-from robot_control.robot.boundary import boundary, guard_action, unsealed
+from robot_control.robot.boundary import boundary, guard_action, subscribe, unsealed
 from robot_control.robot.command import Command
 from robot_control.robot.command_topic import CommandTopic
 from robot_control.robot.interruptions import GAP, requested_at
@@ -74,6 +77,8 @@ class Server:
         self._signals, self._began = signals, time.monotonic()
         self._robot, self._topic, self._tf = Robot(attended=True), CommandTopic(SOURCE), Tf()
         self._services = PauseServices()
+        self._velocity = (STAND, rospy.Time(), -math.inf)  # the newest one, its stamp, and s, monotonic, of its arrival
+        subscribe("follow_path/velocity", TwistStamped, self._receive_velocity, queue_size=1, tcp_nodelay=True)
         self._wanted = rospy.Publisher("path_wanted", Path, queue_size=1, latch=True)
         self._idle = threading.Event()
         self._idle.set()
@@ -94,6 +99,20 @@ class Server:
         if drive := self._services.drive:
             drive.follower.fail("invalid input, named in the log of follow_path. Start the path again")
         self._topic.send(Command())
+
+    def _receive_velocity(self, message: TwistStamped) -> None:
+        linear, angular = message.twist.linear, message.twist.angular
+        self._velocity = Motion(linear.x, angular.z, linear.y), message.header.stamp, time.monotonic()
+
+    def _velocities(self, sent: rospy.Time) -> Callable[[], tuple[Motion, float]]:
+        """The velocities of a goal that begins now; those from before `sent` do not count."""
+        begun = time.monotonic()
+
+        def newest() -> tuple[Motion, float]:
+            motion, stamp, at = self._velocity
+            return (motion, time.monotonic() - at) if stamp >= sent else (STAND, time.monotonic() - begun)
+
+        return newest
 
     def _going_on(self) -> bool:
         return self._signals.going_on() and not self._action.is_preempt_requested()
@@ -139,7 +158,11 @@ class Server:
             return f"{refusal} ({UNSTAMPED})" if unknown else refusal
         points, frame = located(points, goal.path.header.frame_id, self._robot.frames, self._tf)
         speed = goal.speed or FollowParameters.speed
-        follower = Follower(route(points), FollowParameters(speed=speed, scale_error=frame.scale_error))
+        follower = (
+            Steered(route(points), self._velocities(message.header.stamp))
+            if goal.steered
+            else Follower(route(points), FollowParameters(speed=speed, scale_error=frame.scale_error))
+        )
         self._wanted.publish(shown(points, frame.name))
         drive = Drive(self._robot, self._topic, follower, frame, message.requested)
         self._services.drive = drive

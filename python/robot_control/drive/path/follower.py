@@ -75,6 +75,12 @@ class Motion:
 
     linear: float = 0.0  # m/s
     angular: float = 0.0  # rad/s
+    lateral: float = 0.0  # m/s
+
+    @property
+    def speed(self) -> float:
+        """m/s"""
+        return math.hypot(self.linear, self.lateral)
 
 
 STAND = Motion()
@@ -162,6 +168,9 @@ class Follower:
             self._last = pose, measured
         if self.over or self.state is State.PAUSED:
             return STAND
+        return self._follow(pose, measured, limit, moved)
+
+    def _follow(self, pose: Pose, measured: Motion, limit: float, moved: Motion) -> Motion:
         if self.state is State.TURNING:
             return self._turn(pose, measured, moved)
         return self._drive(pose, measured, limit, moved.linear)
@@ -171,7 +180,7 @@ class Follower:
         given = self._parameters
         distance = math.dist((last.x, last.y), (pose.x, pose.y))
         angle = abs(turned(pose.yaw - last.yaw))
-        if distance > max(abs(before.linear), abs(measured.linear)) * elapsed + given.jump:
+        if distance > max(before.speed, measured.speed) * elapsed + given.jump:
             self.fail(f"the pose jumped by {distance:.2f} m in {elapsed:.2f} s: {JUMPED}")
         elif angle > max(abs(before.angular), abs(measured.angular)) * elapsed + given.heading_jump:
             self.fail(f"the pose jumped by {math.degrees(angle):.0f} deg in {elapsed:.2f} s: {JUMPED}")

@@ -75,14 +75,15 @@ class Drive:
             self.pause(f"{SOURCE} is {self._robot.masked_by}")
             rospy.logwarn(f"paused: {self.paused_by}; call ~resume to continue")
         with self._lock:
-            measured = Motion(odometry.twist.twist.linear.x, odometry.twist.twist.angular.z)
+            twist = odometry.twist.twist
+            measured = Motion(twist.linear.x, twist.angular.z, twist.linear.y)
             try:
                 pose = self._frame.pose(pose_of(odometry), time.monotonic())
                 motion = self.follower.step(pose, measured, self._robot.speed_limit, self._elapsed(odometry))
             except PathError as error:
                 self.follower.fail(str(error))
                 return
-        self._topic.send(Command(motion.linear, motion.angular), odometry.header.stamp)
+        self._topic.send(Command(motion.linear, motion.angular, motion.lateral), odometry.header.stamp)
 
     def _elapsed(self, odometry: Odometry) -> float:
         """s since the last one; more than its silence would have ended the path."""
