@@ -20,6 +20,11 @@ const map = new THREE.Group(), grids = {}, marks = {};
 const planned = polyline("limited", 2000, true), flag = ribbon("goal", 2, { head: true });
 const scan = dots("goal", 1000), cloud = dots("asked", 300);
 let pose = null, shown = { costmap: false };
+const live = make("div"), start = make("div");
+const recorded = make("div", { textContent: words("This recording has no map. record:=true at the start of the robot also records its map.") });
+commands(start, [START]);
+live.append(words("There is no map. Start navigation:"), start);
+by("no-map").append(live, recorded);
 scene.add(map);
 map.add(planned, flag, cloud);
 map.visible = false;
@@ -116,11 +121,6 @@ for (const [name, label] of Object.entries(LAYERS)) {
 }
 apply();
 recoloured();
-const live = make("div"), start = make("div");
-const recorded = make("div", { textContent: words("This recording has no map. record:=true at the start of the robot also records its map.") });
-commands(start, [START]);
-live.append(words("There is no map. Start navigation:"), start);
-by("no-map").append(live, recorded);
 
 /** Returns the place `from` in the map's frame, with the heading towards `to`; both are in odom. */
 export function onMap(from, to) {
