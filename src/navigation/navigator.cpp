@@ -158,12 +158,13 @@ void Navigator::drive(const NavigatorInput& input, Costmap& costmap, NavigatorOu
     reason_ = input.path.reason;
     return;
   }
+  const bool paused = input.path.state == PathReport::State::kPaused;
+  if (!paused && is_outside(costmap, goal_)) return plan(input, costmap, out);  // of a map that was replaced
   if (steering_) return steer(input, costmap, out);
   if (input.path.state == PathReport::State::kDone) {
     state_ = path_.partial ? NavigatorState::kWaiting : NavigatorState::kReached;
     return;
   }
-  const bool paused = input.path.state == PathReport::State::kPaused;
   const double left = update_costs(input, costmap);
   if (!paused && input.now >= path_until_ && std::isfinite(left) && left > 2 * kApproach)
     return plan(input, costmap, out);

@@ -235,6 +235,10 @@ double CostsToGoal::at(double x, double y) const noexcept {
   return grid.contains(cell) ? costs[grid.index(cell)] : kUnreached;
 }
 
+bool is_outside(const Costmap& costmap, const PlanarPose& goal) {
+  return !costmap.is_window() && !costmap.grid().contains(costmap.grid().cell_at(goal.x, goal.y));
+}
+
 CostsToGoal costs_to(const Costmap& costmap, const PlanarPose& goal, double narrow_factor) {
   const double narrow = costmap.footprint().half_width + kPadding;
   const Grid& grid = costmap.grid();
@@ -252,7 +256,7 @@ CostsToGoal costs_to(const Costmap& costmap, const PlanarPose& goal, double narr
       if (at_border(costmap, cell) && costmap.distance(cell) >= costmap.footprint().inscribed)
         begin(i, std::hypot(grid.x_of(cell.column) - goal.x, grid.y_of(cell.row) - goal.y));
     }
-  } else {
+  } else if (!is_outside(costmap, goal)) {
     begin(grid.index(grid.cell_at(goal.x, goal.y)), 0);
   }
   while (!open.empty()) {

@@ -38,8 +38,11 @@ struct CostsToGoal {
 };
 
 /// The costs are length times Costmap::step_cost, and `narrow_factor` times that where the outline cannot be along any
-/// heading but one. A goal outside a window counts from the window's border.
+/// heading but one. A goal outside a window counts from the window's border. None is finite if the goal is outside a map.
 CostsToGoal costs_to(const Costmap& costmap, const PlanarPose& goal, double narrow_factor);
+
+/// Returns whether the goal is outside a map that is no window.
+bool is_outside(const Costmap& costmap, const PlanarPose& goal);
 
 /// The costmap is up to date (Costmap::update). A start that is not free may be left, as long as every step is freer
 /// than the start or free. A path to a goal outside a window ends at its border, where its cost and the straight

@@ -199,6 +199,23 @@ TEST_F(NavigatorTest, ABoxOnTheGoalIsWaitedForFromTheStart) {
   EXPECT_THAT(out_.reason, HasSubstr("obstacle"));
 }
 
+TEST_F(NavigatorTest, ANewMapWithoutTheGoalIsWaitedFor) {
+  Grid lower_part = two_rooms(1.0);
+  lower_part.rows = 20;  // cells lie row by row
+  lower_part.cells.resize(20 * 63);
+  navigator_.begin({4.7, 2.6, 0}, now_);
+  run(1);
+  costmap_ = Costmap(lower_part, diffbot(), false);
+  for (int i = 0; i < 30; ++i) {
+    step();
+    EXPECT_EQ(out_.state, State::kWaiting) << i;
+    EXPECT_THAT(out_.reason, HasSubstr("the goal (4.70, 2.60) m is outside the map")) << i;
+  }
+  costmap_ = Costmap(two_rooms(1.0), diffbot(), false);
+  run(30);
+  EXPECT_EQ(out_.state, State::kReached) << out_.reason;
+}
+
 TEST_F(NavigatorTest, AGoalWithoutALaserIsRefusedAfterTheStartPatience) {
   problem_ = "scan is silent";
   navigator_.begin({4.7, 1.6, 0}, now_);

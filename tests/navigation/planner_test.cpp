@@ -268,6 +268,13 @@ TEST(PlannerTest, EachGoalThatCannotBeIsRefused) {
   EXPECT_THAT(problem(1, 1, INFINITY), HasSubstr("NaN or infinity"));
 }
 
+TEST(PlannerTest, NoCostIsFiniteIfTheGoalIsOutsideTheMap) {
+  const Costmap costmap = costmap_of(two_rooms(0.8));
+  for (const PlanarPose& goal : {PlanarPose{6.5, 1.6, 0}, PlanarPose{-0.5, 1.6, 0}, PlanarPose{1.6, 1e6, 0}}) {
+    for (const float cost : costs_to(costmap, goal, 1).costs) ASSERT_TRUE(std::isinf(cost)) << goal.x << ' ' << goal.y;
+  }
+}
+
 TEST(PlannerTest, UnknownSpaceIsDrivenOnlyOnRequest) {
   Grid map = two_rooms(0.8);
   for (std::size_t i = 0; i < map.cells.size(); ++i) {
