@@ -24,6 +24,10 @@ bool near(const std::vector<MovingObject>& objects, const PlanarPose& pose) {
   });
 }
 
+bool is_paused(const NavigatorInput& input) {
+  return input.path.state == PathReport::State::kPaused;
+}
+
 }  // namespace
 
 const char* name_of(NavigatorState state) {
@@ -57,7 +61,9 @@ void Navigator::fail(const std::string& reason, NavigatorOutput& out) {
 NavigatorOutput Navigator::step(const NavigatorInput& input, Costmap* costmap) {
   NavigatorOutput out;
   if (active()) {
-    if (!input.problem.empty()) {
+    if (!input.problem.empty() && is_paused(input)) {
+      reason_ = input.problem;
+    } else if (!input.problem.empty()) {
       wait(input.problem, out);
     } else if (state_ == NavigatorState::kDriving) {
       drive(input, *costmap, out);
@@ -130,10 +136,10 @@ void Navigator::steer(const NavigatorInput& input, Costmap& costmap, NavigatorOu
   }
   const double left = update_costs(input, costmap);
   note_progress(input, left);
-  const bool paused = input.path.state == PathReport::State::kPaused;
+  const bool paused = is_paused(input);
   if (paused || near(input.objects, input.pose)) steered_at_ = input.now;
   const bool stuck = input.now - std::max(progress_at_, steered_at_) > kStuckTime;
-  if (left < kApproach || stuck) {
+  if (!paused && (left < kApproach || stuck)) {
     path_until_ = input.now + kStuckTime;
     return plan(input, costmap, out);
   }
@@ -158,7 +164,7 @@ void Navigator::drive(const NavigatorInput& input, Costmap& costmap, NavigatorOu
     reason_ = input.path.reason;
     return;
   }
-  const bool paused = input.path.state == PathReport::State::kPaused;
+  const bool paused = is_paused(input);
   if (!paused && is_outside(costmap, goal_)) return plan(input, costmap, out);  // of a map that was replaced
   if (steering_) return steer(input, costmap, out);
   if (input.path.state == PathReport::State::kDone) {

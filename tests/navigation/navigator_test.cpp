@@ -282,6 +282,35 @@ TEST_F(NavigatorTest, WhatIsPausedIsNotReplacedBeforeItGoesOn) {
   EXPECT_EQ(out_.state, State::kReached) << out_.reason;
 }
 
+/// Neither the border of the approach, over which the robot brakes, nor a scan that is missing, nor a new map.
+TEST_F(NavigatorTest, NothingStartsWhatIsPaused) {
+  Grid lower_part = two_rooms(1.0);
+  lower_part.rows = 20;
+  lower_part.cells.resize(20 * 63);
+  for (const double begin : {3.0, kApproach + 0.1, 0.5}) {  // m left
+    navigator_ = {}, pose_ = {1.6, 1.6, 0}, motion_ = {}, report_ = {}, paused_ = {};
+    costmap_ = Costmap(two_rooms(1.0), diffbot(), false);
+    navigator_.begin({4.7, 2.2, 1}, now_);
+    do step();
+    while (navigator_.active() && out_.remaining > begin);
+    ASSERT_EQ(out_.state, State::kDriving) << begin;
+    paused_ = PathReport::State::kPaused;
+    if (begin > kApproach) pose_ = composed(pose_, {0.2, 0, 0});
+    for (int i = 0; i < 60; ++i) {
+      problem_ = i >= 10 && i < 20 ? "scan is silent" : "";
+      if (i == 25) costmap_ = Costmap(lower_part, diffbot(), false);
+      if (i == 40) costmap_ = Costmap(two_rooms(1.0), diffbot(), false);
+      step();
+      EXPECT_FALSE(out_.path || out_.cancel) << begin << " m, step " << i;
+      EXPECT_EQ(out_.reason, problem_) << begin << " m, step " << i;
+    }
+    paused_.reset();
+    report_.state = PathReport::State::kActive;
+    run(30);
+    EXPECT_EQ(out_.state, State::kReached) << out_.reason;
+  }
+}
+
 TEST_F(NavigatorTest, AStartTooNearToAWallIsLeft) {
   pose_ = {0.25, 1.6, 0};  // as the map has it, its back is in the wall
   ASSERT_FALSE(costmap_.free(pose_));
