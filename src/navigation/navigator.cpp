@@ -114,7 +114,8 @@ bool Navigator::begin_steering(const NavigatorInput& input, Costmap& costmap, co
   costmap.update(input.now, false);
   costs_at_ = -1e9;
   const double left = update_costs(input, costmap);
-  if (!std::isfinite(left) || left < kApproach) return false;
+  if (left < kApproach || left >= stuck_at_) return false;
+  stuck_at_ = std::numeric_limits<double>::infinity();
   if (state_ == NavigatorState::kPlanning) progress_at_ = input.now;
   if (state_ != NavigatorState::kDriving) ++attempts_;
   state_ = NavigatorState::kDriving;
@@ -141,6 +142,7 @@ void Navigator::steer(const NavigatorInput& input, Costmap& costmap, NavigatorOu
   const bool stuck = input.now - std::max(progress_at_, steered_at_) > kStuckTime;
   if (!paused && (left < kApproach || stuck)) {
     path_until_ = input.now + kStuckTime;
+    if (stuck) stuck_at_ = left;
     return plan(input, costmap, out);
   }
   out.request = controller_->step(input.limits, costmap, to_goal_, input.pose, input.motion, input.objects);
@@ -172,7 +174,7 @@ void Navigator::drive(const NavigatorInput& input, Costmap& costmap, NavigatorOu
     return;
   }
   const double left = update_costs(input, costmap);
-  if (!paused && input.now >= path_until_ && std::isfinite(left) && left > 2 * kApproach)
+  if (!paused && input.now >= path_until_ && left < stuck_at_ && left > 2 * kApproach)
     return plan(input, costmap, out);
   if (input.now - updated_at_ >= update_period(costmap)) {
     updated_at_ = input.now;

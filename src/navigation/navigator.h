@@ -6,8 +6,9 @@
 ///   driving    while the cost to the goal is above kApproach, a LocalController chooses the velocity. The costs are
 ///              computed again every kReplanPeriod; those that do not reach the robot are not used, because an obstacle
 ///              may go away. The rest is a path, which ends exactly at the goal. A path also replaces the
-///              LocalController for kStuckTime if the robot came no nearer for as long, and nothing moved within
-///              kEvadeDistance of it
+///              LocalController if the robot came no nearer for kStuckTime, and nothing moved within kEvadeDistance of
+///              it. It does so for kStuckTime, and until the cost is below that of the place: the costs may lead
+///              through a gap that no outline passes
 ///   waiting    nothing is driven: there is no path, it is blocked within kStopDistance, or the laser, the map or the
 ///              pose cannot be trusted. The goal is given up after kNoProgressTime; before the first path, after
 ///              kFirstPathTime
@@ -16,6 +17,7 @@
 /// path from standstill restarts these times. follow_path refuses what a stop of the robot has revoked. While it is
 /// paused, it keeps what it has.
 
+#include <limits>
 #include <optional>
 #include <string>
 
@@ -110,6 +112,7 @@ class Navigator {
   CostsToGoal to_goal_;
   bool steering_ = false;
   double costs_at_ = -1e9, steered_at_ = -1e9, path_until_ = -1e9;  // s
+  double stuck_at_ = std::numeric_limits<double>::infinity();       // m of cost to the goal
   std::string reason_;
 };
 

@@ -166,6 +166,27 @@ TEST_F(NavigatorTest, ABoxOnThePathIsPassed) {
   EXPECT_GT(least_air_, 0);
 }
 
+/// The costs lead through it, paths and velocities do not.
+TEST_F(NavigatorTest, AGapThatIsTooNarrowIsLeftForTheLongWay) {
+  world_ = two_rooms(0.4);
+  world_.rows = 100;
+  world_.cells.resize(100 * 63, kFreeCell);
+  for (int row = 31; row < 100; ++row) {
+    for (const int column : {0, 31, 62}) {
+      const bool door = column == 31 && row >= 80 && row < 92;
+      world_.cells[world_.index({column, row})] = door ? kFreeCell : kOccupiedCell;
+    }
+  }
+  for (int column = 1; column < 62; ++column) {
+    world_.cells[world_.index({column, 31})] = column == 31 ? kOccupiedCell : kFreeCell;
+    world_.cells[world_.index({column, 99})] = kOccupiedCell;
+  }
+  costmap_ = Costmap(world_, diffbot(), false);
+  navigator_.begin({4.7, 1.6, 0}, now_);
+  run(90);
+  EXPECT_EQ(out_.state, State::kReached) << out_.reason;
+}
+
 TEST_F(NavigatorTest, ADoorThatIsShutWhileItDrivesIsWaitedForAndPassedWhenItOpens) {
   navigator_.begin({5.0, 1.6, 0}, now_);
   run(0.5);
