@@ -112,6 +112,7 @@ class Navigator {
   CostsToGoal to_goal_;
   bool steering_ = false;
   double costs_at_ = -1e9, steered_at_ = -1e9, path_until_ = -1e9;  // s
+  double costs_period_ = 0;                                         // s
   double stuck_at_ = std::numeric_limits<double>::infinity();       // m of cost to the goal
   std::string reason_;
 };

@@ -239,40 +239,57 @@ bool is_outside(const Costmap& costmap, const PlanarPose& goal) {
   return !costmap.is_window() && !costmap.grid().contains(costmap.grid().cell_at(goal.x, goal.y));
 }
 
-CostsToGoal costs_to(const Costmap& costmap, const PlanarPose& goal, double narrow_factor) {
+CostsToGoal costs_to(const Costmap& costmap, const PlanarPose& goal, double narrow_factor,
+                     const std::optional<Point>& robot) {
   const double narrow = costmap.footprint().half_width + kPadding;
   const Grid& grid = costmap.grid();
   CostsToGoal result{{grid.columns, grid.rows, grid.resolution, grid.origin_x, grid.origin_y, {}},
                      std::vector(grid.cells.size(), kUnreached)};
   std::vector<float>& costs = result.costs;
-  std::priority_queue<Open> open;
-  const auto begin = [&](std::size_t index, double cost) {
-    costs[index] = static_cast<float>(cost);
-    open.push({costs[index], index});
-  };
+  std::vector<Open> begin;
   if (beyond(costmap, goal)) {
     for (std::size_t i = 0; i < costs.size(); ++i) {
       const Cell cell = grid.cell_of(i);
-      if (at_border(costmap, cell) && costmap.distance(cell) >= costmap.footprint().inscribed)
-        begin(i, std::hypot(grid.x_of(cell.column) - goal.x, grid.y_of(cell.row) - goal.y));
+      if (!at_border(costmap, cell) || costmap.distance(cell) < costmap.footprint().inscribed) continue;
+      costs[i] = static_cast<float>(std::hypot(grid.x_of(cell.column) - goal.x, grid.y_of(cell.row) - goal.y));
+      begin.push_back({costs[i], i});
     }
   } else if (!is_outside(costmap, goal)) {
-    begin(grid.index(grid.cell_at(goal.x, goal.y)), 0);
+    const std::size_t index = grid.index(grid.cell_at(goal.x, goal.y));
+    costs[index] = 0;
+    begin.push_back({0, index});
   }
-  while (!open.empty()) {
-    const Open top = open.top();
-    open.pop();
-    if (top.cost > costs[top.state]) continue;
-    const Cell cell = grid.cell_of(top.state);
-    for (const Cell step : kSteps) {
-      const Cell next{cell.column + step.column, cell.row + step.row};
-      if (!grid.contains(next) || costmap.distance(next) < costmap.footprint().inscribed) continue;
-      const double length = std::hypot(step.column, step.row) * grid.resolution;
-      const double factor = costmap.distance(next) < narrow ? narrow_factor : 1;
-      const auto cost = static_cast<float>(top.cost + length * factor * costmap.step_cost(next));
-      if (cost >= costs[grid.index(next)]) continue;
-      costs[grid.index(next)] = cost;
-      open.push({cost, grid.index(next)});
+  if (begin.empty()) return result;
+  std::array<double, kSectors> lengths;
+  std::ranges::transform(kSteps, lengths.begin(),
+                         [&](Cell step) { return std::hypot(step.column, step.row) * grid.resolution; });
+  // No step stays within a bucket, so that the cells of one are settled in any order: a heap takes ten times as long.
+  const double width = 0.9 * grid.resolution;
+  const float least = std::ranges::min(begin, {}, &Open::cost).cost;
+  std::vector<std::vector<Open>> buckets;
+  const auto push = [&](const Open& open, std::size_t from) {
+    const std::size_t bucket = std::max(static_cast<std::size_t>((open.cost - least) / width), from);
+    if (bucket >= buckets.size()) buckets.resize(bucket + 1);
+    buckets[bucket].push_back(open);
+  };
+  for (const Open& open : begin) push(open, 0);
+  for (std::size_t i = 0; i < buckets.size(); ++i) {
+    if (robot && least + static_cast<double>(i) * width > result.at(robot->x, robot->y) + kCostMargin) break;
+    for (const Open& top : std::exchange(buckets[i], {})) {
+      if (top.cost > costs[top.state]) continue;
+      ++result.settled;
+      const Cell cell = grid.cell_of(top.state);
+      for (std::size_t k = 0; k < kSteps.size(); ++k) {
+        const Cell next{cell.column + kSteps[k].column, cell.row + kSteps[k].row};
+        if (!grid.contains(next)) continue;
+        float& known = costs[grid.index(next)];
+        if (known <= top.cost || costmap.distance(next) < costmap.footprint().inscribed) continue;
+        const double factor = costmap.distance(next) < narrow ? narrow_factor : 1;
+        const auto cost = static_cast<float>(top.cost + lengths[k] * factor * costmap.step_cost(next));
+        if (cost >= known) continue;
+        known = cost;
+        push({cost, grid.index(next)}, i + 1);
+      }
     }
   }
   return result;

@@ -10,6 +10,7 @@
 /// The path is then straightened (straightening.h). Every pose carries the robot's heading: follow_path drives a
 /// segment backwards whose poses point against it.
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -18,6 +19,7 @@
 namespace robot_control::navigation {
 
 inline constexpr double kBackFactor = 3;
+inline constexpr double kCostMargin = 10;    ///< m; a LocalController does not distinguish costs beyond 5 m
 inline constexpr double kSectorCost = 0.15;  ///< m; 22.5° take 0.4 s, in which follow_path drives 0.2 m
 
 struct Plan {
@@ -32,6 +34,7 @@ struct Plan {
 struct CostsToGoal {
   Grid grid;  ///< without cells
   std::vector<float> costs;
+  std::size_t settled = 0;  ///< cells whose cost was computed
 
   /// Returns that of the cell; infinite outside the grid.
   double at(double x, double y) const noexcept;
@@ -39,7 +42,9 @@ struct CostsToGoal {
 
 /// The costs are length times Costmap::step_cost, and `narrow_factor` times that where the outline cannot be along any
 /// heading but one. A goal outside a window counts from the window's border. None is finite if the goal is outside a map.
-CostsToGoal costs_to(const Costmap& costmap, const PlanarPose& goal, double narrow_factor);
+/// With `robot` those that exceed the cost there by kCostMargin need not be computed. They may then be infinite.
+CostsToGoal costs_to(const Costmap& costmap, const PlanarPose& goal, double narrow_factor,
+                     const std::optional<Point>& robot = std::nullopt);
 
 /// Returns whether the goal is outside a map that is no window.
 bool is_outside(const Costmap& costmap, const PlanarPose& goal);

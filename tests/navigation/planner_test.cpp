@@ -275,6 +275,28 @@ TEST(PlannerTest, NoCostIsFiniteIfTheGoalIsOutsideTheMap) {
   }
 }
 
+/// Those beyond the margin are left out, the others are the same.
+TEST(PlannerTest, CostsNearARobotDoNotGrowWithTheMap) {
+  for (const int size : {400, 800}) {
+    Grid map;
+    map.columns = map.rows = size, map.resolution = 0.05;
+    map.cells.assign(static_cast<std::size_t>(size) * static_cast<std::size_t>(size), kFreeCell);
+    for (int row = 20; row < 100; ++row) map.cells[map.index({100, row})] = kOccupiedCell;
+    const Costmap costmap = costmap_of(map);
+    const CostsToGoal all = costs_to(costmap, {2, 3, 0}, 5);
+    const CostsToGoal some = costs_to(costmap, {2, 3, 0}, 5, Point{6, 3});
+    const double border = all.at(6, 3) + kCostMargin;
+    std::size_t within = 0;
+    for (std::size_t i = 0; i < all.costs.size(); ++i) {
+      if (all.costs[i] > border) continue;
+      ++within;
+      ASSERT_EQ(some.costs[i], all.costs[i]) << "cell " << i;
+    }
+    EXPECT_GE(some.settled, within);
+    EXPECT_LT(some.settled, 1.05 * static_cast<double>(within));
+  }
+}
+
 TEST(PlannerTest, UnknownSpaceIsDrivenOnlyOnRequest) {
   Grid map = two_rooms(0.8);
   for (std::size_t i = 0; i < map.cells.size(); ++i) {
