@@ -117,7 +117,8 @@ std::vector<Point> predicted_points(const std::vector<MovingObject>& objects, co
       for (const Point point : object.points)
         own.push_back({point.x + object.velocity.x * time, point.y + object.velocity.y * time});
     }
-    if (std::ranges::any_of(own, [&](Point place) { return footprint.distance(place) < kContact; })) continue;
+    const bool meets = std::ranges::any_of(own, [&](Point place) { return footprint.distance(place) < kContact; });
+    if (meets) own = object.points;
     places.insert(places.end(), own.begin(), own.end());
   }
   return places;

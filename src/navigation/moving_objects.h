@@ -49,12 +49,13 @@ std::vector<Point> from_base_axes(std::vector<Point> points, const PlanarPose& b
 std::vector<Point> in_base_axes(std::vector<Point> points, const PlanarPose& base);
 std::vector<MovingObject> in_base_axes(std::vector<MovingObject> objects, const PlanarPose& base);
 
-/// Returns the points that the objects, given in base axes, will occupy within kPredictionTime. An object that will
-/// touch the outline at its present pose is left out: waiting there is no safer than driving on.
+/// Returns the points that the objects, given in base axes, occupy, and those that they will occupy within
+/// kPredictionTime. The latter are left out for an object that will touch the outline at its present pose: waiting
+/// there is no safer than driving on.
 std::vector<Point> predicted_points(const std::vector<MovingObject>& objects, const Footprint& footprint);
 
 /// Returns the objects, given in base axes, in the frame in which `base` is given. The costmap gets their predicted
-/// points for paths, and loses the marks of their present ones: the LocalController has their velocities.
+/// and present points for paths, and loses the marks of the present ones: the LocalController has their velocities.
 std::vector<MovingObject> foresee(std::vector<MovingObject> objects, const PlanarPose& base, Costmap& costmap);
 
 }  // namespace robot_control::navigation

@@ -71,10 +71,27 @@ std::vector<MovingObject> object(Point point, Point velocity) {
 }
 
 TEST(PlacesAheadTest, TheyAreThoseOfWhatPassesAStandingRobot) {
-  EXPECT_TRUE(predicted_points(object({1.12, 0}, {-0.5, 0}), diffbot()).empty());
+  EXPECT_EQ(predicted_points(object({1.12, 0}, {-0.5, 0}), diffbot()).size(), 1U) << "it comes: where it is";
   const std::vector<Point> ahead = predicted_points(object({1.12, 0.5}, {-0.5, 0}), diffbot());
   ASSERT_FALSE(ahead.empty());
   EXPECT_NEAR(ahead.back().x, 1.12 - 0.5 * kPredictionTime, 0.051);
+}
+
+TEST(ForeseeTest, PathsAvoidWhatComesToTheRobotAndTheLocalControlHasItsVelocity) {
+  const Grid map = two_rooms(0.8);
+  Costmap costmap(map, diffbot(), false);
+  const PlanarPose base{1.6, 1.6, 0};
+  for (const Point velocity : {Point{-0.5, 0}, Point{0, 0.5}}) {
+    Grid world = map;
+    world.cells[world.index({26, 16})] = kOccupiedCell;
+    costmap.insert(scan_of(world, base), base, 1);
+    const std::vector<MovingObject> seen = foresee(object({1.05, 0.05}, velocity), base, costmap);
+    EXPECT_NEAR(seen[0].points[0].x, 2.65, 1e-9);
+    costmap.update(1);
+    EXPECT_TRUE(costmap.occupied({26, 16})) << velocity.x;
+    costmap.update(1, false);
+    EXPECT_FALSE(costmap.occupied({26, 16})) << velocity.x;
+  }
 }
 
 TEST(MoversSeenFromTest, TheyAreTurnedIntoTheAxesOfTheBase) {
