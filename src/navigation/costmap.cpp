@@ -171,6 +171,10 @@ void Costmap::block(Point point, double now) {
 
 void Costmap::update(double now, bool predicted) {
   std::erase_if(blocked_, [&](const auto& cell) { return cell.second < now - kMemory; });
+  distance_ = distances_at(now, predicted);
+}
+
+std::vector<float> Costmap::distances_at(double now, bool predicted) const {
   std::vector<bool> occupied(grid_.cells.size());
   for (std::size_t i = 0; i < occupied.size(); ++i) {
     const bool marked = marked_[i] > (grid_.cells[i] < 0 ? kNotMarked : now - kMemory);
@@ -182,7 +186,19 @@ void Costmap::update(double now, bool predicted) {
     }
     for (const auto& [cell, at] : blocked_) occupied[cell] = true;
   }
-  distance_ = distances(occupied, grid_.columns, grid_.resolution, farthest_);
+  return distances(occupied, grid_.columns, grid_.resolution, farthest_);
+}
+
+Grid Costmap::picture(double now) const {
+  const std::vector<float> distance = distances_at(now, true);
+  Grid shown = grid_;
+  for (std::size_t i = 0; i < distance.size(); ++i) {
+    const double air = distance[i] - footprint_.inscribed;
+    shown.cells[i] = air > 0           ? static_cast<std::int8_t>(98 * std::max(0.0, 1 - air / kFullClearance))
+                     : distance[i] > 0 ? std::int8_t{99}
+                                       : kOccupiedCell;
+  }
+  return shown;
 }
 
 double Costmap::step_cost(Cell cell) const noexcept {

@@ -82,6 +82,10 @@ class Costmap {
   /// 20 ns a cell.
   void update(double now, bool predicted = true);
 
+  /// Returns the grid as it is shown: 100 in an occupied cell, 99 where not even the inscribed circle is free, else up
+  /// to 98 by the nearness of obstacles. The predicted points count. The distances stay as they are.
+  Grid picture(double now) const;
+
   bool occupied(Cell cell) const noexcept { return distance_[grid_.index(cell)] == 0; }
   bool unknown(Cell cell) const noexcept { return unknown_[grid_.index(cell)]; }
 
@@ -107,6 +111,7 @@ class Costmap {
   void clear();
 
  private:
+  std::vector<float> distances_at(double now, bool predicted) const;
   int reach() const noexcept;  // cells of the grown outline from its base
 
   Grid grid_;

@@ -93,6 +93,19 @@ TEST(CostmapTest, WhatIsNotSeenAgainIsForgotten) {
   EXPECT_FALSE(costmap.occupied({20, 16}));
 }
 
+TEST(CostmapTest, APictureShowsThePredictedAndLeavesTheDistancesOfTheControl) {
+  Costmap costmap = costmap_of(two_rooms(0.8));
+  costmap.set_predicted({{1.65, 1.65}});
+  costmap.update(1, false);
+  const double before = costmap.distance({16, 16});
+  const Grid shown = costmap.picture(1);
+  EXPECT_EQ(shown.cells[shown.index({16, 16})], kOccupiedCell);
+  EXPECT_EQ(shown.cells[shown.index({17, 16})], 99);
+  EXPECT_LT(shown.cells[shown.index({10, 16})], 99);
+  EXPECT_EQ(costmap.distance({16, 16}), before);
+  EXPECT_GT(before, 0.5);
+}
+
 TEST(CostmapTest, WhatIsFreeHasAirAboutTheTrueOutline) {
   Grid map = grid_of(std::vector<std::string>(40, std::string(40, '.')));
   map.resolution = 0.05;

@@ -229,18 +229,7 @@ class NavigateService {
 
   void publish_costmap() {
     if (!costmap_ || costmap_topic_.getNumSubscribers() == 0) return;
-    costmap_->update(now());
-    Grid grid = costmap_->grid();
-    for (int row = 0; row < grid.rows; ++row) {
-      for (int column = 0; column < grid.columns; ++column) {
-        const double air = costmap_->distance({column, row}) - footprint_.inscribed;
-        grid.cells[grid.index({column, row})] =
-            air > 0                             ? static_cast<std::int8_t>(98 * std::max(0.0, 1 - air / kFullClearance))
-            : costmap_->occupied({column, row}) ? kOccupiedCell
-                                                : 99;
-      }
-    }
-    costmap_topic_.publish(grid_message(grid, parameters_.map_frame));
+    costmap_topic_.publish(grid_message(costmap_->picture(now()), parameters_.map_frame));
   }
 
   bool clear(std_srvs::Empty::Request& /*request*/, std_srvs::Empty::Response& /*response*/) {
