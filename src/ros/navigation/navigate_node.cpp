@@ -25,6 +25,7 @@ namespace {
 constexpr double kPeriod = 0.1;      // s
 constexpr double kTfTimeout = 0.3;   // s for which a scan waits for tf
 constexpr double kMaxPoseAge = 1.0;  // s; a localisation is as slow as its scans
+constexpr double kMaxOdomAge = 0.3;  // s; odom comes at 50 Hz
 constexpr double kMaxLateral = 0.3;  // m/s; as teleop.py
 
 constexpr const char* kDescription = "robot_description";
@@ -150,12 +151,19 @@ class NavigateService {
       return "the robot is not localised: " + localization_.state + ": " + localization_.reason;
     }
     std::string why;
-    const auto place = frames_.lookup(parameters_.map_frame, scans_.input().base_frame(), ros::Time(), why);
-    if (!place) return "the robot is not localised: " + why;
-    pose_ = place->pose;
-    const double age = time.toSec() - place->stamp;
-    if (place->stamp > 0 && age > kMaxPoseAge)
-      return formatted("the robot is not localised: tf from %s is %.1f s old", parameters_.map_frame.c_str(), age);
+    // Each at its own newest time: the pose follows odom also while the localisation computes.
+    const std::string& map = parameters_.map_frame;
+    const std::string odom = scans_.odom_frame();
+    const auto correction = frames_.lookup(map, odom, ros::Time(), why);
+    const auto base = frames_.lookup(odom, scans_.input().base_frame(), ros::Time(), why);
+    if (!correction || !base) return "the robot is not localised: " + why;
+    pose_ = composed(correction->pose, base->pose);
+    const auto age = [&](const FoundPose& found) { return found.stamp > 0 ? time.toSec() - found.stamp : 0; };
+    const bool old = age(*correction) > kMaxPoseAge;
+    if (old || age(*base) > kMaxOdomAge) {
+      return formatted("the robot is not localised: tf from %s is %.1f s old", (old ? map : odom).c_str(),
+                       age(old ? *correction : *base));
+    }
     if ((time - seen_at_).toSec() > kMaxPoseAge)
       return "tf has no transform from the scans to the map: " + scan_problem_;
     if (!consistency_.problem().empty()) return consistency_.problem();

@@ -151,6 +151,14 @@ class NavigationInputsTest(unittest.TestCase):
         time.sleep(0.5)
         self.assert_driven()
 
+    def test_4_the_pose_follows_odom_while_the_localisation_computes(self) -> None:
+        self.localised.silent, self.localised.place = True, 0.05
+        time.sleep(0.3)
+        self.assert_driven()
+        self.localised.silent, self.localised.place = False, 0.0
+        self.assertAlmostEqual(self.paths[0].goal.path.poses[0].pose.position.x, 0.05, 6)
+        time.sleep(0.5)
+
     def test_5_a_laser_that_the_guard_doubts_holds_the_goal_and_an_obstacle_before_it_blocks_its_place(self) -> None:
         guard = rospy.Publisher("guard_state", GuardState, queue_size=1)
         costmap = Latest("costmap", OccupancyGrid)

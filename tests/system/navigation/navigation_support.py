@@ -90,7 +90,7 @@ class Localised:
 
     def __init__(self, place: float | None = None) -> None:
         self.silent = False
-        self._place = place
+        self.place = place
         self._publisher = rospy.Publisher("tf", TFMessage, queue_size=5)
         self._ended = threading.Event()
         self._thread = threading.Thread(target=self._run, daemon=True)
@@ -104,8 +104,8 @@ class Localised:
         while not self._ended.wait(PERIOD):
             ahead = rospy.Time.now() + rospy.Duration(PERIOD)  # as a localisation does, so that no scan waits for it
             found = [] if self.silent else [transform("map", "odom", stamp=ahead)]
-            if self._place is not None:
-                found += [transform("odom", "base_link", self._place, ahead)]
+            if self.place is not None:
+                found += [transform("odom", "base_link", self.place, ahead)]
             self._publisher.publish(TFMessage(found))
 
 
