@@ -1,6 +1,7 @@
 #pragma once
 /// These are the messages that the programs of navigation receive, with possible lengths (bounded_message.h).
 
+#include <dynamic_reconfigure/Config.h>
 #include <geometry_msgs/PoseStamped.h>
 #include <geometry_msgs/PoseWithCovarianceStamped.h>
 #include <nav_msgs/OccupancyGrid.h>
@@ -26,6 +27,7 @@ using BoundedGuardState = Bounded<GuardState, 57, kMaxMessage>;
 using BoundedOdometry = Bounded<nav_msgs::Odometry, 700, 700 + 2 * kMaxFrameId>;
 using BoundedTFMessage = Bounded<tf2_msgs::TFMessage, 4, kMaxMessage>;
 using BoundedOccupancyGrid = Bounded<nav_msgs::OccupancyGrid, 96, 96 + kMaxFrameId + kMaxCells>;
+using BoundedConfig = Bounded<dynamic_reconfigure::Config, 20, kMaxMessage>;
 using BoundedRobotKind = Bounded<RobotKind, 32, kMaxMessage>;
 using BoundedLocalizationState = Bounded<LocalizationState, 32, kMaxMessage>;
 using BoundedPoseWithCovarianceStamped = Bounded<geometry_msgs::PoseWithCovarianceStamped, 360, 360 + kMaxFrameId>;

@@ -10,6 +10,7 @@
 #include "navigation/footprint.h"
 #include "navigation/map_consistency.h"
 #include "navigation/map_file.h"
+#include "ros/navigation/controller_limits.h"
 #include "ros/navigation/goal_servers.h"
 #include "ros/navigation/navigation_messages.h"
 #include "ros/navigation/path_client.h"
@@ -26,7 +27,6 @@ constexpr double kPeriod = 0.1;      // s
 constexpr double kTfTimeout = 0.3;   // s for which a scan waits for tf
 constexpr double kMaxPoseAge = 1.0;  // s; a localisation is as slow as its scans
 constexpr double kMaxOdomAge = 0.3;  // s; odom comes at 50 Hz
-constexpr double kMaxLateral = 0.3;  // m/s; as teleop.py
 
 constexpr const char* kDescription = "robot_description";
 constexpr std::uint32_t kMapOverhead = 1024;  // bytes of a message beside its cells
@@ -37,31 +37,12 @@ Footprint read_footprint(const ros::NodeHandle& handle) {
   return footprint_of_urdf(urdf, handle.resolveName(kDescription));
 }
 
-/// Returns the limits of the controller of this kind of robot, within those of follow_path.
-DriveLimits limits_of(const Parameters& parameters, bool on_legs) {
-  DriveLimits limits;
-  const auto limit = [&](const auto& drive) {
-    limits.forward = drive.max_linear_speed;
-    limits.reverse = std::min(limits.reverse, drive.max_linear_speed);
-    limits.angular = std::min(limits.angular, drive.max_angular_speed);
-    limits.linear_acceleration = drive.max_linear_acceleration;
-    limits.angular_acceleration = drive.max_angular_acceleration;
-  };
-  if (on_legs) {
-    limit(parameters.leg_control);
-    limits.lateral = std::min(kMaxLateral, parameters.leg_control.max_lateral_speed);
-  } else {
-    limit(parameters.controller);
-    limits.reverse = std::min(limits.reverse, -parameters.controller.min_linear_speed.value_or(-limits.reverse));
-  }
-  return limits;
-}
-
 class NavigateService {
  public:
   explicit NavigateService(const Parameters& parameters)
       : parameters_(parameters.navigate),
-        limits_(limits_of(parameters, false)),
+        wheels_(parameters.controller),
+        legs_(parameters.leg_control),
         footprint_(read_footprint(handle_)),
         scans_(handle_),
         path_client_(handle_),
@@ -70,9 +51,8 @@ class NavigateService {
     allow_messages_of(kMaxCells + kMapOverhead);
     map_.connect(handle_, [this](const nav_msgs::OccupancyGrid& message) { receive_map(message); });
     localized_.connect(handle_, [this](const LocalizationState& message) { localization_ = message; });
-    kind_.connect(handle_, [this, parameters](const RobotKind& message) {
-      limits_ = limits_of(parameters, message.kind == kLeggedKind);
-    });
+    kind_.connect(handle_, [this](const RobotKind& message) { on_legs_ = message.kind == kLeggedKind; });
+    updates_.connect(handle_, [this](const dynamic_reconfigure::Config& message) { take_over(message, wheels_); });
     costmap_topic_ = handle_.advertise<nav_msgs::OccupancyGrid>("costmap", 1, true);
     clear_ = handle_.advertiseService("clear_costmaps", &NavigateService::clear, this);
     timer_ = handle_.createWallTimer(ros::WallDuration(kPeriod), [this](const ros::WallTimerEvent&) { step(); });
@@ -212,7 +192,7 @@ class NavigateService {
       const GuardReport guard = scans_.guard();
       const std::string slowed_by = path_client_.reason().empty() ? guard.reason : path_client_.reason();
       heed(guard);
-      DriveLimits limits = limits_;
+      DriveLimits limits = on_legs_ ? limits_of(legs_) : limits_of(wheels_);
       limits.forward = std::min(limits.forward, goal_speed_ > 0 ? goal_speed_ : parameters_.speed);
       output_ = navigator_.step({now(), why, consistency_.explanation(), slowed_by, pose_, scans_.motion(),
                                  path_client_.report(), limits, moving_},
@@ -247,7 +227,8 @@ class NavigateService {
 
   ros::NodeHandle handle_;
   const NavigateParameters parameters_;
-  DriveLimits limits_;
+  DriveControllerParameters wheels_;  // in force
+  const LegControllerParameters legs_;
   const Footprint footprint_;
   ScanStore scans_;
   const Frames& frames_ = scans_.input().frames();
@@ -258,11 +239,13 @@ class NavigateService {
   InputTopic<BoundedOccupancyGrid> map_{"map", 1};
   InputTopic<BoundedLocalizationState> localized_{"localization_state", 1};
   InputTopic<BoundedRobotKind> kind_{"robot_kind", 1};
+  InputTopic<BoundedConfig> updates_{std::string(names_of_kind(kWheeledKind).controller) + "/parameter_updates", 1};
   LocalizationState localization_;  // the newest
   ros::Publisher costmap_topic_;
   ros::ServiceServer clear_;
   ros::WallTimer timer_;
 
+  bool on_legs_ = false;
   double goal_speed_ = 0;  // m/s
   double held_since_ = 0;  // s
   std::string map_problem_ = "no map received: start slam, or localization with a saved map";
