@@ -115,7 +115,9 @@ struct Mapper::Parts {
       if (other.length > length) break;
       append(points, moved(walls_of(graph.nodes[other.node].scan, graph.nodes[other.node].laser), other.relative.mean));
     }
-    if (!saved.cells.empty()) append(points, moved(walls_of(saved), inverse(graph.nodes[node].pose)));
+    const PlanarPose& pose = graph.nodes[node].pose;
+    const Eigen::Vector2d middle(pose.x, pose.y);
+    if (!saved.cells.empty()) append(points, moved(walls_of(saved, middle), inverse(pose)));
     return thinned(points, kCell / 2);
   }
 

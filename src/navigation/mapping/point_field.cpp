@@ -31,8 +31,13 @@ PointField::PointField(std::vector<WallPoint> points, double resolution)
   for (const WallPoint& point : points_) low = low.cwiseMin(point.at), high = high.cwiseMax(point.at);
   const double margin = resolution * ((1 << (kLevels - 1)) + kReach);
   corner_ = low.array() - margin;
-  columns_ = static_cast<int>((high.x() - low.x() + 2 * margin) / resolution) + 1;
-  rows_ = static_cast<int>((high.y() - low.y() + 2 * margin) / resolution) + 1;
+  const Eigen::Vector2d size = (high - low).array() / resolution + 2 * margin / resolution + 1;  // cells
+  if (!(size.prod() <= static_cast<double>(kMaxCells))) {
+    points_.clear();
+    return;
+  }
+  columns_ = static_cast<int>(size.x());
+  rows_ = static_cast<int>(size.y());
   const std::size_t cells = static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_);
   nearest_.assign(cells, -1);
   std::vector<float> squares(cells, static_cast<float>(kReach * kReach));

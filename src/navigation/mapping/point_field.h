@@ -31,6 +31,7 @@ class PointField {
   static constexpr int kReach = 6;                               ///< cells
   static constexpr double kSamePlace = 0.5, kSameHeading = 0.5;  ///< m, rad
 
+  /// Points over more than kMaxCells cells are refused: the field is then empty.
   PointField(std::vector<WallPoint> points, double resolution);
 
   const std::vector<WallPoint>& points() const noexcept { return points_; }

@@ -1,7 +1,7 @@
 #include "navigation/mapping/wall_points.h"
 
 #include <Eigen/Eigenvalues>
-#include <optional>
+#include <algorithm>
 
 namespace robot_control::navigation {
 namespace {
@@ -45,7 +45,7 @@ Eigen::Vector2d normal_at(const std::vector<std::optional<Eigen::Vector2d>>& end
 std::vector<WallPoint> walls_of(const Scan& scan, const PlanarPose& laser) {
   std::vector<std::optional<Eigen::Vector2d>> ends(scan.ranges.size());
   for (std::size_t ray = 0; ray < ends.size(); ++ray) {
-    if (scan.hit(scan.ranges[ray])) ends[ray] = end_of_ray(scan, ray);
+    if (scan.hit(scan.ranges[ray]) && scan.ranges[ray] < kFarthestWall) ends[ray] = end_of_ray(scan, ray);
   }
   std::vector<WallPoint> points;
   for (std::size_t ray = 0; ray < ends.size(); ++ray) {
@@ -55,10 +55,17 @@ std::vector<WallPoint> walls_of(const Scan& scan, const PlanarPose& laser) {
   return moved(std::move(points), laser);
 }
 
-std::vector<WallPoint> walls_of(const Grid& grid) {
+std::vector<WallPoint> walls_of(const Grid& grid, const std::optional<Eigen::Vector2d>& middle) {
+  Cell low, high{grid.columns, grid.rows};
+  if (middle) {
+    const Cell from = grid.cell_at(middle->x() - kFarthestWall, middle->y() - kFarthestWall);
+    const Cell to = grid.cell_at(middle->x() + kFarthestWall, middle->y() + kFarthestWall);
+    low = {std::max(low.column, from.column), std::max(low.row, from.row)};
+    high = {std::min(high.column, to.column), std::min(high.row, to.row)};
+  }
   std::vector<WallPoint> points;
-  for (int row = 0; row < grid.rows; ++row) {
-    for (int column = 0; column < grid.columns; ++column) {
+  for (int row = low.row; row < high.row; ++row) {
+    for (int column = low.column; column < high.column; ++column) {
       if (grid.cells[grid.index({column, row})] < kOccupiedFrom) continue;
       for (const auto& [x, y] : {std::pair{1, 0}, {-1, 0}, {0, 1}, {0, -1}}) {
         const Cell beside{column + x, row + y};
