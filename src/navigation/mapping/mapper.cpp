@@ -94,6 +94,7 @@ struct Mapper::Parts {
   PlanarPose tried_at, drawn_at;        // odometry of the last match or attempt; pose of the last scan in the grid
   std::optional<PointField> walls;      // around the reference, in its frame
   std::vector<Reached> near;            // likewise
+  std::optional<PointField> whole;      // of all walls in the map; made by a search, until a node is added
   Grid saved;
   RayGrid grid;
   double share = 1;
@@ -161,6 +162,7 @@ struct Mapper::Parts {
     const PlanarPose pose =
         graph.nodes.empty() ? matched_at.mean : composed(graph.nodes[reference].pose, matched_at.mean);
     graph.nodes.push_back({pose, scan, laser});
+    whole.reset();
     const std::size_t node = graph.nodes.size() - 1;
     if (node > 0) graph.edges.push_back({reference, node, matched_at});
     draw(scan, laser, pose);
@@ -187,7 +189,7 @@ struct Mapper::Parts {
     const std::vector<WallPoint> points = few(here);
     const SearchWindow window = window_of(expected);
     const auto found = there.search(points, window, kLoopScore);
-    if (!found || there.search(points, window, kUnlike * found->score, &found->pose)) return false;
+    if (!found || !found->proven || there.search(points, window, kUnlike * found->score, &found->pose)) return false;
     const Match closed = match(there, here, found->pose, expected);
     if (closed.matched < kMinPoints || share_of(closed, here, best->node) < kMinMatched) return false;
     graph.edges.push_back({best->node, reference, closed.pose, true});
@@ -196,8 +198,8 @@ struct Mapper::Parts {
 
   /// Searches the scan of a lost robot near the expected pose, then the last ones in the whole map.
   void find_again(const std::vector<WallPoint>& seen, const UncertainPose& expected) {
-    if (const auto near_by = walls->search(few(seen), {expected.mean, kJump, kTurnJump}, kFoundScore))
-      return resume(reference, near_by->pose, seen);
+    const auto near_by = walls->search(few(seen), {expected.mean, kJump, kTurnJump}, kFoundScore);
+    if (near_by && near_by->proven) return resume(reference, near_by->pose, seen);
     const auto step = [&](const PlanarPose& before) { return composed(inverse(before), odometry.mean); };
     const PlanarPose* last = recent.empty() ? nullptr : &recent.back().first;
     if (last != nullptr && std::hypot(step(*last).x, step(*last).y) < kNodeDistance / 2 &&
@@ -206,17 +208,20 @@ struct Mapper::Parts {
     recent.emplace_back(odometry.mean, seen);
     if (recent.size() > kMaxRecent) recent.erase(recent.begin());
     if (recent.size() < kMinRecent) return;
-    std::vector<WallPoint> points, all = walls_of(saved);
+    if (!whole) {
+      std::vector<WallPoint> all = walls_of(saved);
+      for (const GraphNode& node : graph.nodes) append(all, moved(walls_of(node.scan, node.laser), node.pose));
+      whole.emplace(thinned(all, kWideCell / 2), kWideCell);
+    }
+    std::vector<WallPoint> points;
     for (const auto& [pose, some] : recent) append(points, moved(some, inverse(step(pose))));
-    for (const GraphNode& node : graph.nodes) append(all, moved(walls_of(node.scan, node.laser), node.pose));
-    PointField field(thinned(all, kWideCell / 2), kWideCell);
     Eigen::AlignedBox2d box;
-    for (const WallPoint& point : field.points()) box.extend(point.at);
+    for (const WallPoint& point : whole->points()) box.extend(point.at);
     const Eigen::Vector2d middle = box.center(), half = box.sizes() / 2;
     points = few(thinned(points, kWideCell));
     const SearchWindow everywhere{{middle.x(), middle.y(), 0}, half.maxCoeff(), M_PI};
-    const auto found = field.search(points, everywhere, kFoundScore);
-    if (!found || field.search(points, everywhere, kUnlike * found->score, &found->pose)) return;
+    const auto found = whole->search(points, everywhere, kFoundScore);
+    if (!found || !found->proven || whole->search(points, everywhere, kUnlike * found->score, &found->pose)) return;
     const auto away = [&](const GraphNode& node) {
       return difference(composed(inverse(node.pose), found->pose), node.scan);
     };

@@ -12,7 +12,8 @@
 /// the robot is searched near the last pose.
 ///
 /// A point contradicts the map if it lies where the reference saw free space. The robot is lost while these points
-/// outnumber those that match. Nothing is then added to the map, and the last scans are searched in the whole of it.
+/// outnumber those that match. Nothing is then added to the map. Its scan is searched nearby. The last three scans or
+/// more are searched in the whole map, which may take seconds; `fits` shows the loss before.
 ///
 /// Without enough points in sight, the odometry alone moves the pose. The pose in the map is correction ∘ odometry.
 /// Only the correction is changed by a match, so that `odom` never jumps. The same calls give the same map.

@@ -89,7 +89,7 @@ void PointField::make_levels() {
 }
 
 std::optional<Found> PointField::search(const std::vector<WallPoint>& seen, const SearchWindow& window, double least,
-                                        const PlanarPose* known) {
+                                        const PlanarPose* known, int max_bounds) {
   if (seen.empty() || points_.empty()) return std::nullopt;
   make_levels();
   const double step = resolution_ / kTurnReach;
@@ -105,8 +105,9 @@ std::optional<Found> PointField::search(const std::vector<WallPoint>& seen, cons
     }
   }
   std::priority_queue<Branch> open;
+  int bounds = 0;
   const auto add = [&](int level, int heading, int column, int row) {
-    if (column > reach || row > reach) return;
+    if (column > reach || row > reach || ++bounds > max_bounds) return;
     const std::vector<std::uint8_t>& maxima = levels_[static_cast<std::size_t>(level)];
     int sum = 0;
     for (const Offset& cell : turned[static_cast<std::size_t>(heading)]) {
@@ -125,9 +126,10 @@ std::optional<Found> PointField::search(const std::vector<WallPoint>& seen, cons
   while (!open.empty()) {
     const Branch best = open.top();
     open.pop();
+    const PlanarPose pose{window.middle.x + best.column * resolution_, window.middle.y + best.row * resolution_,
+                          window.middle.yaw + (best.heading - headings) * step};
+    if (bounds > max_bounds) return Found{pose, best.score, false};
     if (best.level == 0) {
-      const PlanarPose pose{window.middle.x + best.column * resolution_, window.middle.y + best.row * resolution_,
-                            window.middle.yaw + (best.heading - headings) * step};
       if (known == nullptr || std::hypot(pose.x - known->x, pose.y - known->y) > kSamePlace ||
           std::abs(std::remainder(pose.yaw - known->yaw, 2 * M_PI)) > kSameHeading)
         return Found{pose, best.score};
@@ -138,6 +140,7 @@ std::optional<Found> PointField::search(const std::vector<WallPoint>& seen, cons
       for (const int x : {0, half}) add(level, best.heading, best.column + x, best.row + y);
     }
   }
+  if (bounds > max_bounds) return Found{window.middle, 0, false};
   return std::nullopt;
 }
 

@@ -24,12 +24,14 @@ struct SearchWindow {
 struct Found {
   PlanarPose pose;
   double score = 0;
+  bool proven = true;  ///< false: the search ended early, and the pose is one that may be the best
 };
 
 class PointField {
  public:
   static constexpr int kReach = 6;                               ///< cells
   static constexpr double kSamePlace = 0.5, kSameHeading = 0.5;  ///< m, rad
+  static constexpr int kMaxBounds = 4'000'000;                   ///< of 250 points each they take about 2 s
 
   /// Points over more than kMaxCells cells are refused: the field is then empty.
   PointField(std::vector<WallPoint> points, double resolution);
@@ -40,9 +42,9 @@ class PointField {
   const WallPoint* nearest(const Eigen::Vector2d& at) const noexcept;
 
   /// Returns the best pose of the points in the window, if its score is `least` or more. It is not within kSamePlace
-  /// and kSameHeading of `known`.
+  /// and kSameHeading of `known`. The search ends after `max_bounds` computed bounds.
   std::optional<Found> search(const std::vector<WallPoint>& seen, const SearchWindow& window, double least,
-                              const PlanarPose* known = nullptr);
+                              const PlanarPose* known = nullptr, int max_bounds = kMaxBounds);
 
  private:
   static constexpr int kLevels = 6;

@@ -50,4 +50,21 @@ TEST_F(ScanMatcherTest, ASearchFindsAPoseFarAway) {
   EXPECT_FALSE(field.search(moved(room(), inverse(truth)), {{0, 0, 0}, 0.5, 0.2}, 0.5)) << "it is outside the window";
 }
 
+/// One that ends early proves neither the best place nor that no other one is as good.
+TEST_F(ScanMatcherTest, ASearchThatEndsEarlySaysSo) {
+  PointField field(room(), 0.05);
+  const SearchWindow window{{0, 0, 0}, 2, 1.5};
+  for (const int bounds : {0, 1, 100, 1000}) {
+    const auto found = field.search(room(), window, 0.5, nullptr, bounds);
+    ASSERT_TRUE(found) << bounds;
+    EXPECT_FALSE(found->proven) << bounds;
+    const auto other = field.search(room(), window, 0.95, &found->pose, bounds);
+    ASSERT_TRUE(other) << bounds;
+    EXPECT_FALSE(other->proven) << bounds;
+  }
+  const auto found = field.search(room(), window, 0.5);
+  ASSERT_TRUE(found);
+  EXPECT_TRUE(found->proven);
+}
+
 }  // namespace robot_control::navigation::tests
