@@ -86,12 +86,21 @@ def carried(sights: list[Sight], seed: int, count: int) -> tuple[list[Sight], li
         if np.hypot(*(sights[before].truth - sights[after].truth)[:2]) > FAR:
             break
     way = composed(sights[before].odometry, inverse(sights[after].odometry))
-    more = sights[before].covariance - sights[after].covariance
-    moved = [
-        replace(sight, odometry=composed(way, sight.odometry), covariance=sight.covariance + more)
-        for sight in sights[after : after + count]
-    ]
+    turned = np.eye(3)
+    turned[:2, :2] = [[np.cos(way[2]), -np.sin(way[2])], [np.sin(way[2]), np.cos(way[2])]]
+    moved = []
+    for sight in sights[after : after + count]:
+        pose = composed(way, sight.odometry)
+        grown = sight.covariance - carried_on(sights[after].covariance, sight.odometry - sights[after].odometry)
+        known = carried_on(sights[before].covariance, pose - sights[before].odometry)
+        moved.append(replace(sight, odometry=pose, covariance=known + turned @ grown @ turned.T))
     return sights[before - 100 : before], moved
+
+
+def carried_on(covariance: NDArray[np.float64], step: NDArray[np.float64]) -> NDArray[np.float64]:
+    """The covariance (3, 3) of a pose after a step (3) in fixed axes that has no errors of its own."""
+    by_pose = np.array([[1, 0, -step[1]], [0, 1, step[0]], [0, 0, 1]])
+    return np.asarray(by_pose @ covariance @ by_pose.T)
 
 
 def kidnapped(grid: Map, sights: list[Sight], seed: int) -> float:

@@ -60,11 +60,23 @@ inline Eigen::Matrix3d at_least(const Eigen::Matrix3d& matrix, const Eigen::Vect
   return result;
 }
 
-/// Returns the covariance of the motion between two poses of the odometry, in the axes of the first one.
+/// Returns the covariance of the step between two poses of the odometry, in the axes of the first one.
+///
+///   Σ₂ − F Σ₁ Fᵀ = Σᵢ λᵢ vᵢ vᵢᵀ    F: derivative of the second pose by the first one
+///
+/// In a direction vᵢ in which the covariance grows, λᵢ is that of the errors of the motion. If it shrinks, the odometry
+/// has corrected its past path, and the expected square of that correction is −λᵢ. The correction that is shown is at
+/// most the part vᵢᵀ s of the step s.
 inline Eigen::Matrix3d growth(const UncertainPose& from, const UncertainPose& to) {
   const Eigen::Matrix3d f = derivative_by_first(to.mean.x - from.mean.x, to.mean.y - from.mean.y);
   const Eigen::Matrix3d r = planar_rotation(-from.mean.yaw);
-  return r * (to.covariance - f * from.covariance * f.transpose()) * r.transpose();
+  const Eigen::Matrix3d grown = r * (to.covariance - f * from.covariance * f.transpose()) * r.transpose();
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> parts((grown + grown.transpose()) / 2);
+  const PlanarPose step = composed(inverse(from.mean), to.mean);
+  const Eigen::Vector3d shown =
+      parts.eigenvectors().transpose() * Eigen::Vector3d(step.x, step.y, std::remainder(step.yaw, 2 * M_PI));
+  const Eigen::Vector3d size = parts.eigenvalues().cwiseMax((-parts.eigenvalues()).cwiseMin(shown.cwiseAbs2()));
+  return parts.eigenvectors() * size.asDiagonal() * parts.eigenvectors().transpose();
 }
 
 }  // namespace robot_control::navigation

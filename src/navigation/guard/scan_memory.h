@@ -33,7 +33,8 @@ inline constexpr double kDoubtfulAngle = 0.175;  ///< rad, 10°: at 0.5 m the wi
 class ScanMemory {
  public:
   /// Takes a scan whose laser was at `mount` on the base, and the base at `base` in odom. `stamp` in s. After a jump of
-  /// the pose or the stamp it is empty.
+  /// the pose or the stamp it is empty. A correction that odom shows slowly moves what was seen for at most kRecall;
+  /// its covariance does not tell, because it mostly shrinks without one.
   void update(const Scan& scan, const PlanarPose& mount, const PlanarPose& base, double stamp,
               const Footprint& footprint);
 

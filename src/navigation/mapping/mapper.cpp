@@ -26,7 +26,6 @@ constexpr double kUnlike = 0.9;  // of the score of the best place, above which 
 constexpr std::size_t kSearchPoints = 250;
 constexpr std::size_t kMaxRecent = 8, kMinRecent = 3;  // scans of a robot that is lost, kNodeDistance apart
 const Eigen::Vector3d kNear(0.3, 0.3, 0.2);            // deviation of a given pose
-constexpr double kCorrected = 0.3;                     // m; no robot drives that far between two scans at 10 Hz
 const Eigen::Vector3d kSlip(0.005, 0.005, 0.005);      // of a step: wheels that slip do more than the odometry knows
 
 double deviation(const UncertainPose& pose) {
@@ -103,10 +102,7 @@ struct Mapper::Parts {
 
   UncertainPose predicted() const {
     const PlanarPose step = composed(inverse(odometry_at.mean), odometry.mean);
-    const Eigen::Matrix3d grown = growth(odometry_at, odometry);
-    if (!lost && std::hypot(step.x, step.y) > kCorrected && grown.diagonal().minCoeff() < 0)
-      return composed(matched_at, {{}, at_least(Eigen::Matrix3d::Zero(), kNear)});
-    return composed(matched_at, {step, at_least(grown, kSlip)});
+    return composed(matched_at, {step, at_least(growth(odometry_at, odometry), kSlip)});
   }
 
   /// Returns the walls of the nodes within `length` m, in the frame of the node.

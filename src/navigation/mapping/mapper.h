@@ -8,8 +8,8 @@
 /// A far node of the graph may be near a new one, by the covariance of the way between them. A search for the walls
 /// that were seen last then closes the loop. The graph is optimised, and the map is drawn again.
 ///
-/// An odometry that makes a large step and a smaller covariance has corrected its past path. The step is no motion, and
-/// the robot is searched near the last pose.
+/// An odometry whose covariance shrinks has corrected its past path. Its step may then be that correction, so that it
+/// is as uncertain as the covariance has shrunk (growth).
 ///
 /// A point contradicts the map if it lies where the reference saw free space. The robot is lost while these points
 /// outnumber those that match. Nothing is then added to the map. Its scan is searched nearby. The last three scans or
