@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <deque>
 #include <filesystem>
 #include <system_error>
 #include <utility>
@@ -74,40 +75,66 @@ void write_in_place(const std::string& path, const std::string& text, int flags)
   file.close();
 }
 
-/// Returns false, and changes nothing, if the owner of the old file cannot be kept.
-bool replace(const fs::path& path, const struct stat* old, const std::string& text) {
-  const std::string fresh = path.string() + ".new";
-  unlink(fresh.c_str());  // left by a process that was killed
-  try {
-    OutputDescriptor file(fresh, O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW);
-    if (old != nullptr && !file.copy_owner_and_mode(*old)) {
-      unlink(fresh.c_str());
-      return false;
-    }
-    file.write_all(text);
-    file.sync();
-    file.close();
-    fs::rename(fresh, path);
-  } catch (...) {
-    unlink(fresh.c_str());
-    throw;
+/// The new content of one file. Until `commit` the old one stays.
+class Replacement {
+ public:
+  explicit Replacement(const OutputFile& file)
+      : text_(file.text), target_(behind_links(file.path)), fresh_(target_.string() + ".new") {
+    struct stat old {};
+    const bool exists = stat(target_.c_str(), &old) == 0;
+    regular_ = !exists || S_ISREG(old.st_mode);
+    if (regular_) prepared_ = prepare(exists ? &old : nullptr);
   }
-  const fs::path folder = path.parent_path();
-  OutputDescriptor(folder.empty() ? "." : folder.string(), O_RDONLY | O_DIRECTORY).sync();
-  return true;
-}
+  Replacement(const Replacement&) = delete;
+  Replacement& operator=(const Replacement&) = delete;
+  ~Replacement() {
+    if (prepared_) unlink(fresh_.c_str());
+  }
+
+  void commit() {
+    if (!prepared_) return write_in_place(target_, text_, regular_ ? O_TRUNC : 0);
+    fs::rename(fresh_, target_);
+    prepared_ = false;
+    const fs::path folder = target_.parent_path();
+    OutputDescriptor(folder.empty() ? "." : folder.string(), O_RDONLY | O_DIRECTORY).sync();
+  }
+
+ private:
+  /// Returns false if the owner of the old file cannot be kept.
+  bool prepare(const struct stat* old) const {
+    unlink(fresh_.c_str());  // left by a process that was killed
+    try {
+      OutputDescriptor file(fresh_, O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW);
+      if (old != nullptr && !file.copy_owner_and_mode(*old)) {
+        unlink(fresh_.c_str());
+        return false;
+      }
+      file.write_all(text_);
+      file.sync();
+      file.close();
+      return true;
+    } catch (...) {
+      unlink(fresh_.c_str());
+      throw;
+    }
+  }
+
+  const std::string& text_;
+  fs::path target_;
+  std::string fresh_;
+  bool regular_ = true, prepared_ = false;
+};
 
 }  // namespace
 
+void write_output_files(const std::vector<OutputFile>& files) {
+  std::deque<Replacement> replacements;
+  for (const OutputFile& file : files) replacements.emplace_back(file);
+  for (Replacement& replacement : replacements) replacement.commit();
+}
+
 void write_output_file(const std::string& path, const std::string& text) {
-  const fs::path target = behind_links(path);
-  struct stat old {};
-  const bool exists = stat(target.c_str(), &old) == 0;
-  if (exists && !S_ISREG(old.st_mode)) {
-    write_in_place(target, text, 0);
-  } else if (!replace(target, exists ? &old : nullptr, text)) {
-    write_in_place(target, text, O_TRUNC);
-  }
+  write_output_files({{path, text}});
 }
 
 }  // namespace robot_control

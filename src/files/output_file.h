@@ -9,11 +9,20 @@
 ///   anything else    a device, FIFO or socket is opened and written to, never replaced
 
 #include <string>
+#include <vector>
 
 namespace robot_control {
 
 /// Throws std::system_error, which names the file. The file then has its old content, unless it was overwritten in
 /// place. A process that calls this ignores SIGXFSZ (process_limits.h).
 void write_output_file(const std::string& path, const std::string& text);
+
+struct OutputFile {
+  std::string path, text;
+};
+
+/// Writes files that belong together. All of them are written beside the old ones before the first one is renamed. An
+/// error before that changes none of them, unless one is overwritten in place.
+void write_output_files(const std::vector<OutputFile>& files);
 
 }  // namespace robot_control

@@ -13,7 +13,6 @@
 #include "files/given_path.h"
 #include "files/input_file.h"
 #include "files/message_text.h"
-#include "files/output_file.h"
 
 namespace robot_control::navigation {
 namespace {
@@ -159,27 +158,42 @@ Grid read_map(const std::string& given) {
   return read_picture(image, read(image, kMaxCells + kMaxHead), head, path);
 }
 
-void write_map(const std::string& given, const Grid& grid) {
+Grid as_saved(const Grid& grid) {
+  Grid saved = grid;
+  for (std::int8_t& cell : saved.cells)
+    cell = cell >= kOccupiedFrom ? kOccupiedCell : cell >= 0 && cell <= kFreeUpTo ? kFreeCell : kUnknownCell;
+  return saved;
+}
+
+std::vector<OutputFile> map_files(const std::string& given, const Grid& grid) {
   std::filesystem::path path = resolved_path(given);
   if (path.extension() == ".yaml") path.replace_extension();
   const std::string stem = path.filename().string();
   if (stem.empty()) refuse(given, "is not a file; give the path of the YAML file");
+  if (const std::string why = grid_problem(grid.columns, grid.rows, grid.resolution, grid.origin_x, grid.origin_y, 0);
+      !why.empty())
+    refuse(given, why);
   std::string pixels(grid.cells.size(), '\xcd');  // 205, map_server's unknown
+  const Grid saved = as_saved(grid);
   for (int row = 0; row < grid.rows; ++row) {
     for (int column = 0; column < grid.columns; ++column) {
-      const int cell = grid.cells[grid.index({column, row})];
+      const int cell = saved.cells[grid.index({column, row})];
       char& pixel = pixels[grid.index({column, grid.rows - 1 - row})];
-      if (cell >= 0 && cell <= kFreeUpTo) pixel = '\xfe';
-      if (cell >= kOccupiedFrom) pixel = '\0';
+      if (cell == kFreeCell) pixel = '\xfe';
+      if (cell == kOccupiedCell) pixel = '\0';
     }
   }
+  return {{path.string() + ".pgm",
+           "P5\n" + std::to_string(grid.columns) + " " + std::to_string(grid.rows) + "\n255\n" + pixels},
+          {path.string() + ".yaml", "image: " + YAML::Dump(YAML::Node(stem + ".pgm")) +
+                                        "\nresolution: " + text_of(grid.resolution) + "\norigin: [" +
+                                        text_of(grid.origin_x) + ", " + text_of(grid.origin_y) +
+                                        ", 0]\nnegate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.196\n"}};
+}
+
+void write_map(const std::string& path, const Grid& grid) {
   try {
-    write_output_file(path.string() + ".pgm",
-                      "P5\n" + std::to_string(grid.columns) + " " + std::to_string(grid.rows) + "\n255\n" + pixels);
-    write_output_file(path.string() + ".yaml", "image: " + YAML::Dump(YAML::Node(stem + ".pgm")) +
-                                                   "\nresolution: " + text_of(grid.resolution) + "\norigin: [" +
-                                                   text_of(grid.origin_x) + ", " + text_of(grid.origin_y) +
-                                                   ", 0]\nnegate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.196\n");
+    write_output_files(map_files(path, grid));
   } catch (const std::system_error& error) {
     throw MapError(error.what());
   }

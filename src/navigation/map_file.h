@@ -15,7 +15,9 @@
 
 #include <stdexcept>
 #include <string>
+#include <vector>
 
+#include "files/output_file.h"
 #include "navigation/grid.h"
 
 namespace robot_control::navigation {
@@ -33,8 +35,13 @@ Grid read_map(const std::string& path);
 std::string grid_problem(double columns, double rows, double resolution, double origin_x, double origin_y,
                          double origin_yaw);
 
-/// Writes NAME.yaml and NAME.pgm for the path NAME or NAME.yaml. Free is up to 25 %, occupied from 65 % on. Throws
-/// MapError.
+/// Returns the grid as read_map reads it: free up to 25 %, occupied from 65 % on, else unknown.
+Grid as_saved(const Grid& grid);
+
+/// Returns NAME.pgm and NAME.yaml for the path NAME or NAME.yaml. Throws MapError for a grid that read_map refuses.
+std::vector<OutputFile> map_files(const std::string& path, const Grid& grid);
+
+/// Writes these files. Throws MapError.
 void write_map(const std::string& path, const Grid& grid);
 
 }  // namespace robot_control::navigation

@@ -49,7 +49,8 @@ PoseGraph read_graph(const std::string& path, const Grid& grid) try {
 
 void save_map(const std::string& path, const Mapper& mapper) {
   if (mapper.graph().nodes.empty()) throw MapError("there is no map yet: no scan with enough walls was received");
-  write_map(path, mapper.grid());
+  const Grid grid = as_saved(mapper.grid());
+  std::vector<OutputFile> files = map_files(path, grid);
   const std::filesystem::path beside = path_of(path, ".g2o");
   const bool from_picture = mapper.graph().nodes[0].scan.ranges.empty();
   try {
@@ -57,8 +58,11 @@ void save_map(const std::string& path, const Mapper& mapper) {
       std::filesystem::remove(beside);
     } else {
       const std::string lines = text_of(mapper.graph());
-      write_output_file(beside.string(), lines + sum_of(lines, read_map(path_of(path, ".yaml").string())));
+      graph_of(lines);
+      files.push_back({beside.string(), lines + sum_of(lines, grid)});
+      if (files.back().text.size() > kMaxGraph) throw MapError("the graph has more than 256 MB: map a smaller area");
     }
+    write_output_files(files);
   } catch (const std::system_error& error) {
     throw MapError(error.what());
   }

@@ -11,7 +11,8 @@
 
 namespace robot_control::navigation {
 
-/// `path` is NAME or NAME.yaml. Throws MapError.
+/// `path` is NAME or NAME.yaml. All files are checked and written beside the old ones before the first one is replaced.
+/// Throws MapError, also for what load_map would refuse; the old files then stay.
 void save_map(const std::string& path, const Mapper& mapper);
 
 /// `path` is NAME.yaml. The robot is at the origin. Throws MapError; one for a graph names its line.

@@ -141,6 +141,22 @@ TEST_F(SavedMapTest, AMapThatBeganWithAPictureLeavesNoOldGraph) {
   EXPECT_FALSE(std::filesystem::exists(path("2.g2o")));
 }
 
+/// A file that cannot be written, and a graph that cannot be read again.
+TEST_F(SavedMapTest, AMapThatCannotBeSavedLeavesTheOldOneAsItWas) {
+  PoseGraph other = healthy();
+  other.nodes[1].pose.x = 2;
+  const std::string before = text_at(".pgm");
+  std::filesystem::create_directory(path(".g2o.new"));
+  std::ofstream(path(".g2o.new/file")) << "in the way";
+  EXPECT_THROW(save_map(path(""), Mapper(other)), MapError);
+  EXPECT_EQ(refusal(), "it was read");
+  std::filesystem::remove_all(path(".g2o.new"));
+  other.edges[0].measured.covariance.setConstant(NAN);
+  EXPECT_THROW(save_map(path(""), Mapper(other)), MapError);
+  EXPECT_EQ(refusal(), "it was read");
+  EXPECT_EQ(text_at(".pgm"), before);
+}
+
 TEST_F(SavedMapTest, NothingIsWrittenWithoutAMap) {
   EXPECT_THROW(save_map(path(""), Mapper()), MapError);
   EXPECT_EQ(refusal(), "it was read");
