@@ -82,8 +82,9 @@ class Costmap {
   /// 20 ns a cell.
   void update(double now, bool predicted = true);
 
-  /// Returns the grid as it is shown: 100 in an occupied cell, 99 where not even the inscribed circle is free, else up
-  /// to 98 by the nearness of obstacles. The predicted points count. The distances stay as they are.
+  /// Returns the grid as it is shown, with the predicted points. An occupied cell has 100, and one in which not even
+  /// the inscribed circle is free has 99. Others have up to 98 by the nearness of obstacles. The distances are not
+  /// changed.
   Grid picture(double now) const;
 
   bool occupied(Cell cell) const noexcept { return distance_[grid_.index(cell)] == 0; }

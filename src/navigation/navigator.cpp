@@ -177,8 +177,7 @@ void Navigator::drive(const NavigatorInput& input, Costmap& costmap, NavigatorOu
     return;
   }
   const double left = update_costs(input, costmap);
-  if (!paused && input.now >= path_until_ && left < stuck_at_ && left > 2 * kApproach)
-    return plan(input, costmap, out);
+  if (!paused && input.now >= path_until_ && left < stuck_at_ && left > 2 * kApproach) return plan(input, costmap, out);
   if (input.now - updated_at_ >= update_period(costmap)) {
     updated_at_ = input.now;
     costmap.update(input.now);

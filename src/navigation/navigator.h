@@ -4,7 +4,7 @@
 ///
 ///   planning   the first plan of a goal; a goal that the map alone does not allow is refused at once
 ///   driving    while the cost to the goal is above kApproach, a LocalController chooses the velocity. The costs are
-///              computed again every kReplanPeriod; those that do not reach the robot are not used, because an obstacle
+///              computed again every kReplanPeriod, of large maps less often; those that do not reach the robot are not used, because an obstacle
 ///              may go away. The rest is a path, which ends exactly at the goal. A path also replaces the
 ///              LocalController if the robot came no nearer for kStuckTime, and nothing moved within kEvadeDistance of
 ///              it. It does so for kStuckTime, and until the cost is below that of the place: the costs may lead

@@ -41,8 +41,8 @@ struct CostsToGoal {
 };
 
 /// The costs are length times Costmap::step_cost, and `narrow_factor` times that where the outline cannot be along any
-/// heading but one. A goal outside a window counts from the window's border. None is finite if the goal is outside a map.
-/// With `robot` those that exceed the cost there by kCostMargin need not be computed. They may then be infinite.
+/// heading but one. A goal outside a window counts from the window's border. None is finite if the goal is outside a
+/// map. With `robot` those that exceed the cost there by kCostMargin need not be computed. They may then be infinite.
 CostsToGoal costs_to(const Costmap& costmap, const PlanarPose& goal, double narrow_factor,
                      const std::optional<Point>& robot = std::nullopt);
 

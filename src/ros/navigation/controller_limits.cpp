@@ -21,11 +21,11 @@ DriveLimits limits_within(const Controller& controller) {
 DriveLimits limits_of(const DriveControllerParameters& wheels) {
   DriveLimits limits = limits_within(wheels);
   limits.reverse = std::min(limits.reverse, -wheels.min_linear_speed.value_or(-limits.reverse));
-  for (const auto& other : {wheels.max_linear_deceleration, wheels.max_linear_acceleration_reverse,
-                            wheels.max_linear_deceleration_reverse})
+  for (const auto& other :
+       {wheels.max_linear_deceleration, wheels.max_linear_acceleration_reverse, wheels.max_linear_deceleration_reverse})
     limits.linear_acceleration = std::min(limits.linear_acceleration, other.value_or(limits.linear_acceleration));
-  limits.angular_acceleration = std::min(limits.angular_acceleration,
-                                         wheels.max_angular_deceleration.value_or(limits.angular_acceleration));
+  limits.angular_acceleration =
+      std::min(limits.angular_acceleration, wheels.max_angular_deceleration.value_or(limits.angular_acceleration));
   return limits;
 }
 
