@@ -23,16 +23,18 @@ def bench(  # noqa: PLR0917 (the options of the command line)
     fields: barn.Fields,
     *,
     logs: Path | None = None,
+    robot: str = "diffbot",
 ) -> Result:
-    """The rows of these parts, and whether all bounds hold. `runs`: tours of each scene, drives of each kind, worlds,
-    or blocks of the costs. `logs`: the folder of the part of this name, which is left out without one.
+    """The rows of these parts, and whether all bounds hold. `runs`: tours of each scene, drives of each kind,
+    worlds, or blocks of the costs. `robot`: of the goals. `logs`: the folder of the part of this name, which is left
+    out without one.
 
     Raises:
         RuntimeError: MRPT is missing.
     """
     rows = _of_mrpt(parts, first, runs, say, logs) if set(parts) & set(MAPPING) else []
     if "goals" in parts:
-        rows += goals.goals(first, runs or goals.GOALS, say)
+        rows += goals.goals(first, runs, say, robot)
     if "faults" in parts:
         rows += goals.faults(first, runs or goals.FAULT_RUNS, say)
     if "guard" in parts:

@@ -24,6 +24,22 @@ bool near(const std::vector<MovingObject>& objects, const PlanarPose& pose) {
   });
 }
 
+/// Returns the limits of the robot at this place.
+DriveLimits limits_at(const NavigatorInput& input, const Costmap& costmap, const PlanarPose& pose) {
+  DriveLimits limits = input.limits;
+  const double speed =
+      std::min(input.speed, costmap.zones().speed_limit({pose.x, pose.y}, limits.forward, limits.linear_acceleration));
+  for (double* const limit : {&limits.forward, &limits.reverse, &limits.lateral}) *limit = std::min(*limit, speed);
+  return limits;
+}
+
+/// Returns the speed that is allowed everywhere on the path.
+double speed_on(const Plan& plan, const NavigatorInput& input, const Costmap& costmap) {
+  double speed = std::min(input.speed, input.limits.forward);
+  for (const PlanarPose& pose : plan.poses) speed = std::min(speed, limits_at(input, costmap, pose).forward);
+  return speed;
+}
+
 }  // namespace
 
 const char* name_of(NavigatorState state) {
@@ -59,7 +75,7 @@ NavigatorOutput Navigator::step(const NavigatorInput& input, Costmap* costmap) {
   if (active()) {
     if (!input.problem.empty()) {
       wait(input.problem, out);
-    } else if (state_ == NavigatorState::kDriving) {
+    } else if (costmap->let_out(input.pose); state_ == NavigatorState::kDriving) {
       drive(input, *costmap, out);
     } else if (input.now - planned_at_ >= kReplanPeriod) {
       plan(input, *costmap, out);
@@ -99,6 +115,7 @@ void Navigator::plan(const NavigatorInput& input, Costmap& costmap, NavigatorOut
   path_ = found;
   least_remaining_ = found.length;
   reason_.clear();
+  out.speed = speed_on(found, input, costmap);
   out.path = std::move(found);
 }
 
@@ -118,6 +135,7 @@ bool Navigator::begin_steering(const NavigatorInput& input, Costmap& costmap, co
   reason_.clear();
   if (!controller_) controller_.emplace(costmap.footprint());
   controller_->reset();
+  out.speed = speed_on(way, input, costmap);
   out.path = way;
   steer(input, costmap, out);
   return true;
@@ -137,7 +155,8 @@ void Navigator::steer(const NavigatorInput& input, Costmap& costmap, NavigatorOu
     path_until_ = input.now + kStuckTime;
     return plan(input, costmap, out);
   }
-  out.request = controller_->step(input.limits, costmap, to_goal_, input.pose, input.motion, input.objects);
+  const DriveLimits limits = limits_at(input, costmap, input.pose);
+  out.request = controller_->step(limits, costmap, to_goal_, input.pose, input.motion, input.objects);
   reason_ = input.now - progress_at_ > kReplanPeriod ? input.slowed_by : "";
 }
 

@@ -123,16 +123,28 @@ MAY_INCLUDE = {
     # The laws of a log, run again from its rows.
     "log/replay": LOOP,
     "simulation": ALL - {"simulation"} | {"simulation/machines"},
-    "bindings": ALL | {"log/replay", "navigation", "navigation/guard", "navigation/mapping", "navigation/mrpt"},
+    "bindings": ALL
+    | {"log/replay", "navigation", "navigation/driven", "navigation/guard", "navigation/mapping", "navigation/mrpt"},
     "ros": LOOP | {"files", "machine/description"},
     # Maps, costmap, planner: services beside the loop, without ROS.
     "navigation": {"signals", "files", "machine", "parameters"},
+    # The outline and the limits of each kind of robot.
+    "navigation/driven": {
+        "navigation",
+        "configuration",
+        "control/legged",
+        "machine",
+        "machine/description",
+        "machine/legs",
+        "robots",
+    },
     "navigation/guard": {"navigation", "machine", "signals"},
     "navigation/mapping": {"navigation", "files", "signals"},
     "navigation/mrpt": {"navigation"},
     "ros/navigation": {
         "signals",
         "navigation",
+        "navigation/driven",
         "navigation/guard",
         "navigation/mapping",
         "navigation/mrpt",

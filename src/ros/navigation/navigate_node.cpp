@@ -7,7 +7,7 @@
 
 #include <cmath>
 
-#include "navigation/footprint.h"
+#include "navigation/driven/driven_robot.h"
 #include "navigation/map_consistency.h"
 #include "navigation/map_file.h"
 #include "ros/navigation/goal_servers.h"
@@ -16,8 +16,8 @@
 #include "ros/navigation/scan_store.h"
 #include "ros/nodes/service_node.h"
 #include "ros/reports/diagnostics.h"
+#include "ros/startup/description.h"
 #include "signals/formatted_text.h"
-#include "signals/robot_kinds.h"
 
 namespace robot_control::navigation {
 namespace {
@@ -25,43 +25,14 @@ namespace {
 constexpr double kPeriod = 0.1;      // s
 constexpr double kTfTimeout = 0.3;   // s for which a scan waits for tf
 constexpr double kMaxPoseAge = 1.0;  // s; a localisation is as slow as its scans
-constexpr double kMaxLateral = 0.3;  // m/s; as teleop.py
-
-constexpr const char* kDescription = "robot_description";
 constexpr std::uint32_t kMapOverhead = 1024;  // bytes of a message beside its cells
-
-Footprint read_footprint(const ros::NodeHandle& handle) {
-  std::string urdf;
-  handle.getParam(kDescription, urdf);
-  return footprint_of_urdf(urdf, handle.resolveName(kDescription));
-}
-
-/// Returns the limits of the controller of this kind of robot, within those of follow_path.
-DriveLimits limits_of(const Parameters& parameters, bool on_legs) {
-  DriveLimits limits;
-  const auto limit = [&](const auto& drive) {
-    limits.forward = drive.max_linear_speed;
-    limits.reverse = std::min(limits.reverse, drive.max_linear_speed);
-    limits.angular = std::min(limits.angular, drive.max_angular_speed);
-    limits.linear_acceleration = drive.max_linear_acceleration;
-    limits.angular_acceleration = drive.max_angular_acceleration;
-  };
-  if (on_legs) {
-    limit(parameters.leg_control);
-    limits.lateral = std::min(kMaxLateral, parameters.leg_control.max_lateral_speed);
-  } else {
-    limit(parameters.controller);
-    limits.reverse = std::min(limits.reverse, -parameters.controller.min_linear_speed.value_or(-limits.reverse));
-  }
-  return limits;
-}
 
 class NavigateService {
  public:
   explicit NavigateService(const Parameters& parameters)
       : parameters_(parameters.navigate),
-        limits_(limits_of(parameters, false)),
-        footprint_(read_footprint(handle_)),
+        robot_(driven_robot(published_description(), parameters)),
+        zones_(parameters_.zones.empty() ? Grid() : read_map(parameters_.zones)),
         scans_(handle_),
         path_client_(handle_),
         servers_(
@@ -69,20 +40,12 @@ class NavigateService {
     allow_messages_of(kMaxCells + kMapOverhead);
     map_.connect(handle_, [this](const nav_msgs::OccupancyGrid& message) { receive_map(message); });
     localized_.connect(handle_, [this](const LocalizationState& message) { localization_ = message; });
-    kind_.connect(handle_, [this, parameters](const RobotKind& message) {
-      limits_ = limits_of(parameters, message.kind == kLeggedKind);
-    });
     costmap_topic_ = handle_.advertise<nav_msgs::OccupancyGrid>("costmap", 1, true);
     clear_ = handle_.advertiseService("clear_costmaps", &NavigateService::clear, this);
     timer_ = handle_.createWallTimer(ros::WallDuration(kPeriod), [this](const ros::WallTimerEvent&) { step(); });
   }
 
-  /// The outline of the robot is that of its description.
-  static std::vector<std::string> missing() {
-    const ros::NodeHandle handle;
-    if (handle.hasParam(kDescription)) return {};
-    return {handle.resolveName(kDescription) + ": start the robot"};
-  }
+  static std::vector<std::string> missing() { return missing_description(); }
 
   void diagnose(DiagnosticReport& report) {
     const NavigatorState state = navigator_.active() ? output_.state
@@ -119,9 +82,14 @@ class NavigateService {
     }
     const int columns = static_cast<int>(info.width), rows = static_cast<int>(info.height);
     costmap_.reset();  // before the new one: two of the largest maps would take 0.8 GB
-    costmap_ = std::make_unique<Costmap>(Grid{columns, rows, info.resolution, origin.x, origin.y, data}, footprint_,
-                                         parameters_.unknown_is_free);
+    use(std::make_unique<Costmap>(Grid{columns, rows, info.resolution, origin.x, origin.y, data}, robot_.outline,
+                                  parameters_.unknown_is_free));
     consistency_ = MapConsistency();
+  }
+
+  void use(std::unique_ptr<Costmap> costmap) {
+    costmap_ = std::move(costmap);
+    costmap_->set_zones(zones_);
   }
 
   /// Inserts a scan into the costmap, and compares it with the map. A scan waits until tf has the pose at its stamp.
@@ -129,7 +97,7 @@ class NavigateService {
     if (!waiting_ || (time - waiting_->seen.stamp).toSec() > kTfTimeout) {
       if (auto scan = scans_.next_scan()) waiting_ = std::move(scan);
     }
-    if (!costmap_ && scans_.odom_frame() == parameters_.map_frame) costmap_ = std::make_unique<Costmap>(footprint_);
+    if (!costmap_ && scans_.odom_frame() == parameters_.map_frame) use(std::make_unique<Costmap>(robot_.outline));
     if (!waiting_ || !costmap_) return;
     const PlacedScan& seen = waiting_->seen;
     const auto base = frames_.lookup(parameters_.map_frame, scans_.input().base_frame(), seen.stamp, scan_problem_);
@@ -204,15 +172,13 @@ class NavigateService {
       const GuardReport guard = scans_.guard();
       const std::string slowed_by = path_client_.reason().empty() ? guard.reason : path_client_.reason();
       heed(guard);
-      DriveLimits limits = limits_;
-      limits.forward = std::min(limits.forward, goal_speed_ > 0 ? goal_speed_ : parameters_.speed);
-      output_ = navigator_.step({now(), why, consistency_.explanation(), slowed_by, pose_, scans_.motion(),
-                                 path_client_.report(), limits, moving_},
-                                costmap_.get());
+      output_ = navigator_.step(
+          {now(), why, consistency_.explanation(), slowed_by, pose_, scans_.motion(), path_client_.report(),
+           robot_.limits, moving_, goal_speed_ > 0 ? goal_speed_ : parameters_.speed},
+          costmap_.get());
       if (output_.cancel) path_client_.cancel();
       if (output_.path)
-        path_client_.send(*output_.path, parameters_.map_frame, limits.forward, output_.request.has_value(),
-                          requested_);
+        path_client_.send(*output_.path, parameters_.map_frame, output_.speed, output_.request.has_value(), requested_);
       if (output_.request) path_client_.steer(*output_.request);
       if (output_.state == NavigatorState::kReached) conclude(true, false, "reached");
       if (output_.state == NavigatorState::kFailed) conclude(false, false, output_.reason);
@@ -233,7 +199,7 @@ class NavigateService {
     Grid grid = costmap_->grid();
     for (int row = 0; row < grid.rows; ++row) {
       for (int column = 0; column < grid.columns; ++column) {
-        const double air = costmap_->distance({column, row}) - footprint_.inscribed;
+        const double air = costmap_->distance({column, row}) - robot_.outline.inscribed;
         grid.cells[grid.index({column, row})] =
             air > 0                             ? static_cast<std::int8_t>(98 * std::max(0.0, 1 - air / kFullClearance))
             : costmap_->occupied({column, row}) ? kOccupiedCell
@@ -250,8 +216,8 @@ class NavigateService {
 
   ros::NodeHandle handle_;
   const NavigateParameters parameters_;
-  DriveLimits limits_;
-  const Footprint footprint_;
+  const DrivenRobot robot_;
+  const Zones zones_;
   ScanStore scans_;
   const Frames& frames_ = scans_.input().frames();
   PathClient path_client_;
@@ -260,14 +226,13 @@ class NavigateService {
   GoalServers servers_;
   InputTopic<BoundedOccupancyGrid> map_{"map", 1};
   InputTopic<BoundedLocalizationState> localized_{"localization_state", 1};
-  InputTopic<BoundedRobotKind> kind_{"robot_kind", 1};
   LocalizationState localization_;  // the newest
   ros::Publisher costmap_topic_;
   ros::ServiceServer clear_;
   ros::WallTimer timer_;
 
   double goal_speed_ = 0;  // m/s
-  double held_since_ = 0;  // s
+  double held_since_ = 0;              // s
   std::string map_problem_ = "no map received: start slam, or localization with a saved map";
   std::optional<StoredScan> waiting_;  // for tf
   ros::Time seen_at_, requested_;

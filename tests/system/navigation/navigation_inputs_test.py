@@ -1,10 +1,12 @@
 """navigate with wrong maps, scans and transforms: each goal is refused with the cause, and the node goes on."""
 
 import math
+import tempfile
 import time
 import unittest
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from pathlib import Path
 
 import actionlib
 import numpy as np
@@ -177,6 +179,16 @@ class NavigationInputsTest(unittest.TestCase):
         refused = refusal("navigate", "__name:=wrong")
         for problem in ("navigate.speed", "must be true or false", "navigate.map_frame", "navigate.sped"):
             self.assertIn(problem, refused)
+
+    def test_6_a_damaged_file_of_zones_refuses_the_start_in_one_message(self) -> None:
+        with tempfile.TemporaryDirectory() as folder:
+            zones = Path(folder) / "zones.yaml"
+            zones.write_text("image: zones.pgm\nresolution: -1\norigin: [0, 0, 0]\nnegate: 0\n")
+            rospy.set_param("/wrong", {"zones": str(zones)})
+            refused = refusal("navigate", "__name:=wrong")
+            self.assertIn("zones.yaml: the key occupied_thresh is missing", refused)
+            self.assertEqual(refused.count("zones.yaml"), 1, refused)
+        rospy.delete_param("/wrong")
 
     def test_6_bad_messages_are_refused_and_the_node_goes_on(self) -> None:
         topics = {"scan": LaserScan, "odom": Odometry, "map": OccupancyGrid, "tf": TFMessage}
