@@ -25,6 +25,7 @@ namespace {
 constexpr double kPeriod = 0.1;      // s
 constexpr double kTfTimeout = 0.3;   // s for which a scan waits for tf
 constexpr double kMaxPoseAge = 1.0;  // s; a localisation is as slow as its scans
+constexpr std::size_t kMaxWaypoints = 1000;
 constexpr std::uint32_t kMapOverhead = 1024;  // bytes of a message beside its cells
 
 class NavigateService {
@@ -134,23 +135,39 @@ class NavigateService {
   void begin(const GoalServers::Goal& goal) {
     requested_ = ros::Time::now();
     goal_speed_ = goal.speed;
-    PlanarPose target = planar_of(goal.target.pose);
-    std::string why, frame = goal.target.header.frame_id;
-    if (!frame.empty() && frame[0] == '/') frame.erase(0, 1);
-    if (!std::isfinite(target.yaw)) return refuse("the goal's orientation is not a quaternion of length 1");
-    if (!(std::hypot(target.x, target.y) <= kFarthest)) return refuse("the goal is not finite, or beyond 1000 km");
-    if (!(goal.speed >= 0 && goal.speed <= 10)) return refuse("the goal's speed must be from 0 to 10 m/s");
-    if (frame.empty())
-      return refuse("the goal has no frame: set header.frame_id, for instance to " + parameters_.map_frame);
-    if (frame != parameters_.map_frame) {
-      const auto found = frames_.lookup(parameters_.map_frame, frame, ros::Time(), why);
-      if (!found) return refuse("tf does not connect the goal's frame with the map's: " + why);
-      target = composed(found->pose, target);
+    if (!(goal.speed >= 0 && goal.speed <= 10)) return cancel("the goal's speed must be from 0 to 10 m/s", false);
+    if (goal.targets.empty() || goal.targets.size() > kMaxWaypoints)
+      return cancel("the goal has " + std::to_string(goal.targets.size()) + " waypoints: send 1 to 1000", false);
+    waypoints_.clear();
+    for (const geometry_msgs::PoseStamped& target : goal.targets) {
+      PlanarPose pose;
+      if (const std::string why = place(target, pose); !why.empty())
+        return cancel(numbered(why, waypoints_.size(), goal.targets.size()), false);
+      waypoints_.push_back(pose);
     }
-    navigator_.begin(target, now());
+    next_ = 0;
+    navigator_.begin(waypoints_[0], now());
   }
 
-  void refuse(const std::string& why) { cancel(why, false); }
+  /// Sets the pose in the map; returns why it cannot be a goal.
+  std::string place(const geometry_msgs::PoseStamped& target, PlanarPose& pose) const {
+    pose = planar_of(target.pose);
+    std::string why, frame = target.header.frame_id;
+    if (!frame.empty() && frame[0] == '/') frame.erase(0, 1);
+    if (!std::isfinite(pose.yaw)) return "the goal's orientation is not a quaternion of length 1";
+    if (!(std::hypot(pose.x, pose.y) <= kFarthest)) return "the goal is not finite, or beyond 1000 km";
+    if (frame.empty()) return "the goal has no frame: set header.frame_id, for instance to " + parameters_.map_frame;
+    if (frame == parameters_.map_frame) return "";
+    const auto found = frames_.lookup(parameters_.map_frame, frame, ros::Time(), why);
+    if (!found) return "tf does not connect the goal's frame with the map's: " + why;
+    pose = composed(found->pose, pose);
+    return "";
+  }
+
+  /// Returns a reason that names its waypoint, if there are several.
+  static std::string numbered(const std::string& why, std::size_t index, std::size_t count) {
+    return count == 1 ? why : formatted("waypoint %zu of %zu: ", index + 1, count) + why;
+  }
 
   void cancel(const std::string& why, bool cancelled = true) {
     if (navigator_.active()) path_client_.cancel();
@@ -180,9 +197,21 @@ class NavigateService {
       if (output_.path)
         path_client_.send(*output_.path, parameters_.map_frame, output_.speed, output_.request.has_value(), requested_);
       if (output_.request) path_client_.steer(*output_.request);
-      if (output_.state == NavigatorState::kReached) conclude(true, false, "reached");
-      if (output_.state == NavigatorState::kFailed) conclude(false, false, output_.reason);
-      servers_.feedback(output_, pose_, parameters_.map_frame);
+      geometry_msgs::PoseStamped pose;
+      pose.header.stamp = time;
+      pose.header.frame_id = parameters_.map_frame;
+      pose.pose = pose_message(pose_);
+      if (output_.state == NavigatorState::kReached) {
+        servers_.reach(pose);
+        if (++next_ < waypoints_.size()) {
+          navigator_.begin(waypoints_[next_], now());
+        } else {
+          conclude(true, false, "reached");
+        }
+      }
+      if (output_.state == NavigatorState::kFailed)
+        conclude(false, false, numbered(output_.reason, next_, waypoints_.size()));
+      servers_.feedback(output_, pose);
     }
   }
 
@@ -231,7 +260,9 @@ class NavigateService {
   ros::ServiceServer clear_;
   ros::WallTimer timer_;
 
-  double goal_speed_ = 0;  // m/s
+  std::vector<PlanarPose> waypoints_;  // in the map, of the present goal
+  std::size_t next_ = 0;               // of them
+  double goal_speed_ = 0;              // m/s
   double held_since_ = 0;              // s
   std::string map_problem_ = "no map received: start slam, or localization with a saved map";
   std::optional<StoredScan> waiting_;  // for tf
