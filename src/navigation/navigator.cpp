@@ -152,7 +152,8 @@ void Navigator::steer(const NavigatorInput& input, Costmap& costmap, NavigatorOu
   if (paused || near(input.objects, input.pose)) steered_at_ = input.now;
   const bool stuck = input.now - std::max(progress_at_, steered_at_) > kStuckTime;
   if (left < kApproach || stuck) {
-    path_until_ = input.now + kStuckTime;
+    stuck_ += stuck ? 1 : 0;
+    path_until_ = stuck_ > 1 ? std::numeric_limits<double>::infinity() : input.now + kStuckTime;
     return plan(input, costmap, out);
   }
   const DriveLimits limits = limits_at(input, costmap, input.pose);

@@ -7,7 +7,8 @@
 ///              computed again every kReplanPeriod; those that do not reach the robot are not used, because an obstacle
 ///              may go away. The rest is a path, which ends exactly at the goal. A path also replaces the
 ///              LocalController for kStuckTime if the robot came no nearer for as long, and nothing moved within
-///              kEvadeDistance of it
+///              kEvadeDistance of it. The costs may lead through a gap that the outline cannot pass, because they
+///              have no headings. If the robot is stuck again, a path therefore leads to the goal
 ///   waiting    nothing is driven: there is no path, it is blocked within kStopDistance, or the laser, the map or the
 ///              pose cannot be trusted. The goal is given up after kNoProgressTime; before the first path, after
 ///              kFirstPathTime
@@ -108,7 +109,7 @@ class Navigator {
   double progress_at_ = 0;                        // s, when the robot last came nearer or began a path
   double least_remaining_ = 0;                    // m
   double planned_at_ = -1e9, updated_at_ = -1e9;  // s
-  int attempts_ = 0;
+  int attempts_ = 0, stuck_ = 0;
   std::optional<LocalController> controller_;
   CostsToGoal to_goal_;
   bool steering_ = false;
