@@ -78,7 +78,7 @@ TEST(PlacesAheadTest, TheyAreThoseOfWhatPassesAStandingRobot) {
 }
 
 TEST(MoversSeenFromTest, TheyAreTurnedIntoTheAxesOfTheBase) {
-  const MovingObject seen = in_base_axes(object({2, 1}, {0.5, 0}), {2, 0, M_PI / 2})[0];
+  const MovingObject seen = composed(inverse({2, 0, M_PI / 2}), object({2, 1}, {0.5, 0}))[0];
   EXPECT_NEAR(seen.points[0].x, 1, 1e-9);
   EXPECT_NEAR(seen.points[0].y, 0, 1e-9);
   EXPECT_NEAR(seen.velocity.y, -0.5, 1e-9);

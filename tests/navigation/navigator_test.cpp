@@ -1,4 +1,4 @@
-#include "navigation/navigator.h"
+#include "navigation/goals/navigator.h"
 
 #include "navigation/guard/motion_clearance.h"
 #include "navigation/house.h"
@@ -77,7 +77,7 @@ struct NavigatorTest : testing::Test {
   double steered_ = 0;  // m
   double now_ = 100, least_air_ = 1e9;
   int paths_ = 0;
-  bool stuck_ = false;  // no velocity moves it, but a path does
+  bool stuck_ = false;                       // no velocity moves it, but a path does
   std::optional<PathReport::State> paused_;  // follow_path does not drive, and reports this
 };
 

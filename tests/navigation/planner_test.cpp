@@ -1,4 +1,4 @@
-#include "navigation/planner.h"
+#include "navigation/goals/planner.h"
 
 #include <algorithm>
 #include <fstream>

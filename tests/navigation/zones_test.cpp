@@ -8,9 +8,9 @@
 #include <fstream>
 #include <random>
 
+#include "navigation/goals/navigator.h"
 #include "navigation/house.h"
 #include "navigation/map_file.h"
-#include "navigation/navigator.h"
 #include "support/damaged_text.h"
 #include "support/matchers.h"
 
@@ -82,7 +82,7 @@ struct RobotWithZones : testing::Test {
     const Cell base = mask.cell_at(pose_.x, pose_.y);
     for (int row = 0; row < mask.rows; ++row) {
       for (int column = 0; column < mask.columns; ++column) {
-        const Point away = in_base_axes({{mask.x_of(column), mask.y_of(row)}}, pose_)[0];
+        const Point away = composed(inverse(pose_), std::vector<Point>{{mask.x_of(column), mask.y_of(row)}})[0];
         if (mask.cells[mask.index({column, row})] == kOccupiedCell)
           inside_ = std::min(inside_, diffbot().distance(away));
       }

@@ -124,13 +124,24 @@ MAY_INCLUDE = {
     "log/replay": LOOP,
     "simulation": ALL - {"simulation"} | {"simulation/machines"},
     "bindings": ALL
-    | {"log/replay", "navigation", "navigation/driven", "navigation/guard", "navigation/mapping", "navigation/mrpt"},
+    | {
+        "log/replay",
+        "navigation",
+        "navigation/driven",
+        "navigation/goals",
+        "navigation/guard",
+        "navigation/mapping",
+        "navigation/mrpt",
+    },
     "ros": LOOP | {"files", "machine/description"},
-    # Maps, costmap, planner: services beside the loop, without ROS.
+    # Maps, costmap, zones: services beside the loop, without ROS.
     "navigation": {"signals", "files", "machine", "parameters"},
+    # Planner, local control, and what supervises both.
+    "navigation/goals": {"navigation", "signals"},
     # The outline and the limits of each kind of robot.
     "navigation/driven": {
         "navigation",
+        "navigation/goals",
         "configuration",
         "control/legged",
         "machine",
@@ -145,6 +156,7 @@ MAY_INCLUDE = {
         "signals",
         "navigation",
         "navigation/driven",
+        "navigation/goals",
         "navigation/guard",
         "navigation/mapping",
         "navigation/mrpt",

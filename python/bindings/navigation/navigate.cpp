@@ -12,12 +12,12 @@
 #include "bindings/navigation/conversions.h"
 #include "bindings/numpy_version.h"
 #include "navigation/driven/driven_robot.h"
+#include "navigation/goals/navigator.h"
 #include "navigation/guard/collision_guard.h"
 #include "navigation/guard/moving_outline.h"
 #include "navigation/map_consistency.h"
 #include "navigation/map_file.h"
 #include "navigation/moving_objects.h"
-#include "navigation/navigator.h"
 #include "navigation/scan_watch.h"
 
 namespace py = pybind11;
@@ -68,13 +68,14 @@ class Navigation {
     costmap_.centre_on({place[0], place[1]}, now);
     consistency_.update(costmap_.insert(scan, composed(planar_of(place), planar_of(sensor)), now));
     const PlanarPose base = planar_of(odometry);
-    moving_ = foresee(in_base_axes(objects_.update(scan, composed(base, planar_of(sensor)), now), base),
-                      planar_of(place), costmap_);
+    moving_ = composed(composed(planar_of(place), inverse(base)),
+                       objects_.update(scan, composed(base, planar_of(sensor)), now));
+    foresee(moving_, planar_of(place), costmap_);
     const std::string problem = watch_.problem(now);
     return problem.empty() ? consistency_.problem() : problem;
   }
   void block(const Pose& place, const std::array<double, 2>& obstacle, double now) {
-    costmap_.block(from_base_axes({{obstacle[0], obstacle[1]}}, planar_of(place))[0], now);
+    costmap_.block(composed(planar_of(place), std::vector<Point>{{obstacle[0], obstacle[1]}})[0], now);
   }
   double distance(double x, double y) const { return costmap_.footprint().distance({x, y}); }
   py::tuple plan(const Pose& start, const Pose& goal, double now) {

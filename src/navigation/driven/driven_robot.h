@@ -11,7 +11,7 @@
 #include "configuration/parameters.h"
 #include "machine/description/robot_description.h"
 #include "navigation/footprint.h"
-#include "navigation/local_controller.h"
+#include "navigation/goals/local_controller.h"
 
 namespace robot_control::navigation {
 

@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "navigation/navigator.h"
+#include "navigation/goals/navigator.h"
 #include "ros/navigation/bounded_inputs.h"
 
 namespace robot_control::navigation {

@@ -105,7 +105,8 @@ class NavigateService {
     if (!base) return;
     costmap_->centre_on({base->pose.x, base->pose.y}, now());
     consistency_.update(costmap_->insert(seen.scan, composed(base->pose, seen.laser), now()));
-    moving_ = foresee(waiting_->moving, base->pose, *costmap_);
+    moving_ = composed(composed(base->pose, inverse(seen.odometry.mean)), waiting_->moving);
+    foresee(moving_, base->pose, *costmap_);
     waiting_.reset();
     seen_at_ = time;
   }
@@ -219,7 +220,7 @@ class NavigateService {
   void heed(const GuardReport& guard) {
     if (!guard.holds) held_since_ = now();
     if (costmap_ && guard.obstacle && now() - held_since_ > kReplanPeriod)
-      costmap_->block(from_base_axes({*guard.obstacle}, pose_)[0], now());
+      costmap_->block(composed(pose_, std::vector{*guard.obstacle})[0], now());
   }
 
   void publish_costmap() {

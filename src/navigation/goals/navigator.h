@@ -21,8 +21,8 @@
 #include <optional>
 #include <string>
 
-#include "navigation/local_controller.h"
-#include "navigation/planner.h"
+#include "navigation/goals/local_controller.h"
+#include "navigation/goals/planner.h"
 
 namespace robot_control::navigation {
 

@@ -1,4 +1,4 @@
-#include "navigation/planner.h"
+#include "navigation/goals/planner.h"
 
 #include <algorithm>
 #include <array>
@@ -9,7 +9,7 @@
 #include <unordered_map>
 #include <utility>
 
-#include "navigation/straightening.h"
+#include "navigation/goals/straightening.h"
 #include "signals/formatted_text.h"
 
 namespace robot_control::navigation {

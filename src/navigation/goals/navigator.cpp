@@ -1,4 +1,4 @@
-#include "navigation/navigator.h"
+#include "navigation/goals/navigator.h"
 
 #include <algorithm>
 #include <array>
@@ -6,7 +6,7 @@
 #include <limits>
 #include <utility>
 
-#include "navigation/straightening.h"
+#include "navigation/goals/straightening.h"
 #include "signals/formatted_text.h"
 
 namespace robot_control::navigation {
