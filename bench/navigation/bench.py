@@ -6,10 +6,10 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from bench.navigation import barn, goals, guard
+from bench.navigation import barn, goals, guard, routes
 from bench.rows import Result, Say, judged
 
-PARTS = ("map", "logs", "localization", "goals", "faults", "guard", "barn", "cost")
+PARTS = ("map", "logs", "localization", "goals", "routes", "faults", "guard", "barn", "cost")
 MAPS, SPEEDS = tuple(barn.SUCCESSES), tuple(barn.CLIPS)
 MAPPING = ("map", "logs", "localization")
 
@@ -25,7 +25,7 @@ def bench(  # noqa: PLR0917 (the options of the command line)
     logs: Path | None = None,
     robot: str = "diffbot",
 ) -> Result:
-    """The rows of these parts, and whether all bounds hold. `runs`: tours of each scene, drives of each kind,
+    """The rows of these parts, and whether all bounds hold. `runs`: tours of each scene, drives or routes of each kind,
     worlds, or blocks of the costs. `robot`: of the goals. `logs`: the folder of the part of this name, which is left
     out without one.
 
@@ -35,6 +35,8 @@ def bench(  # noqa: PLR0917 (the options of the command line)
     rows = _of_mrpt(parts, first, runs, say, logs) if set(parts) & set(MAPPING) else []
     if "goals" in parts:
         rows += goals.goals(first, runs, say, robot)
+    if "routes" in parts:
+        rows += routes.routes(first, runs or routes.ROUTES, say)
     if "faults" in parts:
         rows += goals.faults(first, runs or goals.FAULT_RUNS, say)
     if "guard" in parts:
