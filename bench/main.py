@@ -75,7 +75,7 @@ PARTS = {
 NAMES = MEASURED + JUDGED
 SEED_PROGRAMS = {"limiter": 1_000_000, "release": 10_000, "bags": 10_000}  # seeds; a minute at most on two cores
 BY_WHEEL_COMMAND = ("campaign", "driving", "drive", "release")
-BY_ROBOT = ("campaign", "processes", "record", "release")
+BY_ROBOT = ("campaign", "navigation", "processes", "record", "release")
 ON_CLUSTERS = ("campaign", "devices", "driving", "odometry", "tuning", *SEED_PROGRAMS)
 
 
@@ -182,6 +182,7 @@ TRIALS: dict[str, tuple[str, Callable[[Any, argparse.Namespace, Runner], Result]
             say,
             m.barn.Fields(g.map, g.speed, g.worlds),
             logs=g.logs,
+            robot=g.robot,
         ),
     ),
     "loops": ("loops", lambda m, g, _: m.bench(_parts_of("loops", g), g.programs, g.params, say)),

@@ -8,7 +8,7 @@ find_package(catkin REQUIRED COMPONENTS
   tf2_msgs trajectory_msgs)
 
 catkin_python_setup()
-add_action_files(FILES FollowPath.action NavigateTo.action)
+add_action_files(FILES FollowPath.action NavigateThrough.action NavigateTo.action)
 file(GLOB messages RELATIVE ${CMAKE_CURRENT_SOURCE_DIR}/msg CONFIGURE_DEPENDS msg/*.msg)
 file(GLOB services RELATIVE ${CMAKE_CURRENT_SOURCE_DIR}/srv CONFIGURE_DEPENDS srv/*.srv)
 add_message_files(FILES ${messages})

@@ -6,10 +6,10 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from bench.navigation import barn, goals, guard
+from bench.navigation import barn, goals, guard, routes
 from bench.rows import Result, Say, judged
 
-PARTS = ("map", "logs", "localization", "goals", "faults", "guard", "barn", "cost")
+PARTS = ("map", "logs", "localization", "goals", "routes", "faults", "guard", "barn", "cost")
 MAPS, SPEEDS = tuple(barn.SUCCESSES), tuple(barn.CLIPS)
 MAPPING = ("map", "logs", "localization")
 
@@ -23,16 +23,20 @@ def bench(  # noqa: PLR0917 (the options of the command line)
     fields: barn.Fields,
     *,
     logs: Path | None = None,
+    robot: str = "diffbot",
 ) -> Result:
-    """The rows of these parts, and whether all bounds hold. `runs`: tours of each scene, drives of each kind, worlds,
-    or blocks of the costs. `logs`: the folder of the part of this name, which is left out without one.
+    """The rows of these parts, and whether all bounds hold. `runs`: tours of each scene, drives or routes of each kind,
+    worlds, or blocks of the costs. `robot`: of the goals. `logs`: the folder of the part of this name, which is left
+    out without one.
 
     Raises:
         RuntimeError: MRPT is missing.
     """
     rows = _of_mrpt(parts, first, runs, say, logs) if set(parts) & set(MAPPING) else []
     if "goals" in parts:
-        rows += goals.goals(first, runs or goals.GOALS, say)
+        rows += goals.goals(first, runs, say, robot)
+    if "routes" in parts:
+        rows += routes.routes(first, runs or routes.ROUTES, say)
     if "faults" in parts:
         rows += goals.faults(first, runs or goals.FAULT_RUNS, say)
     if "guard" in parts:

@@ -11,15 +11,15 @@ from numpy.typing import NDArray
 from robot_control.installed_files import share_file
 
 from bench.navigation.scene_map import Map, Obstacle, read_scene, true_map
-from bench.navigation.tour import LASER, Place
+from bench.navigation.tour import DIFFBOT, LASER, QUADBOT, Machine, Place
 from bench.navigation.virtual import Lies, Robot, Trip
 from bench.rows import Row, Say, bounded
 from bench.runs.runner import Processes
 
-SCENES = ("room", "crowd")
-GOALS, FAULT_RUNS, PER_ROBOT = 100, 50, 5
+SCENES = {"diffbot": ("room", "crowd"), "quadbot": ("room",)}
+MACHINES = {"diffbot": DIFFBOT, "quadbot": QUADBOT}
+GOALS, FAULT_RUNS, PER_ROBOT = {"diffbot": 100, "quadbot": 30}, 50, 5
 AT_GOAL, AT_HEADING = 0.05, math.radians(3)  # m, rad
-HALF_WIDTH = 0.27  # m, of the shipped robot: the narrowest feasible way is twice as wide
 PADDING = 0.07  # m of air; with less than this and a cell a goal or a way may be refused (docs/navigation.md)
 WRONG = 0.1  # of the goals are anywhere in the scene
 ASIDE = 0.8  # m: nearer to the way of a cart, which stops for nothing, no robot may stand
@@ -44,7 +44,7 @@ def random_goal(random: np.random.Generator, known: Map) -> Place:
     return float(x), float(y), float(random.uniform(-math.pi, math.pi))
 
 
-def shortest(known: Map, start: Place, goal: Place, radius: float = HALF_WIDTH) -> float:
+def shortest(known: Map, start: Place, goal: Place, radius: float) -> float:
     """m of the shortest way of a circle over every second cell of the map, in steps to 16 neighbours; infinite without
     one.
     """
@@ -82,23 +82,23 @@ def grown(occupied: NDArray[np.bool_], radius: float) -> NDArray[np.bool_]:
     return result
 
 
-def drive_goals(task: tuple[str, int]) -> list[tuple[Trip, bool, float]]:
+def drive_goals(task: tuple[str, int, Machine]) -> list[tuple[Trip, bool, float]]:
     """PER_ROBOT goals of one seed: the trip, whether a refusal is true, the shortest way [m]."""
-    scene, seed = task
+    scene, seed, machine = task
     obstacles, known = scene_of(scene)
     random = np.random.default_rng(seed)
-    robot = Robot(scene, obstacles, known, seed)
+    robot = Robot(scene, obstacles, known, seed, machine)
     trips = []
     for _ in range(PER_ROBOT):
         start, goal = robot.place, random_goal(random, known)
         wrong = random.random() < WRONG
         while not (aside(obstacles, goal) and (wrong or feasible(robot, known, goal))):
             goal = random_goal(random, known)
-        possible, way = feasible(robot, known, goal), shortest(known, start, goal)
+        possible, way = feasible(robot, known, goal), shortest(known, start, goal, robot.half_width)
         trip = robot.drive(goal)
         trips.append((trip, not possible, way))
         if trip.hit:  # a cart pushes it anywhere, through walls, too
-            robot = Robot(scene, obstacles, known, seed)
+            robot = Robot(scene, obstacles, known, seed, machine)
     return trips
 
 
@@ -113,7 +113,7 @@ def feasible(robot: Robot, known: Map, goal: Place) -> bool:
     air = PADDING + known[2]
     if robot.air_at(goal, moving=False) < air:
         return False
-    return math.isfinite(shortest(known, robot.place, goal, HALF_WIDTH + air))
+    return math.isfinite(shortest(known, robot.place, goal, robot.half_width + air))
 
 
 def drive_lies(task: tuple[str, int]) -> tuple[Trip, float]:
@@ -157,14 +157,14 @@ LIES = {
 }
 
 
-def goals(first: int, runs: int, say: Say) -> list[Row]:
+def goals(first: int, runs: int | None, say: Say, robot: str = "diffbot") -> list[Row]:
     """Rows of `goals`; `runs`: goals in each scene."""
     rows = []
-    for scene in SCENES:
-        count = math.ceil(runs / PER_ROBOT)
-        tasks = [(scene, seed) for seed in range(first, first + count)]
+    for scene in SCENES[robot]:
+        count = math.ceil((runs or GOALS[robot]) / PER_ROBOT)
+        tasks = [(scene, seed, MACHINES[robot]) for seed in range(first, first + count)]
         trips = [trip for found in Processes().outcomes(drive_goals, tasks, say) for trip in found]
-        rows += _goal_rows(scene, trips, say)
+        rows += _goal_rows(scene if robot == "diffbot" else f"{robot}, {scene}", trips, say)
     return rows
 
 

@@ -55,9 +55,11 @@ class Machine:
     urdf: str
     laser: Place = LASER  # in base_link
     view: dict[str, float] = field(default_factory=dict)  # keys of mujoco_plant.laser
+    legs: bool = False
 
 
 DIFFBOT = Machine(share_file("urdf/diffbot.urdf"))
+QUADBOT = Machine(share_file("urdf/quadbot.urdf"), (0.0, 0.0, 0.0), legs=True)
 
 
 def new_loop(

@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
+from numpy.typing import NDArray
 from robot_control import ClosedLoop
 from robot_control._navigation import Guard, Navigation
 from robot_control.drive.path.follower import Follower, FollowParameters, Motion, State
@@ -24,7 +25,11 @@ LONGEST = 240.0  # s for one goal
 STANDING = 10  # scans before and after it
 HELD = 1.0  # s without a free way after which its obstacle is marked in the costmap: kReplanPeriod
 NEARER = 0.001  # m in one step: 0.05 m/s
-REACH = 0.6  # m: farther points are not looked at
+REACH = 0.8  # m: farther points are not looked at
+RISE = 4.0  # s
+Command = tuple[float, float, float]
+"""linear, lateral [m/s], angular [rad/s]"""
+STAND: Command = (0.0, 0.0, 0.0)
 
 
 @dataclass
@@ -68,10 +73,14 @@ class Robot:
     ) -> None:
         self.machine, self.speed = machine, SPEED
         self.loop: ClosedLoop = new_loop(scene, seed, machine=machine)
+        if machine.legs:
+            self.loop.set_posture("standing")
+            self.loop.run(RISE)
         self._obstacles = obstacles
         self._standing = np.concatenate([item.outline(0.0) for item in obstacles if not item.path])
-        self.navigation = Navigation(known, Path(machine.urdf).read_text())
-        self.guard = Guard(Path(machine.urdf).read_text())
+        urdf = Path(machine.urdf).read_text()
+        self.navigation, self.guard, self._present = Navigation(known, urdf), Guard(urdf), Guard(urdf)
+        self.half_width = 10 - self.navigation.distance(0.0, 10.0)  # m
         self.lies = Lies()
         self._first_lie: Scan = {}
         self._arriving: list[tuple[float, float, Scan, Place, Place]] = []
@@ -79,8 +88,7 @@ class Robot:
         self._held_since = 0.0
         self._moved = 0.0
         self._follower: Follower | None = None
-        self._request = (0.0, 0.0)
-        self._command = (0.0, 0.0)
+        self._request = self._command = STAND
         self._state = self._advance(self._command)
         self._problem = ""
         self._before = self.place
@@ -90,19 +98,24 @@ class Robot:
         """The true pose: x [m], y [m], yaw [rad]."""
         return (self._state["truth_x"], self._state["truth_y"], self._state["truth_yaw"])
 
-    def _advance(self, command: tuple[float, float]) -> dict[str, float]:
-        log = self.loop.run(STEP, command)
+    def _advance(self, command: Command) -> dict[str, float]:
+        log = self.loop.run(STEP, command if self.machine.legs else (command[0], command[2]))
         state = {name: float(log[name][-1]) for name in log if name.startswith(("truth_", "estimate_"))}
-        self._moved += (abs(state["estimate_linear"]) + abs(state["estimate_angular"])) * STEP
+        if self.machine.legs:
+            joints = {name.removesuffix("_position"): log[name][-1] for name in log if name.endswith("joint_position")}
+            self.guard.move_joints(joints, self.loop.time)
+            self._present.move_joints(joints, 100 * self.loop.time)  # no earlier outline counts
+        self._moved += sum(abs(state[f"estimate_{name}"]) for name in ("linear", "lateral", "angular")) * STEP
         return state
 
     def _assumed(self) -> Place:
         return self.lies.place(self.place) if self.loop.time >= self.lies.since else self.place
 
     @property
-    def _motion(self) -> tuple[float, float]:
-        """m/s and rad/s, as measured."""
-        return self._state["estimate_linear"], self._state["estimate_angular"]
+    def _motion(self) -> Command:
+        """As measured."""
+        state = self._state
+        return state["estimate_linear"], state["estimate_lateral"], state["estimate_angular"]
 
     @property
     def _odometry(self) -> Place:
@@ -131,9 +144,7 @@ class Robot:
     def _be_guarded(self) -> None:
         """Acts as the guard does at each message of odometry, and as navigate then does."""
         now = self.loop.time
-        measured = (self._motion[0], 0.0, self._motion[1])
-        requested = (self._command[0], 0.0, self._command[1])
-        free, self._doubt, obstacle = self.guard.check(self._odometry, measured, requested, now)
+        free, self._doubt, obstacle = self.guard.check(self._odometry, self._motion, self._command, now)
         self.loop.clearance(free)
         if free > 0:
             self._held_since = now
@@ -151,20 +162,20 @@ class Robot:
         trip = Trip()
         self.loop.e_stop_reset()
         self._stand(trip)
-        begin, self._follower, self._command = self.loop.time, None, (0.0, 0.0)
+        begin, self._follower, self._command = self.loop.time, None, STAND
         _, trip.planned, _ = self.navigation.plan(self.place, goal, self.loop.time)
         self.navigation.begin(goal, self.loop.time)
         path = "none"
         while self.loop.time - begin < limit and not self._arrived():
             path = self._report(path)
-            state, reason, way, cancel, request = self.navigation.step(
+            state, reason, way, cancel, request, speed = self.navigation.step(
                 self.loop.time, self._problem, self._assumed(), self._motion, path, self.speed
             )
             if cancel or way is not None:
                 self._follower, path = None, "none"
             if way is not None and request is None:
-                self._follower, path = self._new_follower(way), "active"
-            self._request = request or (0.0, 0.0)
+                self._follower, path = self._new_follower(way, speed), "active"
+            self._request = request or STAND
             if state in {"reached", "failed"}:
                 trip.state, trip.reason = state, reason
                 break
@@ -179,7 +190,7 @@ class Robot:
         return trip
 
     def _stand(self, trip: Trip) -> None:
-        self._follower, self._request = None, (0.0, 0.0)
+        self._follower, self._request = None, STAND
         for _ in range(STANDING):
             self._until_next_scan(trip)
 
@@ -190,12 +201,13 @@ class Robot:
         self._problem = self._see()
         trip.doubts |= {self._problem} - {""}
 
-    def _new_follower(self, way: list[Place]) -> Follower | None:
+    @staticmethod
+    def _new_follower(way: list[Place], speed: float) -> Follower | None:
         try:
             points = checked([Waypoint(x, y, yaw) for x, y, yaw in way])
         except PathError:
             return None
-        return Follower(route(points), FollowParameters(speed=self.speed, scale_error=0.05))
+        return Follower(route(points), FollowParameters(speed=speed, scale_error=0.05))
 
     def _report(self, path: str) -> str:
         follower = self._follower
@@ -206,29 +218,47 @@ class Robot:
     def _follow(self) -> None:
         self._command = self._request
         if self._follower is not None and not self._follower.over:
-            motion = self._follower.step(Pose(*self._assumed()), Motion(*self._motion), elapsed=STEP)
-            self._command = (motion.linear, motion.angular)
+            linear, _, angular = self._motion
+            motion = self._follower.step(Pose(*self._assumed()), Motion(linear, angular), elapsed=STEP)
+            self._command = (motion.linear, 0.0, motion.angular)
         self._before = self.place
         self._be_guarded()
         self._state = self._advance(self._command)
 
     def _note(self, trip: Trip) -> None:
-        trip.way += abs(self._state["truth_linear"]) * STEP
-        trip.air = min(trip.air, self.air_at(self.place, moving=False))
-        air = self.air_at(self.place, moving=True)
+        trip.way += math.dist(self.place[:2], self._before[:2])
+        trip.air = min(trip.air, self.air_at(self.place, moving=False, outline=self._outline))
+        air = self.air_at(self.place, moving=True, outline=self._outline)
         if air <= 0 and not trip.hit:
-            trip.hit, trip.drove_into = True, self.air_at(self._before, moving=True) > air + NEARER
+            trip.hit, trip.drove_into = (
+                True,
+                self.air_at(self._before, moving=True, outline=self._outline) > air + NEARER,
+            )
 
-    def air_at(self, place: Place, *, moving: bool) -> float:
-        """m between the outline at this place and the nearest obstacle of those that move, or of those that stand."""
+    @property
+    def _outline(self) -> Navigation | Guard:
+        """The one that has the outline of this moment: legs move it."""
+        return self._present if self.machine.legs else self.navigation
+
+    def air_at(self, place: Place, *, moving: bool, outline: Navigation | Guard | None = None) -> float:
+        """m between the outline at this place and the nearest obstacle of those that move, or of those that stand.
+        Without `outline`, the one with which it plans.
+        """
         x, y, yaw = place
         points = self._standing
         if moving:
             carts = [item.outline(self.loop.time) for item in self._obstacles if item.path]
             points = np.concatenate([np.empty((0, 2)), *carts])
         near = points[np.hypot(points[:, 0] - x, points[:, 1] - y) < REACH] - (x, y)
+        return self.distance_to(near, yaw, outline or self.navigation)
+
+    @staticmethod
+    def distance_to(points: NDArray[np.float64], yaw: float, outline: Navigation | Guard) -> float:
+        """m between the outline, turned by `yaw`, and the nearest of the points (n, 2) from its base; infinite
+        without one.
+        """
         cosine, sine = math.cos(yaw), math.sin(yaw)
         return min(
-            (self.navigation.distance(cosine * dx + sine * dy, cosine * dy - sine * dx) for dx, dy in near),
+            (outline.distance(cosine * dx + sine * dy, cosine * dy - sine * dx) for dx, dy in points),
             default=math.inf,
         )

@@ -44,7 +44,7 @@ Schema schema(Parameters& p) {
   const Key no_effect{"standstill_acceleration", &p.no_effect, "m/s²", 0.001, 10, kOptional | kObsolete};
   return {
       .blocks = {{"robot", joined({file("urdf", p.urdf, 0),
-                                   {{"kind", &p.kind, {}, 0, 0, kOptional}},
+                                   {{"kind", &p.kind, {}, 0, 0, kOptional}, {"simulated_laser", &p.simulated_laser}},
                                    keys(p.robot),
                                    keys(p.legs),
                                    keys(p.loop),

@@ -110,6 +110,7 @@ inline std::vector<Word> words_of(ImuChoice) {
 struct Parameters {
   std::string urdf;  ///< path, relative to the folder of the file that names it
   KindChoice kind = KindChoice::kDerived;
+  bool simulated_laser = false;  ///< a URDF without the link of a laser gets one (machine/bodies/added_laser.h)
   DriveTrainParameters robot;
   LegParameters legs;  ///< in the block `robot`, too
   LoopParameters loop;

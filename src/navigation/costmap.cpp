@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <deque>
 
 namespace robot_control::navigation {
 namespace {
@@ -99,7 +100,61 @@ void Costmap::centre_on(Point point, double now) {
   grid_.origin_y += by.row * grid_.resolution;
   marked_ = std::move(marked), unknown_ = std::move(unknown), blocked_ = std::move(blocked);
   predicted_.clear();
+  draw_zones();
   update(now);
+}
+
+void Costmap::set_zones(Zones zones) {
+  zones_ = std::move(zones);
+  draw_zones();
+}
+
+void Costmap::draw_zones() {
+  const Grid& mask = zones_.mask();
+  if (mask.cells.empty()) return;
+  keep_out_.assign(grid_.cells.size(), false);
+  const double within = 1e-6 * grid_.resolution;  // a border between two cells belongs to neither
+  for (std::size_t i = 0; i < mask.cells.size(); ++i) {
+    if (mask.cells[i] != kOccupiedCell) continue;
+    const Cell cell = mask.cell_of(i);
+    const double x = mask.origin_x + cell.column * mask.resolution, y = mask.origin_y + cell.row * mask.resolution;
+    const Cell low = grid_.cell_at(x + within, y + within);
+    const Cell high = grid_.cell_at(x + mask.resolution - within, y + mask.resolution - within);
+    for (int row = std::max(low.row, 0); row <= std::min(high.row, grid_.rows - 1); ++row)
+      for (int column = std::max(low.column, 0); column <= std::min(high.column, grid_.columns - 1); ++column)
+        keep_out_[grid_.index({column, row})] = true;
+  }
+}
+
+void Costmap::let_out(const PlanarPose& pose) {
+  if (keep_out_.empty()) return;
+  const double depth = exit_radius_ > 0 ? 0 : kZoneTolerance;
+  if (!covers(pose, -depth, [&](Cell cell) { return keep_out(cell); })) {
+    exit_radius_ = 0;
+  } else if (exit_radius_ == 0) {
+    exit_ = {pose.x, pose.y}, exit_radius_ = way_out(grid_.cell_at(pose.x, pose.y));
+  }
+}
+
+double Costmap::way_out(Cell from) const {
+  const double needed = footprint_.circumscribed + kPadding + grid_.resolution;
+  const std::vector<float> away = distances(keep_out_, grid_.columns, grid_.resolution, needed);
+  std::vector<int> steps(away.size(), -1);
+  std::deque<Cell> open;
+  const auto reach = [&](Cell cell, int count) {
+    if (!grid_.contains(cell) || steps[grid_.index(cell)] >= 0) return;
+    if (count > 0 && wall_distance_[grid_.index(cell)] < footprint_.inscribed) return;
+    steps[grid_.index(cell)] = count;
+    open.push_back(cell);
+  };
+  for (reach(from, 0); !open.empty(); open.pop_front()) {
+    const Cell at = open.front();
+    const int count = steps[grid_.index(at)];
+    if (away[grid_.index(at)] >= static_cast<float>(needed)) return count * grid_.resolution + needed;
+    for (const Cell step : {Cell{1, 0}, Cell{0, 1}, Cell{-1, 0}, Cell{0, -1}})
+      reach({at.column + step.column, at.row + step.row}, count + 1);
+  }
+  return 0;
 }
 
 void Costmap::clear() {
@@ -176,9 +231,14 @@ void Costmap::update(double now, bool predicted) {
 
 std::vector<float> Costmap::distances_at(double now, bool predicted) const {
   std::vector<bool> occupied(grid_.cells.size());
+  const auto kept_out = [&](std::size_t i) {
+    if (keep_out_.empty() || !keep_out_[i]) return false;
+    const Cell cell = grid_.cell_of(i);
+    return !(std::hypot(grid_.x_of(cell.column) - exit_.x, grid_.y_of(cell.row) - exit_.y) < exit_radius_);
+  };
   for (std::size_t i = 0; i < occupied.size(); ++i) {
     const bool marked = marked_[i] > (grid_.cells[i] < 0 ? kNotMarked : now - kMemory);
-    occupied[i] = wall_distance_[i] == 0 || marked || (unknown_[i] && !unknown_is_free_);
+    occupied[i] = wall_distance_[i] == 0 || marked || kept_out(i) || (unknown_[i] && !unknown_is_free_);
   }
   if (std::isfinite(now)) {
     if (predicted) {
@@ -214,22 +274,27 @@ bool Costmap::interior(Cell cell) const noexcept {
          grid_.contains({cell.column + reach(), cell.row + reach()});
 }
 
-bool Costmap::free(const PlanarPose& pose) const noexcept {
+template <class Taken>
+bool Costmap::covers(const PlanarPose& pose, double padding, Taken taken) const {
   const Cell base = grid_.cell_at(pose.x, pose.y);
   const int reach = this->reach();
-  if (!interior(base)) return false;
-  const double nearest = distance(base);
-  if (nearest > footprint_.circumscribed + kPadding + grid_.resolution) return true;
-  if (nearest < footprint_.inscribed) return false;
   const double c = std::cos(pose.yaw), s = std::sin(pose.yaw);
   for (int row = base.row - reach; row <= base.row + reach; ++row) {
     for (int column = base.column - reach; column <= base.column + reach; ++column) {
-      if (!occupied({column, row})) continue;
+      if (!grid_.contains({column, row}) || !taken(Cell{column, row})) continue;
       const double x = grid_.x_of(column) - pose.x, y = grid_.y_of(row) - pose.y;
-      if (footprint_.distance({c * x + s * y, c * y - s * x}) <= kPadding) return false;
+      if (footprint_.distance({c * x + s * y, c * y - s * x}) <= padding) return true;
     }
   }
-  return true;
+  return false;
+}
+
+bool Costmap::free(const PlanarPose& pose) const noexcept {
+  const Cell base = grid_.cell_at(pose.x, pose.y);
+  if (!interior(base)) return false;
+  const double nearest = distance(base);
+  if (nearest > footprint_.circumscribed + kPadding + grid_.resolution) return true;
+  return nearest >= footprint_.inscribed && !covers(pose, kPadding, [&](Cell cell) { return occupied(cell); });
 }
 
 }  // namespace robot_control::navigation

@@ -13,6 +13,9 @@
 ///
 /// A map of finer cells is taken in cells of up to kCoarsest. A plan in cells of 1 cm would take minutes.
 ///
+/// The cells of keep-out zones (zones.h) are occupied, too, but no scan contradicts them. A robot that is in one, more
+/// than kZoneTolerance deep, may leave it. Until it has, no zone counts within the length of its shortest way out.
+///
 /// Rays also show whether map and pose can be true. An object that was added shortens a ray. Only an object that was
 /// removed, or a wrong pose or map, lets a ray pass a wall of the map.
 
@@ -23,17 +26,19 @@
 #include "navigation/footprint.h"
 #include "navigation/grid.h"
 #include "navigation/scan.h"
+#include "navigation/zones.h"
 
 namespace robot_control::navigation {
 
-inline constexpr double kMemory = 10;          ///< s; less than kNoProgressTime of a goal that it blocks
-inline constexpr double kExplained = 0.1;      ///< m
-inline constexpr double kWindow = 16;          ///< m; more than twice what lasers of 8 m see ahead
-inline constexpr double kBehindWall = 0.3;     ///< m; a ray that ends so far behind a wall contradicts the map
-inline constexpr double kCoarsest = 0.05;      ///< m
-inline constexpr double kFullClearance = 0.4;  ///< m of clearance from which on a cell has the lowest cost
-inline constexpr double kGuardAir = 0.02;      ///< m of clearance with which the collision guard lets the robot pass
-inline constexpr double kFollowerLag = 0.015;  ///< m by which the follower may be off its path beside an obstacle
+inline constexpr double kMemory = 10;           ///< s; less than kNoProgressTime of a goal that it blocks
+inline constexpr double kExplained = 0.1;       ///< m
+inline constexpr double kWindow = 16;           ///< m; more than twice what lasers of 8 m see ahead
+inline constexpr double kBehindWall = 0.3;      ///< m; a ray that ends so far behind a wall contradicts the map
+inline constexpr double kCoarsest = 0.05;       ///< m
+inline constexpr double kFullClearance = 0.4;   ///< m of clearance from which on a cell has the lowest cost
+inline constexpr double kZoneTolerance = 0.05;  ///< m, of the pose
+inline constexpr double kGuardAir = 0.02;       ///< m of clearance with which the collision guard lets the robot pass
+inline constexpr double kFollowerLag = 0.015;   ///< m by which the follower may be off its path beside an obstacle
 
 /// m of clearance about the centre of an occupied cell. The guard lets every planned path pass.
 inline constexpr double kPadding = 0.07;
@@ -62,6 +67,12 @@ class Costmap {
   /// Returns whether there is no map, so that goals may be outside.
   bool is_window() const noexcept { return is_window_; }
 
+  void set_zones(Zones zones);
+  const Zones& zones() const noexcept { return zones_; }
+
+  /// Lets a robot at this pose leave the keep-out zones in which it is. Called at each pose.
+  void let_out(const PlanarPose& pose);
+
   /// Moves a window by whole cells, if the point is more than kWindow/8 from its middle. Marks that stay inside stay.
   void centre_on(Point point, double now);
 
@@ -89,6 +100,7 @@ class Costmap {
 
   bool occupied(Cell cell) const noexcept { return distance_[grid_.index(cell)] == 0; }
   bool unknown(Cell cell) const noexcept { return unknown_[grid_.index(cell)]; }
+  bool keep_out(Cell cell) const noexcept { return !keep_out_.empty() && keep_out_[grid_.index(cell)]; }
 
   /// Returns the distance of the cell from the nearest occupied one, m, at most `farthest_`; 0 outside the map.
   double distance(Cell cell) const noexcept { return grid_.contains(cell) ? distance_[grid_.index(cell)] : 0; }
@@ -114,6 +126,12 @@ class Costmap {
  private:
   std::vector<float> distances_at(double now, bool predicted) const;
   int reach() const noexcept;  // cells of the grown outline from its base
+  void draw_zones();
+  double way_out(Cell from) const;  // m, to where the outline is outside the zones, and beyond; 0: nowhere
+
+  /// Returns whether the outline, grown by `padding`, contains the centre of a cell for which `taken` is true.
+  template <class Taken>
+  bool covers(const PlanarPose& pose, double padding, Taken taken) const;
 
   Grid grid_;
   Footprint footprint_;
@@ -124,7 +142,11 @@ class Costmap {
   std::vector<float> marked_;              ///< s, when a ray ended here; −∞: never, or passed since
   std::vector<std::size_t> predicted_;     ///< cells
   std::map<std::size_t, double> blocked_;  ///< s, when the guard last held the robot before this cell
-  std::vector<float> distance_;            ///< m
+  Zones zones_;
+  std::vector<bool> keep_out_;  ///< empty: there are no zones
+  Point exit_;
+  double exit_radius_ = 0;       ///< m about `exit_`; within it no zone counts
+  std::vector<float> distance_;  ///< m
 };
 
 /// Returns the distance of each cell from the nearest one that is set, in m, at most `farthest`.

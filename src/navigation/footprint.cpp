@@ -63,8 +63,14 @@ Footprint footprint_of(const RigidBodies& robot) {
   });
 }
 
-Footprint footprint_of_urdf(const std::string& urdf, const std::string& source) {
-  return footprint_of(read_rigid_bodies({urdf, source}));
+Footprint hull_of(const std::vector<Footprint>& outlines) {
+  return footprint_of([&](Point normal) {
+    double reach = -std::numeric_limits<double>::infinity();
+    for (const Footprint& outline : outlines) {
+      for (const Point corner : outline.corners) reach = std::max(reach, corner.x * normal.x + corner.y * normal.y);
+    }
+    return reach;
+  });
 }
 
 }  // namespace robot_control::navigation

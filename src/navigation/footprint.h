@@ -2,7 +2,6 @@
 /// The outline of a robot in the plane. It encloses all its shapes, seen from above.
 
 #include <functional>
-#include <string>
 #include <vector>
 
 #include "machine/bodies/rigid_bodies.h"
@@ -34,7 +33,7 @@ Footprint footprint_of(const std::function<double(Point)>& reach);
 /// base lies beside them.
 Footprint footprint_of(const RigidBodies& robot);
 
-/// Reads a URDF. Throws what read_rigid_bodies throws, and what the function above does.
-Footprint footprint_of_urdf(const std::string& urdf, const std::string& source);
+/// Returns the outline that encloses these.
+Footprint hull_of(const std::vector<Footprint>& outlines);
 
 }  // namespace robot_control::navigation

@@ -88,4 +88,10 @@ inline PlanarPose composed(const PlanarPose& outer, const PlanarPose& inner) noe
   return {outer.x + c * inner.x - s * inner.y, outer.y + s * inner.x + c * inner.y, outer.yaw + inner.yaw};
 }
 
+/// Returns the frame of the pose's parent, as seen from the pose.
+inline PlanarPose inverse(const PlanarPose& pose) noexcept {
+  const double c = std::cos(pose.yaw), s = std::sin(pose.yaw);
+  return {-c * pose.x - s * pose.y, s * pose.x - c * pose.y, -pose.yaw};
+}
+
 }  // namespace robot_control::navigation

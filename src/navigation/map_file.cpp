@@ -40,7 +40,7 @@ std::string text_of(double value) {
 struct Head {
   std::string image;
   double resolution = 0, origin_x = 0, origin_y = 0, yaw = 0, occupied = 0, free = 0;
-  bool negate = false;
+  bool negate = false, scale = false;
 };
 
 template <class T>
@@ -85,7 +85,8 @@ Head read_head(const std::string& path) {
   if (negate != 0 && negate != 1) refuse(path, "negate is " + text_of(negate) + ": it must be 0 or 1");
   head.negate = negate == 1;
   const std::string mode = root["mode"] ? value_of<std::string>(path, root["mode"], "mode", "text") : "trinary";
-  if (mode != "trinary") refuse(path, "mode is '" + mode + "': only trinary is read");
+  if (mode != "trinary" && mode != "scale") refuse(path, "mode is '" + mode + "': only trinary and scale are read");
+  head.scale = mode == "scale";
   return head;
 }
 
@@ -122,8 +123,10 @@ Grid read_picture(const std::string& path, std::string_view text, const Head& he
       const char pixel = text[grid.index({column, grid.rows - 1 - row})];
       const double share = static_cast<unsigned char>(pixel) / static_cast<double>(*white);
       const double black = head.negate ? share : 1 - share;
+      const long scaled = std::lround(100 * (black - head.free) / (head.occupied - head.free));
       grid.cells[grid.index({column, row})] = black > head.occupied ? kOccupiedCell
                                               : black < head.free   ? kFreeCell
+                                              : head.scale          ? static_cast<std::int8_t>(scaled)
                                                                     : kUnknownCell;
     }
   }

@@ -7,7 +7,7 @@
 ///   negate: 0                   1: black is free
 ///   occupied_thresh: 0.65       a pixel whose share of black is above it is occupied,
 ///   free_thresh: 0.196          below it free, else unknown
-///   mode: trinary               may be absent
+///   mode: trinary               may be absent; scale: what is between is free … occupied, 0 … 100 %
 ///
 /// The picture is binary PGM (P5) of 8 bits. Other pictures, truncated ones and those of more than kMaxCells cells are
 /// refused. So are a resolution beyond 0.001 … 10 m, an origin beyond 10⁶ m or turned, and another mode. Thresholds

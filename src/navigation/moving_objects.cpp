@@ -84,27 +84,18 @@ std::vector<MovingObject> MovingObjects::update(const Scan& scan, const PlanarPo
   return objects;
 }
 
-std::vector<Point> from_base_axes(std::vector<Point> points, const PlanarPose& base) {
+std::vector<Point> composed(const PlanarPose& frame, std::vector<Point> points) {
   for (Point& point : points) {
-    const PlanarPose at = composed(base, {point.x, point.y, 0});
+    const PlanarPose at = composed(frame, PlanarPose{point.x, point.y, 0});
     point = {at.x, at.y};
   }
   return points;
 }
 
-std::vector<Point> in_base_axes(std::vector<Point> points, const PlanarPose& base) {
-  const double c = std::cos(base.yaw), s = std::sin(base.yaw);
-  for (Point& point : points) {
-    const double dx = point.x - base.x, dy = point.y - base.y;
-    point = {c * dx + s * dy, c * dy - s * dx};
-  }
-  return points;
-}
-
-std::vector<MovingObject> in_base_axes(std::vector<MovingObject> objects, const PlanarPose& base) {
+std::vector<MovingObject> composed(const PlanarPose& frame, std::vector<MovingObject> objects) {
   for (MovingObject& object : objects) {
-    object.points = in_base_axes(std::move(object.points), base);
-    object.velocity = in_base_axes(std::vector{object.velocity}, {0, 0, base.yaw})[0];
+    object.points = composed(frame, std::move(object.points));
+    object.velocity = composed({0, 0, frame.yaw}, std::vector{object.velocity})[0];
   }
   return objects;
 }
@@ -124,14 +115,9 @@ std::vector<Point> predicted_points(const std::vector<MovingObject>& objects, co
   return places;
 }
 
-std::vector<MovingObject> foresee(std::vector<MovingObject> objects, const PlanarPose& base, Costmap& costmap) {
-  costmap.set_predicted(from_base_axes(predicted_points(objects, costmap.footprint()), base));
-  for (MovingObject& object : objects) {
-    object.points = from_base_axes(std::move(object.points), base);
-    object.velocity = from_base_axes({object.velocity}, {0, 0, base.yaw})[0];
-    costmap.unmark(object.points);
-  }
-  return objects;
+void foresee(const std::vector<MovingObject>& objects, const PlanarPose& base, Costmap& costmap) {
+  costmap.set_predicted(composed(base, predicted_points(composed(inverse(base), objects), costmap.footprint())));
+  for (const MovingObject& object : objects) costmap.unmark(object.points);
 }
 
 }  // namespace robot_control::navigation

@@ -42,20 +42,17 @@ class MovingObjects {
   std::deque<ScanRecord> records_;
 };
 
-/// Returns points, given in the axes of `base`, in the frame in which `base` is given.
-std::vector<Point> from_base_axes(std::vector<Point> points, const PlanarPose& base);
-
-/// Return points and objects in the axes of `base`, which is given in their frame.
-std::vector<Point> in_base_axes(std::vector<Point> points, const PlanarPose& base);
-std::vector<MovingObject> in_base_axes(std::vector<MovingObject> objects, const PlanarPose& base);
+/// Return points or objects, given in the axes of `frame`, in the frame in which `frame` is given.
+std::vector<Point> composed(const PlanarPose& frame, std::vector<Point> points);
+std::vector<MovingObject> composed(const PlanarPose& frame, std::vector<MovingObject> objects);
 
 /// Returns the points that the objects, given in base axes, occupy, and those that they will occupy within
 /// kPredictionTime. The latter are left out for an object that will touch the outline at its present pose: waiting
 /// there is no safer than driving on.
 std::vector<Point> predicted_points(const std::vector<MovingObject>& objects, const Footprint& footprint);
 
-/// Returns the objects, given in base axes, in the frame in which `base` is given. The costmap gets their predicted
-/// and present points for paths, and loses the marks of the present ones: the LocalController has their velocities.
-std::vector<MovingObject> foresee(std::vector<MovingObject> objects, const PlanarPose& base, Costmap& costmap);
+/// The costmap gets the predicted and present points of these objects for paths, and loses the marks of the present
+/// ones: the LocalController has their velocities. Objects and `base` are given in its frame.
+void foresee(const std::vector<MovingObject>& objects, const PlanarPose& base, Costmap& costmap);
 
 }  // namespace robot_control::navigation

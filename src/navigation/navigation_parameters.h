@@ -31,12 +31,14 @@ struct NavigateParameters {
   double speed = 0.5;            ///< m/s of a goal that names none
   bool unknown_is_free = false;  ///< goals and paths may lie where neither map nor laser has been
   std::string map_frame = "map";
+  std::string zones;  ///< YAML file of a mask of zones (zones.h); empty: there are none
 };
 
 inline Keys keys(NavigateParameters& navigate) {
   return {{"speed", &navigate.speed, "m/s", 0.01, 10},
           {"unknown_is_free", &navigate.unknown_is_free},
-          {"map_frame", &navigate.map_frame}};
+          {"map_frame", &navigate.map_frame},
+          {"zones", &navigate.zones, {}, 0, 0, kPath | kMayBeEmpty}};
 }
 
 enum class GuardMode { kOff, kSlowAndStop };

@@ -30,12 +30,6 @@ inline Eigen::Matrix3d derivative_by_first(double x, double y) {
   return result;
 }
 
-/// Returns the frame of the pose's parent, as seen from the pose.
-inline PlanarPose inverse(const PlanarPose& pose) noexcept {
-  const double c = std::cos(pose.yaw), s = std::sin(pose.yaw);
-  return {-c * pose.x - s * pose.y, s * pose.x - c * pose.y, -pose.yaw};
-}
-
 inline UncertainPose inverse(const UncertainPose& pose) {
   const PlanarPose mean = inverse(pose.mean);
   const Eigen::Matrix3d f = planar_rotation(mean.yaw) * derivative_by_first(-pose.mean.x, -pose.mean.y);

@@ -1,5 +1,6 @@
 #include "robots/robot_kind.h"
 
+#include "machine/bodies/added_laser.h"
 #include "machine/bodies/rigid_bodies.h"
 #include "machine/legs/leg_chains.h"
 #include "machine/legs/leg_model.h"
@@ -42,7 +43,8 @@ std::unique_ptr<Robot> compose(const Parameters& parameters, const MachineModel&
 }
 
 std::unique_ptr<Robot> make_robot(const Parameters& parameters) {
-  return compose(parameters, *read_robot(load_description(parameters.urdf), parameters));
+  const RobotDescription description = with_laser(load_description(parameters.urdf), parameters.simulated_laser);
+  return compose(parameters, *read_robot(description, parameters));
 }
 
 }  // namespace robot_control

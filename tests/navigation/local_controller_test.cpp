@@ -1,4 +1,4 @@
-#include "navigation/local_controller.h"
+#include "navigation/goals/local_controller.h"
 
 #include "navigation/house.h"
 #include "support/matchers.h"
@@ -30,7 +30,7 @@ struct LocalControllerTest : testing::Test {
       for (Point& point : object.points) {
         point.x += object.velocity.x * kControlPeriod;
         point.y += object.velocity.y * kControlPeriod;
-        const Point seen = in_base_axes({point}, pose_)[0];
+        const Point seen = composed(inverse(pose_), std::vector{point})[0];
         least_air_ = std::min(least_air_, diffbot().distance(seen));
       }
     }

@@ -129,6 +129,12 @@ TEST_F(MapFileTest, NegateSwapsFreeAndOccupied) {
   EXPECT_THAT(read().cells, ElementsAre(100, 100, 0, 100, 100, 0));
 }
 
+TEST_F(MapFileTest, AScaledMapHasThePartOfBlackBetweenTheThresholds) {
+  write("house.pgm", "P5\n3 2\n200\n" + std::string("\xc8\x64\0\x96\x50\x0a", 6));
+  EXPECT_EQ(refusal("free_thresh: 0.196", "free_thresh: 0.2\nmode: scale"), "it was read");
+  EXPECT_THAT(read().cells, ElementsAre(11, 89, 100, 0, 67, 100));  // (black - 0.2)/0.45 of black 0.25, 0.6 and 0.5
+}
+
 TEST_F(MapFileTest, EachWrongHeadIsRefusedWithItsValue) {
   using testing::HasSubstr;
   EXPECT_THAT(refusal("0.050000", "-0.05"), HasSubstr("resolution is -0.05 m: it must be from 0.001 to 10"));
@@ -138,7 +144,7 @@ TEST_F(MapFileTest, EachWrongHeadIsRefusedWithItsValue) {
   EXPECT_THAT(refusal(", 0.000000]", "]"), HasSubstr("origin has 2 numbers"));
   EXPECT_THAT(refusal("free_thresh: 0.196", "free_thresh: 0.7"), HasSubstr("free_thresh < occupied_thresh"));
   EXPECT_THAT(refusal("negate: 0", "negate: 2"), HasSubstr("negate is 2"));
-  EXPECT_THAT(refusal("negate: 0", "mode: scale\nnegate: 0"), HasSubstr("mode is 'scale'"));
+  EXPECT_THAT(refusal("negate: 0", "mode: raw\nnegate: 0"), HasSubstr("mode is 'raw': only trinary and scale are"));
   EXPECT_THAT(refusal("negate: 0", "negated: 0"), HasSubstr("the key 'negated' is not one of map_server"));
   EXPECT_THAT(refusal("negate: 0\n", ""), HasSubstr("the key negate is missing"));
   EXPECT_THAT(refusal("house.pgm", "none.pgm"), HasSubstr("none.pgm"));

@@ -85,7 +85,8 @@ TEST(ForeseeTest, PathsAvoidWhatComesToTheRobotAndTheLocalControlHasItsVelocity)
     Grid world = map;
     world.cells[world.index({26, 16})] = kOccupiedCell;
     costmap.insert(scan_of(world, base), base, 1);
-    const std::vector<MovingObject> seen = foresee(object({1.05, 0.05}, velocity), base, costmap);
+    const std::vector<MovingObject> seen = composed(base, object({1.05, 0.05}, velocity));
+    foresee(seen, base, costmap);
     EXPECT_NEAR(seen[0].points[0].x, 2.65, 1e-9);
     costmap.update(1);
     EXPECT_TRUE(costmap.occupied({26, 16})) << velocity.x;
@@ -95,7 +96,7 @@ TEST(ForeseeTest, PathsAvoidWhatComesToTheRobotAndTheLocalControlHasItsVelocity)
 }
 
 TEST(MoversSeenFromTest, TheyAreTurnedIntoTheAxesOfTheBase) {
-  const MovingObject seen = in_base_axes(object({2, 1}, {0.5, 0}), {2, 0, M_PI / 2})[0];
+  const MovingObject seen = composed(inverse({2, 0, M_PI / 2}), object({2, 1}, {0.5, 0}))[0];
   EXPECT_NEAR(seen.points[0].x, 1, 1e-9);
   EXPECT_NEAR(seen.points[0].y, 0, 1e-9);
   EXPECT_NEAR(seen.velocity.y, -0.5, 1e-9);

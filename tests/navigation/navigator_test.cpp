@@ -1,4 +1,4 @@
-#include "navigation/navigator.h"
+#include "navigation/goals/navigator.h"
 
 #include "navigation/guard/motion_clearance.h"
 #include "navigation/house.h"
@@ -31,7 +31,7 @@ struct NavigatorTest : testing::Test {
       report_ = {PathReport::State::kFailed, failing_};
     if (paused_) report_.state = *paused_;
     if (out_.request && report_.state == PathReport::State::kActive) {
-      drive(*out_.request);
+      if (!stuck_) drive(*out_.request);
     } else if (report_.state == PathReport::State::kActive) {
       follow();
     }
@@ -77,6 +77,7 @@ struct NavigatorTest : testing::Test {
   double steered_ = 0;  // m
   double now_ = 100, least_air_ = 1e9;
   int paths_ = 0;
+  bool stuck_ = false;                       // no velocity moves it, but a path does
   std::optional<PathReport::State> paused_;  // follow_path does not drive, and reports this
 };
 
@@ -107,6 +108,16 @@ TEST_F(NavigatorTest, EqualScansGiveEqualVelocitiesBitForBit) {
     EXPECT_EQ(requests_[i].linear, first[i].linear) << i;
     EXPECT_EQ(requests_[i].angular, first[i].angular) << i;
   }
+}
+
+TEST_F(NavigatorTest, ARobotThatIsStuckAgainFollowsAPathToTheGoal) {
+  costmap_ = Costmap(diffbot());
+  world_.cells.assign(world_.cells.size(), kFreeCell);
+  stuck_ = true;
+  navigator_.begin({8, 1.6, 0}, now_);
+  run(60);
+  EXPECT_EQ(out_.state, State::kReached) << out_.reason;
+  EXPECT_EQ(paths_, 4);  // two that show the way, and two that are driven
 }
 
 TEST_F(NavigatorTest, APathBeginsAtThePose) {

@@ -1,4 +1,4 @@
-#include "navigation/planner.h"
+#include "navigation/goals/planner.h"
 
 #include <algorithm>
 #include <fstream>
@@ -41,7 +41,7 @@ double air(const Grid& grid, const Plan& plan) {
 TEST(FootprintTest, TheOutlineOfTheShippedRobotHoldsBodyAndWheels) {
   std::ifstream file(PROJECT_DIRECTORY "/urdf/diffbot.urdf");
   const std::string text{std::istreambuf_iterator<char>(file), {}};
-  const Footprint outline = footprint_of_urdf(text, "diffbot.urdf");
+  const Footprint outline = footprint_of(read_rigid_bodies({text, "diffbot.urdf"}));
   EXPECT_NEAR(outline.inscribed, 0.12, 1e-3);
   EXPECT_NEAR(outline.half_width, 0.27, 1e-3);
   EXPECT_NEAR(outline.circumscribed, std::hypot(0.28, 0.18), 1e-3);

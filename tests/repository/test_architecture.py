@@ -123,16 +123,40 @@ MAY_INCLUDE = {
     # The laws of a log, run again from its rows.
     "log/replay": LOOP,
     "simulation": ALL - {"simulation"} | {"simulation/machines"},
-    "bindings": ALL | {"log/replay", "navigation", "navigation/guard", "navigation/mapping", "navigation/mrpt"},
+    "bindings": ALL
+    | {
+        "log/replay",
+        "navigation",
+        "navigation/driven",
+        "navigation/goals",
+        "navigation/guard",
+        "navigation/mapping",
+        "navigation/mrpt",
+    },
     "ros": LOOP | {"files", "machine/description"},
-    # Maps, costmap, planner: services beside the loop, without ROS.
+    # Maps, costmap, zones: services beside the loop, without ROS.
     "navigation": {"signals", "files", "machine", "parameters"},
+    # Planner, local control, and what supervises both.
+    "navigation/goals": {"navigation", "signals"},
+    # The outline and the limits of each kind of robot.
+    "navigation/driven": {
+        "navigation",
+        "navigation/goals",
+        "configuration",
+        "control/legged",
+        "machine",
+        "machine/description",
+        "machine/legs",
+        "robots",
+    },
     "navigation/guard": {"navigation", "machine", "signals"},
     "navigation/mapping": {"navigation", "files", "signals"},
     "navigation/mrpt": {"navigation"},
     "ros/navigation": {
         "signals",
         "navigation",
+        "navigation/driven",
+        "navigation/goals",
         "navigation/guard",
         "navigation/mapping",
         "navigation/mrpt",

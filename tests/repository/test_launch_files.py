@@ -96,6 +96,18 @@ def test_the_nodes_report_no_override_that_a_launch_file_sets():
     assert set_here - {"", "config"} == unsaid
 
 
+def test_navigation_simulates_the_robot_of_its_arguments_with_a_laser():
+    params = config_of("navigation.launch", "scene:=room", "robot:=quadbot", "zones:=my_zones.yaml").params
+    assert params["/robot/urdf"].value.endswith("/urdf/quadbot.urdf")
+    assert params["/robot/simulated_laser"].value is True
+    assert params["/navigate/zones"].value == "my_zones.yaml"
+    given = config_of("navigation.launch", "scene:=room", "urdf:=my.urdf", "kind:=legs", "seed:=7").params
+    assert (given["/robot/urdf"].value, given["/robot/kind"].value) == ("my.urdf", "legs")
+    assert given["/mujoco_plant/seed"].value == 7
+    assert config_of("robot.launch").params["/robot/simulated_laser"].value == ""
+    assert config_of("sim.launch", "laser_rate:=0").params["/robot/simulated_laser"].value == ""
+
+
 def test_navigation_without_a_map_starts_neither_slam_nor_localization():
     def nodes(*arguments):
         return {node.type for node in config_of("navigation.launch", *arguments).nodes}

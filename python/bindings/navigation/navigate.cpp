@@ -11,18 +11,25 @@
 
 #include "bindings/navigation/conversions.h"
 #include "bindings/numpy_version.h"
+#include "navigation/driven/driven_robot.h"
+#include "navigation/goals/navigator.h"
 #include "navigation/guard/collision_guard.h"
 #include "navigation/guard/moving_outline.h"
 #include "navigation/map_consistency.h"
 #include "navigation/map_file.h"
 #include "navigation/moving_objects.h"
-#include "navigation/navigator.h"
 #include "navigation/scan_watch.h"
 
 namespace py = pybind11;
 
 namespace robot_control::navigation {
 namespace {
+
+using Motion = std::array<double, 3>;  // linear, lateral [m/s], angular [rad/s]
+
+PlanarMotion motion_of(const Motion& motion) {
+  return {motion[0], motion[2], motion[1]};
+}
 
 std::vector<Pose> poses_of(const Plan& plan) {
   std::vector<Pose> poses;
@@ -35,13 +42,21 @@ class Navigation {
  public:
   /// Without a map it has a window around the robot.
   Navigation(const std::optional<py::tuple>& map, const std::string& urdf)
-      : costmap_(footprint_of_urdf(urdf, "the URDF")) {
+      : robot_(driven_robot({urdf, "the URDF"}, Parameters())), costmap_(robot_.outline) {
     if (map) set_map(*map, false);
   }
 
   void set_map(const py::tuple& map, bool unknown_is_free) {
-    costmap_ = Costmap(grid_of(map), costmap_.footprint(), unknown_is_free);
+    const Zones zones = costmap_.zones();
+    costmap_ = Costmap(grid_of(map), robot_.outline, unknown_is_free);
+    costmap_.set_zones(zones);
     consistency_ = MapConsistency();
+  }
+
+  /// `mask`: 100 keep-out, 1 … 99 slower (zones.h).
+  void set_zones(const py::tuple& mask) { costmap_.set_zones(Zones(grid_of(mask))); }
+  double speed_limit(double x, double y) const {
+    return costmap_.zones().speed_limit({x, y}, robot_.limits.forward, robot_.limits.linear_acceleration);
   }
 
   /// `sensor`: on the base, which is at `place` in the map and at `odometry`. `moved`: m + rad so far. Returns why the
@@ -53,13 +68,14 @@ class Navigation {
     costmap_.centre_on({place[0], place[1]}, now);
     consistency_.update(costmap_.insert(scan, composed(planar_of(place), planar_of(sensor)), now));
     const PlanarPose base = planar_of(odometry);
-    moving_ = foresee(in_base_axes(objects_.update(scan, composed(base, planar_of(sensor)), now), base),
-                      planar_of(place), costmap_);
+    moving_ = composed(composed(planar_of(place), inverse(base)),
+                       objects_.update(scan, composed(base, planar_of(sensor)), now));
+    foresee(moving_, planar_of(place), costmap_);
     const std::string problem = watch_.problem(now);
     return problem.empty() ? consistency_.problem() : problem;
   }
   void block(const Pose& place, const std::array<double, 2>& obstacle, double now) {
-    costmap_.block(from_base_axes({{obstacle[0], obstacle[1]}}, planar_of(place))[0], now);
+    costmap_.block(composed(planar_of(place), std::vector<Point>{{obstacle[0], obstacle[1]}})[0], now);
   }
   double distance(double x, double y) const { return costmap_.footprint().distance({x, y}); }
   py::tuple plan(const Pose& start, const Pose& goal, double now) {
@@ -69,9 +85,10 @@ class Navigation {
   }
   void begin(const Pose& goal, double now) { navigator_.begin(planar_of(goal), now); }
 
-  /// `motion`: linear [m/s], angular [rad/s]. `path`: "none", "active", "done" or why it failed. `speed`: of the goal,
-  /// m/s. Returns state, reason, path or None, whether to stop, the requested motion or None.
-  py::tuple step(double now, const std::string& problem, const Pose& pose, const std::array<double, 2>& motion,
+  /// `motion`: linear, lateral [m/s], angular [rad/s]. `path`: "none", "active", "done" or why it failed. `speed`: of
+  /// the goal, m/s. Returns state, reason, path or None, whether to stop, the requested motion or None, the path's
+  /// speed.
+  py::tuple step(double now, const std::string& problem, const Pose& pose, const Motion& motion,
                  const std::string& path, double speed) {
     using State = PathReport::State;
     const State state = path == "none"     ? State::kNone
@@ -83,18 +100,20 @@ class Navigation {
                                                  consistency_.explanation(),
                                                  "",
                                                  planar_of(pose),
-                                                 {motion[0], motion[1], 0},
+                                                 motion_of(motion),
                                                  {state, path},
-                                                 {.forward = speed},
-                                                 moving_},
+                                                 robot_.limits,
+                                                 moving_,
+                                                 speed},
                                                 &costmap_);
     py::object way = py::none(), request = py::none();
     if (out.path) way = py::cast(poses_of(*out.path));
-    if (out.request) request = py::make_tuple(out.request->linear, out.request->angular);
-    return py::make_tuple(name_of(out.state), out.reason, way, out.cancel, request);
+    if (out.request) request = py::make_tuple(out.request->linear, out.request->lateral, out.request->angular);
+    return py::make_tuple(name_of(out.state), out.reason, way, out.cancel, request, out.speed);
   }
 
  private:
+  DrivenRobot robot_;
   Costmap costmap_;
   ScanWatch watch_;
   MovingObjects objects_;
@@ -106,10 +125,9 @@ class Navigation {
 /// It does what the node collision_guard does with scans, odometry and requests, without ROS.
 class Guard {
  public:
-  using Motion = std::array<double, 3>;  // linear, lateral [m/s], angular [rad/s]
-
   explicit Guard(const std::string& urdf)
-      : outline_(read_rigid_bodies({urdf, "the URDF"})), guard_(outline_.footprint()) {}
+      : outline_(read_rigid_bodies({urdf, "the URDF"}), driven_robot({urdf, "the URDF"}, Parameters()).outline),
+        guard_(outline_.footprint()) {}
 
   /// rad, by joint; `now` in s.
   void move_joints(const std::map<std::string, double>& positions, double now) {
@@ -131,8 +149,7 @@ class Guard {
       if (const std::string problem = watch.problem(now); !problem.empty())
         return py::make_tuple(0.0, problem, py::none());
     }
-    const auto motion = [](const Motion& of) { return PlanarMotion{of[0], of[2], of[1]}; };
-    const GuardVerdict verdict = guard_.check(planar_of(base), motion(measured), motion(requested), now);
+    const GuardVerdict verdict = guard_.check(planar_of(base), motion_of(measured), motion_of(requested), now);
     py::object obstacle = py::none();
     if (verdict.obstacle) obstacle = py::make_tuple(verdict.obstacle->x, verdict.obstacle->y);
     return py::make_tuple(verdict.clearance, verdict.problem, obstacle);
@@ -159,6 +176,8 @@ PYBIND11_MODULE(_navigation, module) {
   py::class_<Navigation>(module, "Navigation")
       .def(py::init<const std::optional<py::tuple>&, const std::string&>(), py::arg("map"), py::arg("urdf"))
       .def("set_map", &Navigation::set_map, py::arg("map"), py::arg("unknown_is_free"))
+      .def("set_zones", &Navigation::set_zones, py::arg("mask"))
+      .def("speed_limit", &Navigation::speed_limit, py::arg("x"), py::arg("y"))
       .def("update", &Navigation::update, py::arg("scan"), py::arg("sensor"), py::arg("place"), py::arg("odometry"),
            py::arg("now"), py::arg("moved"))
       .def("block", &Navigation::block, py::arg("place"), py::arg("obstacle"), py::arg("now"))

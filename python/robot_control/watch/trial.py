@@ -24,8 +24,8 @@ from robot_control.ui.program import run
 ROBOTS = ("diffbot", "quadbot")
 MASTER_PORT, CONSOLE_PORT, PORTS = 11311, 8080, 100
 """the usual ports of a ROS master and of the console, and how many are tried from there on"""
-LASER_RATE, LASER_LINK = 10, "laser_link"
-"""Hz, of a robot that has this link"""
+LASER_RATE = 10
+"""Hz"""
 STARTED = re.compile(r"(?:ready|STOPPED): .*")
 """what a robot prints when it may be commanded, or waits for a reset: a stop outlives a restart"""
 POLL = 0.1
@@ -61,10 +61,9 @@ def try_out(robot: str, scene: str, port: int, out: Path, *, browser: bool) -> i
     os.environ["ROS_IP"] = "127.0.0.1"
     os.environ.pop("ROS_HOSTNAME", None)
     which = f"robot:={robot}" if robot in ROBOTS else f"urdf:={robot}"
-    laser = LASER_RATE if robot in ROBOTS or LASER_LINK in Path(robot).read_text(errors="replace") else 0
     launch = ["roslaunch", "-p", str(master), "robot_control", "sim.launch", which, f"scene:={scene}"]
     with contextlib.closing(_Master()), children() as started:
-        robot_part = Child([*launch, f"laser_rate:={laser}"], out / "robot.log")
+        robot_part = Child([*launch, f"laser_rate:={LASER_RATE}"], out / "robot.log")
         started.append(robot_part)
         while robot_part.running and not rosgraph.is_master_online():
             time.sleep(POLL)

@@ -28,8 +28,8 @@ GuardVerdict CollisionGuard::check(const PlanarPose& base, const PlanarMotion& m
       objects.push_back(std::move(object));
     }
   }
-  points = in_base_axes(std::move(points), base);
-  objects = in_base_axes(std::move(objects), base);
+  points = composed(inverse(base), std::move(points));
+  objects = composed(inverse(base), std::move(objects));
   const auto speed = [&](const PlanarMotion& motion) {
     return std::hypot(motion.linear, motion.lateral) + std::abs(motion.angular) * footprint_.circumscribed;
   };

@@ -1,7 +1,6 @@
 #include "navigation/guard/moving_outline.h"
 
 #include <algorithm>
-#include <limits>
 
 #include "machine/bodies/posed_bodies.h"
 
@@ -14,16 +13,13 @@ bool MovingOutline::changes() const {
 }
 
 void MovingOutline::update(const std::map<std::string, double>& positions, double now) {
-  if (!lately_.empty() && now - lately_.back().first < kOutlinePeriod) return;
-  lately_.emplace_back(now, footprint_of(posed(robot_, positions)));
-  while (now - lately_.front().first > kStride) lately_.pop_front();
-  footprint_ = footprint_of([&](Point normal) {
-    double reach = -std::numeric_limits<double>::infinity();
-    for (const auto& [at, outline] : lately_) {
-      for (const Point corner : outline.corners) reach = std::max(reach, corner.x * normal.x + corner.y * normal.y);
-    }
-    return reach;
-  });
+  if (!times_.empty() && now - times_.back() < kOutlinePeriod) return;
+  lately_.push_back(footprint_of(posed(robot_, positions)));
+  times_.push_back(now);
+  const auto old = std::ranges::find_if(times_, [&](double at) { return now - at <= kStride; }) - times_.begin();
+  times_.erase(times_.begin(), times_.begin() + old);
+  lately_.erase(lately_.begin(), lately_.begin() + old);
+  footprint_ = hull_of(lately_);
 }
 
 }  // namespace robot_control::navigation

@@ -1,10 +1,10 @@
 #pragma once
 /// The outline of a robot with its joints where they were within the last kStride: legs and arms move it.
 
-#include <deque>
 #include <map>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "machine/bodies/rigid_bodies.h"
 #include "navigation/footprint.h"
@@ -16,8 +16,8 @@ inline constexpr double kOutlinePeriod = 0.05;  ///< s, at least, between two ou
 
 class MovingOutline {
  public:
-  /// Every joint is at zero until the first update. Throws what footprint_of throws.
-  explicit MovingOutline(RigidBodies robot) : robot_(std::move(robot)), footprint_(footprint_of(robot_)) {}
+  /// `first` is the outline until the first update.
+  MovingOutline(RigidBodies robot, Footprint first) : robot_(std::move(robot)), footprint_(std::move(first)) {}
 
   /// Returns whether a joint can change the outline: one that is no wheel.
   bool changes() const;
@@ -29,7 +29,8 @@ class MovingOutline {
 
  private:
   RigidBodies robot_;
-  std::deque<std::pair<double, Footprint>> lately_;  // s
+  std::vector<double> times_;      // s
+  std::vector<Footprint> lately_;  // at these times
   Footprint footprint_;
 };
 

@@ -41,8 +41,9 @@ bool in_view(const Scan& scan, const PlanarPose& sensor, Point at) {
 
 ScanMemory::Fate ScanMemory::fate_of(const Memory& memory, const Scan& scan, const PlanarPose& sensor,
                                      double stamp) const {
-  const bool kept = stamp - memory.seen <= kRecall || (blind_ && memory.vanished);
-  const Fate aged = !kept ? Fate::kForgotten : memory.vanished ? Fate::kVanished : Fate::kKept;
+  const bool recent = stamp - memory.seen <= kRecall;
+  const Fate hidden = recent ? Fate::kKept : Fate::kForgotten;
+  const Fate aged = memory.vanished && (recent || blind_) ? Fate::kVanished : hidden;
   const double ray = ray_towards(scan, sensor, memory.at), range = distance({sensor.x, sensor.y}, memory.at);
   const auto rays = static_cast<double>(scan.ranges.size());
   if (!in_view(scan, sensor, memory.at)) return aged;
@@ -58,7 +59,8 @@ ScanMemory::Fate ScanMemory::fate_of(const Memory& memory, const Scan& scan, con
     }
   }
   if (behind == 2) return Fate::kForgotten;
-  if (silent == 0 || memory.vanished) return aged;
+  if (silent == 0) return hidden;
+  if (memory.vanished) return aged;
   const double moved = kMinPassing + kMaxObjectSpeed * (stamp - memory.seen);
   const double window = (moved < range ? std::asin(moved / range) : M_PI) / std::abs(scan.angle_increment);
   const double turn = 2 * M_PI / std::abs(scan.angle_increment);

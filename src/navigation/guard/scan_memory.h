@@ -10,8 +10,8 @@
 ///   never            if it has vanished, while the scan is blind in part
 ///
 /// A moving object leaves an echo within kMaxObjectSpeed times the time. A point vanishes if a ray beside it has no
-/// echo, and there is none as near as that. A scan is blind in part if vanished points cover kDoubtfulAngle. Then no
-/// new points are remembered.
+/// echo, and there is none as near as that. It is hidden again once both rays have echoes: one ray may drop out. A scan
+/// is blind in part if vanished points cover kDoubtfulAngle. Then no new points are remembered.
 ///
 /// A scan is frozen in part if rays over kDoubtfulAngle report the bits of an earlier scan. The robot has moved by
 /// kFrozenMotion since, and what that scan saw would now be nearer or farther along them by kFrozenRange.

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "navigation/mapping/scan_matcher.h"
-#include "navigation/ray_grid.h"
+#include "navigation/mapping/ray_grid.h"
 
 namespace robot_control::navigation {
 namespace {

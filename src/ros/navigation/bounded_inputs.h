@@ -10,7 +10,6 @@
 #include <robot_control/FollowPathActionResult.h>
 #include <robot_control/GuardState.h>
 #include <robot_control/LocalizationState.h>
-#include <robot_control/RobotKind.h>
 #include <sensor_msgs/JointState.h>
 #include <sensor_msgs/LaserScan.h>
 #include <tf2_msgs/TFMessage.h>
@@ -28,7 +27,6 @@ using BoundedOdometry = Bounded<nav_msgs::Odometry, 700, 700 + 2 * kMaxFrameId>;
 using BoundedTFMessage = Bounded<tf2_msgs::TFMessage, 4, kMaxMessage>;
 using BoundedOccupancyGrid = Bounded<nav_msgs::OccupancyGrid, 96, 96 + kMaxFrameId + kMaxCells>;
 using BoundedConfig = Bounded<dynamic_reconfigure::Config, 20, kMaxMessage>;
-using BoundedRobotKind = Bounded<RobotKind, 32, kMaxMessage>;
 using BoundedLocalizationState = Bounded<LocalizationState, 32, kMaxMessage>;
 using BoundedPoseWithCovarianceStamped = Bounded<geometry_msgs::PoseWithCovarianceStamped, 360, 360 + kMaxFrameId>;
 using BoundedPoseStamped = Bounded<geometry_msgs::PoseStamped, 72, 72 + kMaxFrameId>;

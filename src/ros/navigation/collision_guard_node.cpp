@@ -10,12 +10,14 @@
 #include <map>
 #include <stdexcept>
 
+#include "navigation/driven/driven_robot.h"
 #include "navigation/guard/collision_guard.h"
 #include "navigation/guard/moving_outline.h"
 #include "ros/navigation/navigation_messages.h"
 #include "ros/navigation/scan_input.h"
 #include "ros/nodes/service_node.h"
 #include "ros/reports/diagnostics.h"
+#include "ros/startup/description.h"
 #include "signals/formatted_text.h"
 
 namespace robot_control::navigation {
@@ -25,18 +27,12 @@ constexpr double kWatchPeriod = 0.1;     // s
 constexpr double kReportedWay = 0.3;     // m; with less, the state says why
 constexpr double kRequestTimeout = 0.5;  // s without a message after which nothing is requested
 
-constexpr const char* kDescription = "robot_description";
-
-RigidBodies described(const ros::NodeHandle& handle) {
-  std::string urdf;
-  handle.getParam(kDescription, urdf);
-  return read_rigid_bodies({urdf, handle.resolveName(kDescription)});
-}
-
 /// The outline of the robot, by `robot_description` and, with legs or an arm, `joint_states`.
 class RobotOutline {
  public:
-  explicit RobotOutline(ros::NodeHandle& handle) : outline_(described(handle)) {
+  RobotOutline(ros::NodeHandle& handle, const Parameters& parameters)
+      : outline_(read_rigid_bodies(published_description()),
+                 driven_robot(published_description(), parameters).outline) {
     if (outline_.changes())
       joints_.connect(handle, [this](const sensor_msgs::JointState& message) { receive(message); });
   }
@@ -62,7 +58,7 @@ class RobotOutline {
 class CollisionGuardService {
  public:
   explicit CollisionGuardService(const Parameters& parameters)
-      : active_(parameters.collision_guard.guard != GuardMode::kOff) {
+      : active_(parameters.collision_guard.guard != GuardMode::kOff), outline_(handle_, parameters) {
     if (!active_) {
       publish({.clearance = std::numeric_limits<double>::infinity(), .problem = {}, .obstacle = {}});
       return;
@@ -81,12 +77,7 @@ class CollisionGuardService {
     timer_ = handle_.createWallTimer(ros::WallDuration(kWatchPeriod), [this](const ros::WallTimerEvent&) { watch(); });
   }
 
-  /// The outline of the robot is that of its description.
-  static std::vector<std::string> missing() {
-    const ros::NodeHandle handle;
-    if (handle.hasParam(kDescription)) return {};
-    return {handle.resolveName(kDescription) + ": start the robot"};
-  }
+  static std::vector<std::string> missing() { return missing_description(); }
 
   void diagnose(DiagnosticReport& report) const {
     if (!active_) return report.ok("off");
@@ -149,7 +140,7 @@ class CollisionGuardService {
 
   ros::NodeHandle handle_;
   const bool active_;
-  RobotOutline outline_{handle_};
+  RobotOutline outline_;
   CollisionGuard guard_{outline_.footprint()};
   std::vector<std::unique_ptr<ScanInput>> inputs_;
   InputTopic<BoundedTwistStamped> requested_{"cmd_vel_requested", 1};

@@ -7,7 +7,7 @@
 
 #include <cmath>
 
-#include "navigation/footprint.h"
+#include "navigation/driven/driven_robot.h"
 #include "navigation/map_consistency.h"
 #include "navigation/map_file.h"
 #include "ros/navigation/controller_limits.h"
@@ -17,8 +17,8 @@
 #include "ros/navigation/scan_store.h"
 #include "ros/nodes/service_node.h"
 #include "ros/reports/diagnostics.h"
+#include "ros/startup/description.h"
 #include "signals/formatted_text.h"
-#include "signals/robot_kinds.h"
 
 namespace robot_control::navigation {
 namespace {
@@ -27,23 +27,16 @@ constexpr double kPeriod = 0.1;      // s
 constexpr double kTfTimeout = 0.3;   // s for which a scan waits for tf
 constexpr double kMaxPoseAge = 1.0;  // s; a localisation is as slow as its scans
 constexpr double kMaxOdomAge = 0.3;  // s; odom comes at 50 Hz
-
-constexpr const char* kDescription = "robot_description";
+constexpr std::size_t kMaxWaypoints = 1000;
 constexpr std::uint32_t kMapOverhead = 1024;  // bytes of a message beside its cells
-
-Footprint read_footprint(const ros::NodeHandle& handle) {
-  std::string urdf;
-  handle.getParam(kDescription, urdf);
-  return footprint_of_urdf(urdf, handle.resolveName(kDescription));
-}
 
 class NavigateService {
  public:
   explicit NavigateService(const Parameters& parameters)
       : parameters_(parameters.navigate),
         wheels_(parameters.controller),
-        legs_(parameters.leg_control),
-        footprint_(read_footprint(handle_)),
+        robot_(driven_robot(published_description(), parameters)),
+        zones_(parameters_.zones.empty() ? Grid() : read_map(parameters_.zones)),
         scans_(handle_),
         path_client_(handle_),
         servers_(
@@ -51,19 +44,16 @@ class NavigateService {
     allow_messages_of(kMaxCells + kMapOverhead);
     map_.connect(handle_, [this](const nav_msgs::OccupancyGrid& message) { receive_map(message); });
     localized_.connect(handle_, [this](const LocalizationState& message) { localization_ = message; });
-    kind_.connect(handle_, [this](const RobotKind& message) { on_legs_ = message.kind == kLeggedKind; });
-    updates_.connect(handle_, [this](const dynamic_reconfigure::Config& message) { take_over(message, wheels_); });
+    updates_.connect(handle_, [this](const dynamic_reconfigure::Config& message) {
+      take_over(message, wheels_);
+      robot_.limits = limits_of(wheels_);
+    });
     costmap_topic_ = handle_.advertise<nav_msgs::OccupancyGrid>("costmap", 1, true);
     clear_ = handle_.advertiseService("clear_costmaps", &NavigateService::clear, this);
     timer_ = handle_.createWallTimer(ros::WallDuration(kPeriod), [this](const ros::WallTimerEvent&) { step(); });
   }
 
-  /// The outline of the robot is that of its description.
-  static std::vector<std::string> missing() {
-    const ros::NodeHandle handle;
-    if (handle.hasParam(kDescription)) return {};
-    return {handle.resolveName(kDescription) + ": start the robot"};
-  }
+  static std::vector<std::string> missing() { return missing_description(); }
 
   void diagnose(DiagnosticReport& report) {
     const NavigatorState state = navigator_.active() ? output_.state
@@ -100,9 +90,14 @@ class NavigateService {
     }
     const int columns = static_cast<int>(info.width), rows = static_cast<int>(info.height);
     costmap_.reset();  // before the new one: two of the largest maps would take 0.8 GB
-    costmap_ = std::make_unique<Costmap>(Grid{columns, rows, info.resolution, origin.x, origin.y, data}, footprint_,
-                                         parameters_.unknown_is_free);
+    use(std::make_unique<Costmap>(Grid{columns, rows, info.resolution, origin.x, origin.y, data}, robot_.outline,
+                                  parameters_.unknown_is_free));
     consistency_ = MapConsistency();
+  }
+
+  void use(std::unique_ptr<Costmap> costmap) {
+    costmap_ = std::move(costmap);
+    costmap_->set_zones(zones_);
   }
 
   /// Inserts a scan into the costmap, and compares it with the map. A scan waits until tf has the pose at its stamp.
@@ -110,14 +105,15 @@ class NavigateService {
     if (!waiting_ || (time - waiting_->seen.stamp).toSec() > kTfTimeout) {
       if (auto scan = scans_.next_scan()) waiting_ = std::move(scan);
     }
-    if (!costmap_ && scans_.odom_frame() == parameters_.map_frame) costmap_ = std::make_unique<Costmap>(footprint_);
+    if (!costmap_ && scans_.odom_frame() == parameters_.map_frame) use(std::make_unique<Costmap>(robot_.outline));
     if (!waiting_ || !costmap_) return;
     const PlacedScan& seen = waiting_->seen;
     const auto base = frames_.lookup(parameters_.map_frame, scans_.input().base_frame(), seen.stamp, scan_problem_);
     if (!base) return;
     costmap_->centre_on({base->pose.x, base->pose.y}, now());
     consistency_.update(costmap_->insert(seen.scan, composed(base->pose, seen.laser), now()));
-    moving_ = foresee(waiting_->moving, base->pose, *costmap_);
+    moving_ = composed(composed(base->pose, inverse(seen.odometry.mean)), waiting_->moving);
+    foresee(moving_, base->pose, *costmap_);
     waiting_.reset();
     seen_at_ = time;
   }
@@ -154,23 +150,39 @@ class NavigateService {
   void begin(const GoalServers::Goal& goal) {
     requested_ = ros::Time::now();
     goal_speed_ = goal.speed;
-    PlanarPose target = planar_of(goal.target.pose);
-    std::string why, frame = goal.target.header.frame_id;
-    if (!frame.empty() && frame[0] == '/') frame.erase(0, 1);
-    if (!std::isfinite(target.yaw)) return refuse("the goal's orientation is not a quaternion of length 1");
-    if (!(std::hypot(target.x, target.y) <= kFarthest)) return refuse("the goal is not finite, or beyond 1000 km");
-    if (!(goal.speed >= 0 && goal.speed <= 10)) return refuse("the goal's speed must be from 0 to 10 m/s");
-    if (frame.empty())
-      return refuse("the goal has no frame: set header.frame_id, for instance to " + parameters_.map_frame);
-    if (frame != parameters_.map_frame) {
-      const auto found = frames_.lookup(parameters_.map_frame, frame, ros::Time(), why);
-      if (!found) return refuse("tf does not connect the goal's frame with the map's: " + why);
-      target = composed(found->pose, target);
+    if (!(goal.speed >= 0 && goal.speed <= 10)) return cancel("the goal's speed must be from 0 to 10 m/s", false);
+    if (goal.targets.empty() || goal.targets.size() > kMaxWaypoints)
+      return cancel("the goal has " + std::to_string(goal.targets.size()) + " waypoints: send 1 to 1000", false);
+    waypoints_.clear();
+    for (const geometry_msgs::PoseStamped& target : goal.targets) {
+      PlanarPose pose;
+      if (const std::string why = place(target, pose); !why.empty())
+        return cancel(numbered(why, waypoints_.size(), goal.targets.size()), false);
+      waypoints_.push_back(pose);
     }
-    navigator_.begin(target, now());
+    next_ = 0;
+    navigator_.begin(waypoints_[0], now());
   }
 
-  void refuse(const std::string& why) { cancel(why, false); }
+  /// Sets the pose in the map; returns why it cannot be a goal.
+  std::string place(const geometry_msgs::PoseStamped& target, PlanarPose& pose) const {
+    pose = planar_of(target.pose);
+    std::string why, frame = target.header.frame_id;
+    if (!frame.empty() && frame[0] == '/') frame.erase(0, 1);
+    if (!std::isfinite(pose.yaw)) return "the goal's orientation is not a quaternion of length 1";
+    if (!(std::hypot(pose.x, pose.y) <= kFarthest)) return "the goal is not finite, or beyond 1000 km";
+    if (frame.empty()) return "the goal has no frame: set header.frame_id, for instance to " + parameters_.map_frame;
+    if (frame == parameters_.map_frame) return "";
+    const auto found = frames_.lookup(parameters_.map_frame, frame, ros::Time(), why);
+    if (!found) return "tf does not connect the goal's frame with the map's: " + why;
+    pose = composed(found->pose, pose);
+    return "";
+  }
+
+  /// Returns a reason that names its waypoint, if there are several.
+  static std::string numbered(const std::string& why, std::size_t index, std::size_t count) {
+    return count == 1 ? why : formatted("waypoint %zu of %zu: ", index + 1, count) + why;
+  }
 
   void cancel(const std::string& why, bool cancelled = true) {
     if (navigator_.active()) path_client_.cancel();
@@ -192,19 +204,29 @@ class NavigateService {
       const GuardReport guard = scans_.guard();
       const std::string slowed_by = path_client_.reason().empty() ? guard.reason : path_client_.reason();
       heed(guard);
-      DriveLimits limits = on_legs_ ? limits_of(legs_) : limits_of(wheels_);
-      limits.forward = std::min(limits.forward, goal_speed_ > 0 ? goal_speed_ : parameters_.speed);
-      output_ = navigator_.step({now(), why, consistency_.explanation(), slowed_by, pose_, scans_.motion(),
-                                 path_client_.report(), limits, moving_},
-                                costmap_.get());
+      output_ = navigator_.step(
+          {now(), why, consistency_.explanation(), slowed_by, pose_, scans_.motion(), path_client_.report(),
+           robot_.limits, moving_, goal_speed_ > 0 ? goal_speed_ : parameters_.speed},
+          costmap_.get());
       if (output_.cancel) path_client_.cancel();
       if (output_.path)
-        path_client_.send(*output_.path, parameters_.map_frame, limits.forward, output_.request.has_value(),
-                          requested_);
+        path_client_.send(*output_.path, parameters_.map_frame, output_.speed, output_.request.has_value(), requested_);
       if (output_.request) path_client_.steer(*output_.request);
-      if (output_.state == NavigatorState::kReached) conclude(true, false, "reached");
-      if (output_.state == NavigatorState::kFailed) conclude(false, false, output_.reason);
-      servers_.feedback(output_, pose_, parameters_.map_frame);
+      geometry_msgs::PoseStamped pose;
+      pose.header.stamp = time;
+      pose.header.frame_id = parameters_.map_frame;
+      pose.pose = pose_message(pose_);
+      if (output_.state == NavigatorState::kReached) {
+        servers_.reach(pose);
+        if (++next_ < waypoints_.size()) {
+          navigator_.begin(waypoints_[next_], now());
+        } else {
+          conclude(true, false, "reached");
+        }
+      }
+      if (output_.state == NavigatorState::kFailed)
+        conclude(false, false, numbered(output_.reason, next_, waypoints_.size()));
+      servers_.feedback(output_, pose);
     }
   }
 
@@ -212,7 +234,7 @@ class NavigateService {
   void heed(const GuardReport& guard) {
     if (!guard.holds) held_since_ = now();
     if (costmap_ && guard.obstacle && now() - held_since_ > kReplanPeriod)
-      costmap_->block(from_base_axes({*guard.obstacle}, pose_)[0], now());
+      costmap_->block(composed(pose_, std::vector{*guard.obstacle})[0], now());
   }
 
   void publish_costmap() {
@@ -228,8 +250,8 @@ class NavigateService {
   ros::NodeHandle handle_;
   const NavigateParameters parameters_;
   DriveControllerParameters wheels_;  // in force
-  const LegControllerParameters legs_;
-  const Footprint footprint_;
+  DrivenRobot robot_;
+  const Zones zones_;
   ScanStore scans_;
   const Frames& frames_ = scans_.input().frames();
   PathClient path_client_;
@@ -238,16 +260,16 @@ class NavigateService {
   GoalServers servers_;
   InputTopic<BoundedOccupancyGrid> map_{"map", 1};
   InputTopic<BoundedLocalizationState> localized_{"localization_state", 1};
-  InputTopic<BoundedRobotKind> kind_{"robot_kind", 1};
   InputTopic<BoundedConfig> updates_{std::string(names_of_kind(kWheeledKind).controller) + "/parameter_updates", 1};
   LocalizationState localization_;  // the newest
   ros::Publisher costmap_topic_;
   ros::ServiceServer clear_;
   ros::WallTimer timer_;
 
-  bool on_legs_ = false;
-  double goal_speed_ = 0;  // m/s
-  double held_since_ = 0;  // s
+  std::vector<PlanarPose> waypoints_;  // in the map, of the present goal
+  std::size_t next_ = 0;               // of them
+  double goal_speed_ = 0;              // m/s
+  double held_since_ = 0;              // s
   std::string map_problem_ = "no map received: start slam, or localization with a saved map";
   std::optional<StoredScan> waiting_;  // for tf
   ros::Time seen_at_, requested_;

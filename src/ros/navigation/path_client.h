@@ -6,7 +6,7 @@
 
 #include <string>
 
-#include "navigation/navigator.h"
+#include "navigation/goals/navigator.h"
 #include "ros/navigation/bounded_inputs.h"
 
 namespace robot_control::navigation {

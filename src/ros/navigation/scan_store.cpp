@@ -53,8 +53,7 @@ void ScanStore::receive(const nav_msgs::Odometry& message) {
 
 void ScanStore::use(const PlacedScan& scan) {
   const std::lock_guard lock(mutex_);
-  const PlanarPose& base = scan.odometry.mean;
-  newest_ = {scan, in_base_axes(objects_.update(scan.scan, composed(base, scan.laser), scan.stamp.toSec()), base)};
+  newest_ = {scan, objects_.update(scan.scan, composed(scan.odometry.mean, scan.laser), scan.stamp.toSec())};
 }
 
 void ScanStore::receive(const GuardState& message) {

@@ -14,7 +14,7 @@ namespace robot_control::navigation {
 
 struct StoredScan {
   PlacedScan seen;
-  std::vector<MovingObject> moving;  ///< in base axes
+  std::vector<MovingObject> moving;  ///< in odom
 };
 
 /// The last report of the guard; after kScanTimeout it is as if there were none.

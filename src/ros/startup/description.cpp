@@ -1,6 +1,9 @@
 #include "ros/startup/description.h"
 
+#include <ros/names.h>
 #include <ros/param.h>
+
+#include "machine/bodies/added_laser.h"
 
 namespace robot_control {
 namespace {
@@ -20,14 +23,27 @@ void restore(const char* name, const std::string& before) {
 
 RobotDescription chosen_description(const Parameters& parameters, bool urdf_requested, const std::string& published,
                                     const std::string& name) {
-  if (urdf_requested || published.empty()) return load_description(parameters.urdf);
+  const bool laser = parameters.simulated_laser;
+  if (urdf_requested || published.empty()) return with_laser(load_description(parameters.urdf), laser);
+  const RobotDescription server = with_laser({published, name}, laser);
   try {
-    RobotDescription file = load_description(parameters.urdf);
-    if (file.text == published) return file;
+    RobotDescription file = with_laser(load_description(parameters.urdf), laser);
+    if (file.text == server.text) return file;
   } catch (const RobotError&) {
     // The text on the server is used; the file is not needed.
   }
-  return {published, name};
+  return server;
+}
+
+std::vector<std::string> missing_description() {
+  if (ros::param::has(kDescription)) return {};
+  return {ros::names::resolve(kDescription) + ": start the robot"};
+}
+
+RobotDescription published_description() {
+  RobotDescription description{"", ros::names::resolve(kDescription)};
+  ros::param::get(kDescription, description.text);
+  return description;
 }
 
 void forget_argument() {

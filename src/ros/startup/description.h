@@ -6,11 +6,12 @@
 ///   3. the file of the YAML file's `robot.urdf`.
 ///
 /// A plant publishes the text that it has read as `robot_description` and sets `robot/urdf` to its `~urdf` for all
-/// nodes. When it ends, it restores the parameter server. A text from the server has no folder. Meshes named relative
+/// nodes. With robot.simulated_laser that text has the link of a laser (with_laser). When it ends, it restores the parameter server. A text from the server has no folder. Meshes named relative
 /// to the URDF are therefore found only if that text equals the file in 3. Meshes named by package:// and file:// are
 /// always found.
 
 #include <string>
+#include <vector>
 
 #include "configuration/parameters.h"
 #include "machine/machine_model.h"
@@ -27,6 +28,12 @@ RobotDescription chosen_description(const Parameters& parameters, bool urdf_requ
 /// same one.
 std::string unread_description(const RobotDescription& chosen, const std::string& published, const std::string& name,
                                const std::string& asked_for);
+
+/// Returns what a node that does not run in the loop waits for: the description on the server, unless it is there.
+std::vector<std::string> missing_description();
+
+/// Returns the description on the server; without text if there is none.
+RobotDescription published_description();
 
 /// Deletes `~urdf` from the server: an argument of this start must not apply to the next start, whether it was refused
 /// or not.

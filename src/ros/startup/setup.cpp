@@ -30,8 +30,8 @@ std::string installed_config() {
 /// Keys of a block that launch files set from their arguments; roslaunch prints them.
 constexpr const char* kSetByLaunch =
     "driver drives urdf kind clock command_script bus wait_for_nodes wait_for_telemetry latch_file directory "
-    "record black_box clearance scene seed cycles terrain.kind laser.rate map map_frame initial_pose "
-    "speed unknown_is_free";
+    "record black_box clearance scene seed cycles terrain.kind laser.rate simulated_laser map map_frame initial_pose "
+    "speed unknown_is_free zones";
 
 constexpr const char* kYamlPath = "the path of a YAML file";
 
@@ -47,8 +47,9 @@ std::string server_text(const std::string& name, const std::string& what) {
 
 /// Replaces the paths that this node reads from the server by resolved ones, so that every reader finds the same files.
 void resolve_server_paths() {
-  for (const char* name : {"robot/urdf", "robot/drives", "robot/command_script", "~config", "~urdf", "~drives",
-                           "~scene", "~calibration_file", "~command_sources", "~directory", "~latch_file", "~map"}) {
+  for (const char* name :
+       {"robot/urdf", "robot/drives", "robot/command_script", "~config", "~urdf", "~drives", "~scene",
+        "~calibration_file", "~command_sources", "~directory", "~latch_file", "~map", "~zones"}) {
     XmlRpc::XmlRpcValue value = on_server(ros::names::resolve(name));
     if (value.getType() != XmlRpc::XmlRpcValue::TypeString) continue;
     const std::string& given = value;

@@ -29,7 +29,8 @@ struct MovingOutlineTest : testing::Test {
     for (const Point corner : outline.footprint().corners) x = std::max(x, corner.x);
     return x;
   }
-  MovingOutline outline{read_rigid_bodies({kOneLeg, "the test"})};
+  const RigidBodies robot = read_rigid_bodies({kOneLeg, "the test"});
+  MovingOutline outline{robot, footprint_of(robot)};
 };
 
 TEST_F(MovingOutlineTest, ALegThatSwingsForwardExtendsItForAStride) {

@@ -60,6 +60,22 @@ TEST_F(ScanMemoryTest, ATrueScanIsNotDoubtedWhileTheRobotDrivesAndTurns) {
   }
 }
 
+/// Rays that graze a wall end far from each other. A point between two of their ends vanishes when one drops out.
+TEST_F(ScanMemoryTest, RaysThatDropOutBesideACorridorAreNoBlindness) {
+  house = testing_house::two_rooms(0);
+  house.columns = 160, house.rows = 14, house.cells.assign(160 * 14, kFreeCell);
+  for (int column = 0; column < house.columns; ++column)
+    for (const int row : {0, 13}) house.cells[house.index({column, row})] = kOccupiedCell;
+  base = {4, 0.7, 0};
+  std::bernoulli_distribution dropped(0.1);
+  for (int i = 0; i < 100; ++i) {
+    drive(1, 0.5, i % 20 < 10 ? 0.2 : -0.2, [&](Scan& scan) {
+      for (float& range : scan.ranges) range = dropped(random) ? kNothing : range;
+    });
+    EXPECT_EQ(memory.problem(), "") << i;
+  }
+}
+
 TEST_F(ScanMemoryTest, RaysWithoutAnEchoAreNotFrozenWhereTwoEchoesSwapSidesAtTheFirstRay) {
   Scan scan{-M_PI, M_PI / 180, 0.05, 8.0, std::vector<float>(360, kNothing)};
   const Scan empty = scan;

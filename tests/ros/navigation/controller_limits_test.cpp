@@ -5,6 +5,8 @@
 
 #include <cmath>
 
+#include "navigation/driven/driven_robot.h"
+
 namespace robot_control::navigation::tests {
 
 struct ControllerLimitsTest : testing::Test {

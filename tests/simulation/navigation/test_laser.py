@@ -1,10 +1,12 @@
 """The laser of the simulated robot, in the closed loop and in the scenes for it."""
 
 import math
+from pathlib import Path
 
 import numpy as np
 import pytest
 from robot_control import ClosedLoop
+from robot_control.installed_files import share_file
 
 from bench.navigation.tour import drive, new_loop
 
@@ -37,6 +39,17 @@ def test_without_a_laser_it_says_what_to_set():
     loop.step()
     with pytest.raises(ValueError, match=r"there is no laser: set laser\.rate"):
         loop.scan()
+
+
+def test_a_robot_without_a_laser_gets_one_where_the_parameters_say_so(tmp_path):
+    urdf = tmp_path / "bare.urdf"
+    urdf.write_text(Path(share_file("urdf/diffbot.urdf")).read_text().replace("laser_link", "mast"))
+    params = {"mujoco_plant": {"laser": {"rate": 10}}}
+    with pytest.raises(RuntimeError, match=r"no link \"laser_link\".*robot\.simulated_laser: true"):
+        ClosedLoop(params, urdf=str(urdf))
+    loop = ClosedLoop({**params, "robot": {"simulated_laser": True}}, urdf=str(urdf))
+    loop.step()
+    assert len(loop.scan()["ranges"]) == 360
 
 
 def test_a_robot_that_drives_sees_the_wall_ahead_come_nearer():

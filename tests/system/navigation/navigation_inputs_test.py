@@ -1,10 +1,12 @@
 """navigate with wrong maps, scans and transforms: each goal is refused with the cause, and the node goes on."""
 
 import math
+import tempfile
 import time
 import unittest
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from pathlib import Path
 
 import actionlib
 import numpy as np
@@ -12,7 +14,14 @@ import rospy
 from actionlib_msgs.msg import GoalID, GoalStatus
 from diagnostic_msgs.msg import DiagnosticArray
 from nav_msgs.msg import OccupancyGrid, Odometry
-from robot_control.msg import FollowPathActionGoal, GuardState, NavigateToAction, NavigateToGoal
+from robot_control.msg import (
+    FollowPathActionGoal,
+    GuardState,
+    NavigateThroughAction,
+    NavigateThroughGoal,
+    NavigateToAction,
+    NavigateToGoal,
+)
 from sensor_msgs.msg import LaserScan
 from system.navigation.navigation_support import RAYS, Localised, World, message_of, missing, scan_of, share, transform
 from system.system_support import Latest, Process, Program, refusal, truncated_messages, wait_for
@@ -185,6 +194,31 @@ class NavigationInputsTest(unittest.TestCase):
         refused = refusal("navigate", "__name:=wrong")
         for problem in ("navigate.speed", "must be true or false", "navigate.map_frame", "navigate.sped"):
             self.assertIn(problem, refused)
+
+    def test_6_a_damaged_file_of_zones_refuses_the_start_in_one_message(self) -> None:
+        with tempfile.TemporaryDirectory() as folder:
+            zones = Path(folder) / "zones.yaml"
+            zones.write_text("image: zones.pgm\nresolution: -1\norigin: [0, 0, 0]\nnegate: 0\n")
+            rospy.set_param("/wrong", {"zones": str(zones)})
+            refused = refusal("navigate", "__name:=wrong")
+            self.assertIn("zones.yaml: the key occupied_thresh is missing", refused)
+            self.assertEqual(refused.count("zones.yaml"), 1, refused)
+        rospy.delete_param("/wrong")
+
+    def test_6_waypoints_that_cannot_be_are_refused_with_their_number(self) -> None:
+        client = actionlib.SimpleActionClient("navigate_through", NavigateThroughAction)
+        self.assertTrue(client.wait_for_server(rospy.Duration(30.0)))
+        good, lost = self.goal().target, self.goal().target
+        lost.header.frame_id = "moon"
+        for waypoints, reason in (
+            ([], "the goal has 0 waypoints: send 1 to 1000"),
+            ([good] * 1001, "the goal has 1001 waypoints"),
+            ([good, lost], "waypoint 2 of 2: tf does not connect the goal's frame"),
+        ):
+            client.send_goal(NavigateThroughGoal(waypoints=waypoints))
+            self.assertTrue(client.wait_for_result(rospy.Duration(10.0)), self.navigate.output)
+            self.assertEqual((client.get_state(), client.get_result().reached), (GoalStatus.ABORTED, []))
+            self.assertIn(reason, client.get_result().reason)
 
     def test_6_bad_messages_are_refused_and_the_node_goes_on(self) -> None:
         topics = {"scan": LaserScan, "odom": Odometry, "map": OccupancyGrid, "tf": TFMessage}

@@ -10,7 +10,13 @@ import rospy
 from actionlib_msgs.msg import GoalStatus
 from geometry_msgs.msg import PoseStamped
 from nav_msgs.msg import OccupancyGrid
-from robot_control.msg import FollowPathAction, NavigateToAction, NavigateToGoal
+from robot_control.msg import (
+    FollowPathAction,
+    NavigateThroughAction,
+    NavigateThroughGoal,
+    NavigateToAction,
+    NavigateToGoal,
+)
 from std_msgs.msg import Float64
 from system.navigation.navigation_support import Localised, message_of, missing, share
 from system.system_support import Program, RobotTestCase, again_after_a_stall, wait_for
@@ -97,6 +103,45 @@ class NavigationTest(RobotTestCase):
         client = self.end_of("navigate_to", NavigateToAction, NavigateToGoal(target=self.pose(second, 0.0, math.pi)))
         self.assertEqual((client.get_state(), client.get_result().reason), (SUCCEEDED, "reached"))
         self.assert_reached(second, 0.0)
+
+    @again_after_a_stall
+    def test_waypoints_in_any_frame_are_reached_one_after_the_other(self) -> None:
+        seen: list[int] = []
+        client = actionlib.SimpleActionClient("navigate_through", NavigateThroughAction)
+        self.assertTrue(client.wait_for_server(rospy.Duration(30.0)), self.navigate.output)
+        x = 1.2 if self.robot.pose.x < 0.6 else 0.0
+        ahead = self.pose(0.3, 0.0, frame="base_link")  # where the base is when the goal arrives
+        at = self.robot.pose
+        waypoints = [ahead, self.pose(x, 0.1, frame="odom"), self.pose(0.6, 0.0, 1.0)]
+        client.send_goal(
+            NavigateThroughGoal(waypoints=waypoints), feedback_cb=lambda feedback: seen.append(feedback.index)
+        )
+        self.assertTrue(client.wait_for_result(rospy.Duration(90.0)), f"{self.navigate.output} {self.follower.output}")
+        result = client.get_result()
+        self.assertEqual((client.get_state(), result.reason), (SUCCEEDED, "reached"), self.navigate.output)
+        wanted = [(at.x + 0.3 * math.cos(at.yaw), at.y + 0.3 * math.sin(at.yaw)), (x, 0.1), (0.6, 0.0)]
+        self.assertEqual([reached.header.frame_id for reached in result.reached], ["map"] * 3)
+        for reached, (to_x, to_y) in zip(result.reached, wanted, strict=True):
+            away = math.hypot(reached.pose.position.x - to_x, reached.pose.position.y - to_y)
+            self.assertLess(away, AT_GOAL)
+        self.assertEqual(seen, sorted(seen))
+        self.assertEqual(set(seen) & {0, 1, 2}, {0, 1, 2})
+
+    @again_after_a_stall
+    def test_a_newer_goal_ends_the_waypoints_and_their_poses_so_far_are_in_the_result(self) -> None:
+        client = actionlib.SimpleActionClient("navigate_through", NavigateThroughAction)
+        self.assertTrue(client.wait_for_server(rospy.Duration(30.0)), self.navigate.output)
+        there, far = self.robot.pose, 6.8 if self.robot.pose.x < 4 else 0.0
+        client.send_goal(
+            NavigateThroughGoal(waypoints=[self.pose(there.x, there.y, there.yaw, "odom"), self.pose(far, 0.0)])
+        )
+        self.await_motion(0.3)
+        x = 1.2 if self.robot.pose.x < 0.6 else 0.0
+        self.end_of("navigate_to", NavigateToAction, NavigateToGoal(target=self.pose(x, 0.0)))
+        self.assertTrue(client.wait_for_result(rospy.Duration(10.0)))
+        self.assertEqual((client.get_state(), client.get_result().reason), (PREEMPTED, "replaced by a newer goal"))
+        self.assertEqual(len(client.get_result().reached), 1)
+        self.assert_reached(x, 0.0)
 
     @again_after_a_stall
     def test_a_goal_that_cannot_be_is_refused_with_its_reason_and_nothing_moves(self) -> None:

@@ -6,6 +6,7 @@
 #include "drivers/driver.h"
 #include "drivers/mujoco/model/mjcf.h"
 #include "drivers/mujoco/sensors/normal_stream.h"
+#include "machine/bodies/added_laser.h"
 #include "machine/bodies/rigid_bodies.h"
 
 namespace robot_control {
@@ -36,7 +37,8 @@ Laser::Laser(const MujocoModel& model, const MujocoPlantParameters& parameters, 
   const auto place = robot.links.find(laser_.link);
   if (place == robot.links.end()) {
     throw DriverError(robot.source + ": there is no link \"" + laser_.link +
-                      "\" for the laser. Add one, or name another link of the URDF (mujoco_plant.laser.link).");
+                      "\" for the laser. Add one, name another link of the URDF (mujoco_plant.laser.link), or set " +
+                      "robot.simulated_laser: true, which adds " + kLaserLink + ".");
   }
   in_body_ = place->second.in_body;
   body_ = mj_name2id(model.model.get(), mjOBJ_BODY, mjcf_body_name(robot.bodies[place->second.body].name).c_str());

@@ -23,8 +23,8 @@
 #include <random>
 #include <vector>
 
+#include "navigation/goals/planner.h"
 #include "navigation/moving_objects.h"
-#include "navigation/planner.h"
 
 namespace robot_control::navigation {
 

@@ -21,8 +21,8 @@
 #include <optional>
 #include <string>
 
-#include "navigation/local_controller.h"
-#include "navigation/planner.h"
+#include "navigation/goals/local_controller.h"
+#include "navigation/goals/planner.h"
 
 namespace robot_control::navigation {
 
@@ -52,8 +52,9 @@ struct NavigatorInput {
   PlanarPose pose;          ///< of the base in the map
   PlanarMotion motion;      ///< as measured
   PathReport path;
-  DriveLimits limits;                 ///< of the goal
-  std::vector<MovingObject> objects;  ///< in the map
+  DriveLimits limits;                                      ///< of the robot; zones and the goal's speed reduce them
+  std::vector<MovingObject> objects;                       ///< in the map
+  double speed = std::numeric_limits<double>::infinity();  ///< m/s of the goal
 };
 
 enum class NavigatorState { kIdle, kPlanning, kDriving, kWaiting, kReached, kFailed };
@@ -66,6 +67,7 @@ struct NavigatorOutput {
   std::string reason;        ///< why it waits, failed or does not come nearer
   double remaining = 0;      ///< m of the path, of which those near obstacles count up to twice
   std::optional<Plan> path;  ///< to be sent to follow_path in place of what it drives
+  double speed = 0;          ///< m/s, of that path
   std::optional<PlanarMotion>
       request;          ///< the velocity to be driven; that path, and those before it, only show the way
   bool cancel = false;  ///< follow_path is to stop

@@ -1,4 +1,4 @@
-#include "navigation/ray_grid.h"
+#include "navigation/mapping/ray_grid.h"
 
 #include <gtest/gtest.h>
 

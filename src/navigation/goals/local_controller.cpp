@@ -1,4 +1,4 @@
-#include "navigation/local_controller.h"
+#include "navigation/goals/local_controller.h"
 
 #include <algorithm>
 #include <cmath>

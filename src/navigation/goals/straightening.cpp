@@ -1,4 +1,4 @@
-#include "navigation/straightening.h"
+#include "navigation/goals/straightening.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "navigation/planner.h"
+#include "navigation/goals/planner.h"
 
 #include <algorithm>
 #include <array>
@@ -9,7 +9,7 @@
 #include <unordered_map>
 #include <utility>
 
-#include "navigation/straightening.h"
+#include "navigation/goals/straightening.h"
 #include "signals/formatted_text.h"
 
 namespace robot_control::navigation {
@@ -204,7 +204,7 @@ std::optional<std::pair<Cell, double>> narrowest(const Costmap& costmap, Cell st
 
 std::string no_path_problem(const Costmap& costmap, Cell start, Cell goal) {
   const auto narrow = narrowest(costmap, start, goal);
-  if (!narrow) return "no path: obstacles or unknown space surround the goal or the robot";
+  if (!narrow) return "no path: obstacles, keep-out zones or unknown space surround the goal or the robot";
   const double needed = 2 * (costmap.footprint().half_width + kPadding), wide = 2 * narrow->second;
   const Grid& grid = costmap.grid();
   const std::string where = formatted("Narrowest passage on the best route: %.2f m wide at (%.2f, %.2f) m", wide,
@@ -223,9 +223,11 @@ std::string goal_problem(const Costmap& costmap, const PlanarPose& goal) {
   const std::string at = formatted("the goal (%.2f, %.2f) m ", goal.x, goal.y);
   if (near && beyond(costmap, goal)) return "";
   if (!grid.contains(cell)) return at + "is outside the map";
+  if (costmap.keep_out(cell)) return at + "is in a keep-out zone: choose another goal, or change navigate.zones";
   if (costmap.occupied(cell)) return at + (costmap.unknown(cell) ? "is in unknown space" : "is in an obstacle");
   if (costmap.free(goal)) return "";
-  return at + formatted("is too near to an obstacle or to unknown space: %.2f m from its base", costmap.distance(cell));
+  return at + formatted("is too near to an obstacle, a keep-out zone or unknown space: %.2f m from its base",
+                        costmap.distance(cell));
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-#include "navigation/navigator.h"
+#include "navigation/goals/navigator.h"
 
 #include <algorithm>
 #include <array>
@@ -6,7 +6,7 @@
 #include <limits>
 #include <utility>
 
-#include "navigation/straightening.h"
+#include "navigation/goals/straightening.h"
 #include "signals/formatted_text.h"
 
 namespace robot_control::navigation {
@@ -28,6 +28,22 @@ bool near(const std::vector<MovingObject>& objects, const PlanarPose& pose) {
 
 bool is_paused(const NavigatorInput& input) {
   return input.path.state == PathReport::State::kPaused;
+}
+
+/// Returns the limits of the robot at this place.
+DriveLimits limits_at(const NavigatorInput& input, const Costmap& costmap, const PlanarPose& pose) {
+  DriveLimits limits = input.limits;
+  const double speed =
+      std::min(input.speed, costmap.zones().speed_limit({pose.x, pose.y}, limits.forward, limits.linear_acceleration));
+  for (double* const limit : {&limits.forward, &limits.reverse, &limits.lateral}) *limit = std::min(*limit, speed);
+  return limits;
+}
+
+/// Returns the speed that is allowed everywhere on the path.
+double speed_on(const Plan& plan, const NavigatorInput& input, const Costmap& costmap) {
+  double speed = std::min(input.speed, input.limits.forward);
+  for (const PlanarPose& pose : plan.poses) speed = std::min(speed, limits_at(input, costmap, pose).forward);
+  return speed;
 }
 
 }  // namespace
@@ -67,7 +83,7 @@ NavigatorOutput Navigator::step(const NavigatorInput& input, Costmap* costmap) {
       reason_ = input.problem;
     } else if (!input.problem.empty()) {
       wait(input.problem, out);
-    } else if (state_ == NavigatorState::kDriving) {
+    } else if (costmap->let_out(input.pose); state_ == NavigatorState::kDriving) {
       drive(input, *costmap, out);
     } else if (input.now - planned_at_ >= kReplanPeriod) {
       plan(input, *costmap, out);
@@ -107,6 +123,7 @@ void Navigator::plan(const NavigatorInput& input, Costmap& costmap, NavigatorOut
   path_ = found;
   least_remaining_ = found.length;
   reason_.clear();
+  out.speed = speed_on(found, input, costmap);
   out.path = std::move(found);
 }
 
@@ -127,6 +144,7 @@ bool Navigator::begin_steering(const NavigatorInput& input, Costmap& costmap, co
   reason_.clear();
   if (!controller_) controller_.emplace(costmap.footprint());
   controller_->reset();
+  out.speed = speed_on(way, input, costmap);
   out.path = way;
   steer(input, costmap, out);
   return true;
@@ -147,7 +165,8 @@ void Navigator::steer(const NavigatorInput& input, Costmap& costmap, NavigatorOu
     if (stuck) stuck_at_ = left;
     return plan(input, costmap, out);
   }
-  out.request = controller_->step(input.limits, costmap, to_goal_, input.pose, input.motion, input.objects);
+  const DriveLimits limits = limits_at(input, costmap, input.pose);
+  out.request = controller_->step(limits, costmap, to_goal_, input.pose, input.motion, input.objects);
   reason_ = input.now - progress_at_ > kReplanPeriod ? input.slowed_by : "";
 }
 
