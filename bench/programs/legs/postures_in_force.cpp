@@ -22,17 +22,25 @@ void weak_hips(const LegModel& model, std::uint64_t seed, WorstValues& worst) {
 }
 
 void slopes(const LegModel& model, std::uint64_t seed, WorstValues& worst) {
-  for (const double degrees : {10, 15, 20}) {
-    const double heading = static_cast<double>(seed % 8) * kPi / 4;
-    const SlopeTrial trial = stand_up_on(model, walking_parameters(seed), degrees * kPi / 180, heading);
-    const std::string on = "on " + std::to_string(static_cast<int>(degrees)) + " deg";
+  constexpr double kPhases = 0.38 / 5;  // s, a fifth of a period of the trot
+  const auto judge = [&](const std::string& on, double heading, const SlopeTrial& trial) {
     worst.add("neither stands nor refuses " + on, trial.stands || trial.refuses ? 0 : 1, "runs");
     worst.add("turned over " + on, trial.turned_over ? 1 : 0, "runs");
-    worst.add("stops " + on, trial.stopped ? 1 : 0, "runs");
-    worst.average("stands " + on, trial.stands ? 1 : 0, "of the headings");
-    if (!trial.stands)
-      std::fprintf(stderr, "%s %s, heading %.0f deg: %s %s, tilt %.3f\n", model.name.c_str(), on.c_str(),
-                   heading * 180 / kPi, trial.refuses ? "refuses" : "", trial.causes.c_str(), trial.tilt);
+    worst.average("stops " + on, trial.stopped ? 1 : 0, "of the runs");
+    worst.average("stands " + on, trial.stands ? 1 : 0, "of the runs");
+    if (!trial.stands || trial.stopped || trial.turned_over)
+      std::fprintf(stderr, "%s %s, seed %llu, heading %.0f deg: %s %s, tilt %.3f\n", model.name.c_str(), on.c_str(),
+                   static_cast<unsigned long long>(seed), heading * 180 / kPi, trial.refuses ? "refuses" : "",
+                   trial.causes.c_str(), trial.tilt);
+  };
+  for (const double degrees : {10, 15, 18, 20, 25}) {
+    const double heading = static_cast<double>(seed % 8) * kPi / 4, slope = degrees * kPi / 180;
+    const std::string on = "on " + std::to_string(static_cast<int>(degrees)) + " deg";
+    judge(on, heading, stand_up_on(model, walking_parameters(seed), slope, heading));
+    Parameters parameters = walking_parameters(seed);
+    parameters.plant.sensor_errors = ErrorLevel::kField;
+    judge("walking " + on, heading,
+          walk_on(model, parameters, slope, heading, static_cast<double>(seed / 8 % 5) * kPhases));
   }
 }
 

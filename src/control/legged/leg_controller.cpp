@@ -168,7 +168,7 @@ void LegController::walk(const ControlInput& input, const Request& request, Comm
   const std::uint64_t lies_next = state_.lies_next;
   enter(LegPhase::kStanding);
   state_.lies_next = lies_next;
-  stand_.begin(state_.stand, walk_.walker().measure(*input.sensors, *input.state), state_.walk.walker.ground[0]);
+  stand_.begin(state_.stand, walk_.walker().measure(*input.sensors, *input.state), state_.walk.walker.ground);
 }
 
 void LegController::enter(LegPhase phase, double elapsed) noexcept {

@@ -52,7 +52,7 @@ struct TerrainParameters {
   double height = 0.1;      ///< m
   double length = 0.3;      ///< m
   std::uint64_t count = 5;  ///< steps, rows of tiles or bars
-  double distance = 0.75;   ///< m
+  double distance = 0.75;   ///< m, from the robot's origin; beyond its front at the start
   double heading = 0;       ///< rad
   double friction = 1;      ///< of the boxes; ice has kIceFriction of it
 };
@@ -64,7 +64,7 @@ inline Keys keys(TerrainParameters& terrain) {
       {"height", &terrain.height, "m", 0, 1, 0, {}, group},
       {"length", &terrain.length, "m", 0.02, 100, 0, {}, group},
       {"count", &terrain.count, {}, 1, 100, 0, {}, group},
-      {"distance", &terrain.distance, "m", 0, 100, 0, {}, group},
+      {"distance", &terrain.distance, "m", 0.5, 100, 0, {}, group},
       {"heading", &terrain.heading, "rad", -3.2, 3.2, 0, {}, group},
       {"friction", &terrain.friction, {}, 0, 10, 0, {}, group},
   };

@@ -2,8 +2,8 @@
 /// The direction of the vertical in base axes, from gyro and accelerometer alone: the monitor's own estimate,
 /// independent of the estimator.
 ///
-///   prediction (gyro)            u̇ = −ω × u
-///   correction (accelerometer)   u ← u + dt/T·(â − u),   â = (a − c)/|a − c|,   if ||a − c| − g| < kBand
+///   prediction (gyro)            as in fixed_direction.h
+///   correction (accelerometer)   by â with weight dt/T,   â = (a − c)/|a − c|,   if ||a − c| − g| < kBand
 ///   initial value                u = â, of the first sample within the band
 ///
 /// a  accelerometer: specific force, +g upwards at rest; c  the part of it that the caller knows not to be gravity.
@@ -30,6 +30,7 @@
 #include <Eigen/Core>
 
 #include "machine/stored.h"
+#include "safety/measurements/fixed_direction.h"
 
 namespace robot_control {
 
@@ -51,28 +52,23 @@ class Attitude {
   bool known() const noexcept { return uncorrected_ <= kTrustTime; }
 
   /// u; while it is not known, the base's z axis or the last one known.
-  Eigen::Vector3d up() const noexcept { return *up_; }
+  Eigen::Vector3d up() const noexcept { return up_.vector(); }
+  const FixedDirection& vertical() const noexcept { return up_; }
 
-  /// rad, 0 … π, between u and the base's z axis.
-  double tilt() const noexcept;
-
-  /// Returns true only if `tilt` does not exceed `angle`, rad: no angle exceeds its tangent.
-  bool surely_within(double angle) const noexcept { return horizontal_ < angle * (*up_).z(); }
-
-  /// rad/s, its derivative by the gyro: (ω_x u_y − ω_y u_x)/√(u_x² + u_y²); 0 upright or without a gyro.
+  /// As those of fixed_direction.h; the rate is 0 without a gyro.
+  double tilt() const noexcept { return up_.tilt(); }
+  bool surely_within(double angle) const noexcept { return up_.surely_within(angle); }
   double tilt_rate() const noexcept { return tilt_rate_; }
 
  private:
   static constexpr double kMaxForce = 160;  ///< m/s²; accelerometers measure up to 16 g
 
-  void carry(const Eigen::Vector3d& rate, double dt) noexcept;
   Eigen::Vector3d smooth(const Eigen::Vector3d& force, double dt) noexcept;
   void pull(const Eigen::Vector3d& force, double dt) noexcept;
 
   double force_time_;
   Stored<Eigen::Vector3d> force_;  ///< m/s², the low pass; zero before the first sample
-  Stored<Eigen::Vector3d> up_{Eigen::Vector3d::UnitZ()};
-  double horizontal_ = 0;                ///< length of u's part across the base's z axis
+  FixedDirection up_;
   double uncorrected_ = 2 * kTrustTime;  ///< s since the last correction
   double tilt_rate_ = 0;
 };

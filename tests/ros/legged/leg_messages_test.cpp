@@ -92,9 +92,9 @@ TEST(SlopeWords, HaveTheMeasuredSlopeAndTheLargestOne) {
   StateFrame state;
   state.base.attitude = {0, std::sin(0.15), 0, std::cos(0.15)};
   EXPECT_EQ(slope_words(kReasonOutOfReach, state, robot), "");
-  EXPECT_EQ(slope_words(kReasonTooSteep, state, robot), " (by 17.2 deg, at most 14.3 deg)");
+  EXPECT_EQ(slope_words(kReasonTooSteep, state, robot), " (by 17.2 deg, at most 24.1 deg)");
   robot.lying_pitch = 0.1;
-  EXPECT_EQ(slope_words(kReasonTooSteep, state, robot), " (by 11.5 deg, at most 14.3 deg)");
+  EXPECT_EQ(slope_words(kReasonTooSteep, state, robot), " (by 11.5 deg, at most 24.1 deg)");
 }
 
 }  // namespace robot_control::tests

@@ -73,13 +73,14 @@ inline LegModel with_weak_hips(LegModel robot) {
 }
 
 /// Returns a scene whose ground rises by `slope` rad towards `heading` from the robot, in a file of this folder.
-inline std::string sloping_scene(const TemporaryFolder& folder, double slope, double heading) {
+inline std::string sloping_scene(const TemporaryFolder& folder, double slope, double heading, double friction = 1) {
   const double along = -9.81 * std::sin(slope);
-  return folder.write("slope.xml", "<mujoco><option gravity=\"" + std::to_string(along * std::cos(heading)) + " " +
-                                       std::to_string(along * std::sin(heading)) + " " +
-                                       std::to_string(-9.81 * std::cos(slope)) +
-                                       "\"/><worldbody><geom name=\"floor\" type=\"plane\" size=\"50 50 1\" "
-                                       "friction=\"1.0 0.005 0.0001\"/><site name=\"start\"/></worldbody></mujoco>");
+  return folder.write("slope.xml",
+                      "<mujoco><option gravity=\"" + std::to_string(along * std::cos(heading)) + " " +
+                          std::to_string(along * std::sin(heading)) + " " + std::to_string(-9.81 * std::cos(slope)) +
+                          "\"/><worldbody><geom name=\"floor\" type=\"plane\" size=\"50 50 1\" "
+                          "friction=\"" +
+                          std::to_string(friction) + " 0.005 0.0001\"/><site name=\"start\"/></worldbody></mujoco>");
 }
 
 struct SlopeTrial {
@@ -106,6 +107,35 @@ inline SlopeTrial stand_up_on(const LegModel& model, Parameters parameters, doub
           .turned_over = robot.tilt > 1,
           .causes = robot.causes(),
           .tilt = robot.tilt};
+}
+
+/// Lets a robot stand up on a slope of friction 0.7, walk ahead, turn, stop and walk again. An e-stop then comes
+/// `phase` s later.
+inline SlopeTrial walk_on(const LegModel& model, Parameters parameters, double slope, double heading, double phase) {
+  const TemporaryFolder folder;
+  parameters.plant.scene = sloping_scene(folder, slope, heading, 0.7);
+  QuadrupedLoop robot(model, parameters);
+  robot.wait(2.0);
+  robot.clear();
+  robot.run(3.0, stance({ModeKind::kStand}));
+  SlopeTrial trial;
+  trial.refuses = robot.command().legged.phase == LegPhase::kLying && robot.permit().causes == 0;
+  if (trial.refuses) return trial;
+  const auto walk = [&](double seconds, double ahead, double yaw) {
+    Request request{.twist = {.linear = {ahead, 0, 0}, .angular = {0, 0, yaw}}, .posture = {}};
+    for (double time = 0; time < seconds && robot.permit().causes == 0; time += 0.02) robot.run(0.02, request);
+  };
+  walk(3, 0.4, 0);
+  walk(3, 0, 0.5);
+  walk(2.5, 0, 0);
+  trial.stands = robot.command().legged.phase == LegPhase::kStanding && robot.tilt_now() < 0.1;
+  walk(1 + phase, 0.4, 0);
+  trial.stopped = robot.permit().causes != 0;
+  trial.causes = robot.causes();
+  robot.fold();
+  trial.turned_over = robot.tilt > 1;
+  trial.tilt = robot.tilt;
+  return trial;
 }
 
 }  // namespace robot_control

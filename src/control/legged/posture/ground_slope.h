@@ -4,8 +4,9 @@
 /// The axes of the ground are those of a body that stands on it in its nominal pose. A body that lies leans to them by
 /// LegModel::lying_pitch. The slope is the angle from their z axis to the vertical.
 ///
-/// A robot stands up where the slope is at most kMaxSlope. There each foot needs half of its grip on ground of friction
-/// 0.5, as at most in body_bounds.h. A slope below kLevelSlope counts as level, because an accelerometer errs so much.
+/// A robot stands up where the slope is at most kMaxSlope. A foot that stands there needs friction 0.4, and with
+/// kSlopeGrip, which balance and swinging legs need beside the weight, 0.6. A slope below kLevelSlope counts as level,
+/// because an accelerometer errs so much.
 
 #include <Eigen/Geometry>
 
@@ -13,8 +14,20 @@
 
 namespace robot_control {
 
-inline constexpr double kMaxSlope = 0.25;    ///< rad
+inline constexpr double kMaxSlope = 0.42;    ///< rad
 inline constexpr double kLevelSlope = 0.06;  ///< rad
+
+inline constexpr double kSlopeGrip = 1.5;  ///< of the tangent of the slope
+
+/// Returns the rotation from the axes of a ground with these slopes to the front and left into level axes. Its x axis
+/// shows ahead.
+inline Eigen::Matrix3d ground_axes(double ahead, double left) noexcept {
+  Eigen::Matrix3d axes;
+  axes.col(2) = Eigen::Vector3d(-ahead, -left, 1).normalized();
+  axes.col(0) = Eigen::Vector3d(1, 0, ahead).normalized();
+  axes.col(1) = axes.col(2).cross(axes.col(0));
+  return axes;
+}
 
 /// Returns the vertical, upwards, in the axes of the ground.
 inline Eigen::Vector3d vertical_over_ground(const Quaternion& attitude, double lying_pitch) noexcept {

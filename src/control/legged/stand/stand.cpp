@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "control/legged/posture/ground_slope.h"
 #include "control/legged/stand/body_bounds.h"
 #include "control/legged/walk/walker.h"
 
@@ -45,18 +46,29 @@ void Stand::begin(State& state) const noexcept {
     Eigen::Map<Eigen::Vector3d>(state.places[leg].data()) = legs_[leg].kinematics.position(legs_[leg].lying);
 }
 
-void Stand::begin(State& state, const WalkingBody& body, double ground) const noexcept {
+void Stand::begin(State& state, const WalkingBody& body, const Vector3& ground) const noexcept {
   state = {};
   state.angles = body.angles;
+  const bool level = std::hypot(ground[1], ground[2]) < std::tan(kLevelSlope);
+  const Eigen::Matrix3d back =
+      (level ? Eigen::Matrix3d(Eigen::Matrix3d::Identity()) : ground_axes(ground[1], ground[2])).transpose();
+  const Eigen::Matrix3d turned = back * body.turned;
+  std::array<Eigen::Vector3d, kLegs> feet;
   Eigen::Vector2d lies = Eigen::Vector2d::Zero();  // m, where the body will lie amid its feet
-  for (std::size_t leg = 0; leg < kLegs; ++leg)
-    lies += (body.feet[leg] - legs_[leg].kinematics.position(legs_[leg].lying)).head<2>() / kLegs;
-  const Pose pose{-lies.x(), -lies.y(), ground_ - ground, body.roll, body.pitch, 0};
-  for (std::size_t i = 0; i < pose.size(); ++i) state.body[i].value = pose[i];
   for (std::size_t leg = 0; leg < kLegs; ++leg) {
-    const Eigen::Vector3d& foot = body.feet[leg];
-    state.places[leg] = {foot.x() - lies.x(), foot.y() - lies.y(), foot.z() + pose[kZ]};
+    feet[leg] = back * body.feet[leg];
+    lies += (feet[leg] - legs_[leg].kinematics.position(legs_[leg].lying)).head<2>() / kLegs;
   }
+  const Pose pose{-lies.x(),
+                  -lies.y(),
+                  ground_ - back(2, 2) * ground[0],
+                  std::atan2(turned(2, 1), turned(2, 2)),
+                  -std::asin(std::clamp(turned(2, 0), -1.0, 1.0)),
+                  std::atan2(turned(1, 0), turned(0, 0))};
+  for (std::size_t i = 0; i < pose.size(); ++i) state.body[i].value = pose[i];
+  for (std::size_t leg = 0; leg < kLegs; ++leg)
+    state.places[leg] = {feet[leg].x() - lies.x(), feet[leg].y() - lies.y(), feet[leg].z() + pose[kZ]};
+  state.up = {back(0, 2), back(1, 2), back(2, 2)};
   state.share.fill(1);
   Eigen::Map<Eigen::Vector3d>(state.centre.data()) = body.equations.centre_of_gravity;
   find_home(state);

@@ -54,8 +54,9 @@ class Stand : public Stance {
   /// Begins to rise from the lying posture.
   void begin(State& state) const noexcept;
 
-  /// Begins to stand where a walk has ended, `ground` m above the base.
-  void begin(State& state, const WalkingBody& body, double ground) const noexcept;
+  /// Begins to stand where a walk has ended. `ground`: m, its height below the base, and its slopes to the front and
+  /// left.
+  void begin(State& state, const WalkingBody& body, const Vector3& ground) const noexcept;
 
   /// Sets how far the body may go from the pose in which it begins to stand.
   void set_margin(State& state) const noexcept;

@@ -3,7 +3,9 @@
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <algorithm>
+#include <cmath>
 
+#include "control/legged/posture/ground_slope.h"
 #include "control/legged/stand/foot_forces.h"
 #include "control/legged/walk/gait.h"
 #include "machine/gravity.h"
@@ -47,7 +49,7 @@ ForcePlanResult ForcePlan::step(const ForcePlanInput& input) noexcept {
   result.steps = choose_variables(input);
   if (count_ == 0) return result;
   set_cost(input, parameters_.horizon / static_cast<double>(input.steps), result.steps);
-  set_rows();
+  set_rows(input.ground);
   result.outcome = qp_.solve(problem_);
   if (result.outcome != QpOutcome::kSolved) return result;
   for (std::size_t i = 0; i < count_ && variables_[i].step == 0; ++i)
@@ -123,13 +125,15 @@ void ForcePlan::set_cost(const ForcePlanInput& input, double step, std::size_t s
   }
 }
 
-void ForcePlan::set_rows() noexcept {
+void ForcePlan::set_rows(const Eigen::Matrix3d& ground) noexcept {
   const auto size = static_cast<Eigen::Index>(3 * count_);
   problem_.rows.setZero(2 * size, size);
   problem_.bounds.setZero(2 * size);
-  const double friction = parameters_.friction;
+  const double steepness = std::hypot(ground(2, 0), ground(2, 1)) / ground(2, 2);
+  const double friction = std::max(parameters_.friction, kSlopeGrip * steepness);
   Eigen::Matrix<double, 6, 3> pyramid;
   pyramid << -1, 0, friction, 1, 0, friction, 0, -1, friction, 0, 1, friction, 0, 0, 1, 0, 0, -1;
+  pyramid *= ground.transpose();
   for (Eigen::Index i = 0; i < size; i += 3) {
     problem_.rows.block<6, 3>(2 * i, i) = pyramid;
     problem_.bounds[2 * i + 4] = parameters_.smallest;

@@ -19,6 +19,8 @@
 ///   friction      |fx| ≤ μ fz, |fy| ≤ μ fz
 ///   unilateral    smallest ≤ fz ≤ largest
 ///
+/// where f is in the axes of the ground. Its slope α needs tan α of the friction: μ is at least kSlopeGrip tan α.
+///
 /// The horizon is cut where the forces would be more than kPlanVariables. Real-time safe.
 
 #include <Eigen/Core>
@@ -43,7 +45,7 @@ struct ForcePlanParameters {
   PlanVector speed_weight = PlanVector::Zero();       ///< s²/rad², s²/m²
   double force_weight = 0;                            ///< 1/N²
   double friction = 0;                                ///< μ
-  double smallest = 0, largest = 0;                   ///< N, of a foot's vertical force
+  double smallest = 0, largest = 0;                   ///< N, of a foot's force across the ground
 };
 
 /// Returns the parameters of a robot of this mass, inertia and leg length. Its weights are dimensionless in the units
@@ -57,6 +59,7 @@ struct ForcePlanInput {
   PlanVector target_speed = PlanVector::Zero();  ///< `target` moves with it; its length turns with its yaw rate
   /// m from the centre of gravity: where each foot bears, or will bear next.
   std::array<Eigen::Vector3d, kLegs> feet{};
+  Eigen::Matrix3d ground = Eigen::Matrix3d::Identity();     ///< axes of the ground → level axes
   std::size_t steps = kPlanSteps;                           ///< 1 … kPlanSteps within the horizon
   std::array<std::array<bool, kLegs>, kPlanSteps> bears{};  ///< by step and leg
 };
@@ -84,7 +87,7 @@ class ForcePlan {
 
   std::size_t choose_variables(const ForcePlanInput& input) noexcept;
   void set_cost(const ForcePlanInput& input, double step, std::size_t steps) noexcept;
-  void set_rows() noexcept;
+  void set_rows(const Eigen::Matrix3d& ground) noexcept;
 
   ForcePlanParameters parameters_;
   Eigen::Matrix3d inverse_inertia_;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <optional>
 
+#include "control/legged/posture/ground_slope.h"
 #include "control/legged/walk/foothold.h"
 #include "control/legged/walk/swing.h"
 #include "control/legged/walk/walking_speed.h"
@@ -18,6 +19,11 @@ constexpr double kFarthestYaw = 0.3;        // rad
 constexpr double kGroundTime = 0.05;        // s, in which the ground follows the feet
 constexpr double kMinFootSpread = 0.1;      // of a leg length, by how much the feet have to be apart to show a slope
 constexpr double kEarliestTouchdown = 0.5;  // of the swing, from which on a foot may touch down
+constexpr double kReachSpeed = 0.5;         // m/s, from which on a foot that bears is pushed down with less force
+constexpr double kMetRiser = 0.03;          // m, by which a foot stays behind its path
+constexpr double kBackOff = 0.02;           // m, from the riser
+constexpr double kFirstLift = 0.1;          // of the swing
+constexpr double kLastLift = 0.6;           // of the swing
 constexpr double kTouches = 0.5;            // probability of a contact
 constexpr int kReachHalvings = 6;           // down to this part of a twist, 2⁻⁶
 constexpr double kTouchTime = 0.005;        // s, for which an early foot touches: the observed load is noisy in the air
@@ -115,6 +121,7 @@ bool Walker::step(State& state, const WalkInput& input, CommandFrame& out) noexc
   move(state, input, body);
   turn_clock(state, input.gait);
   const bool changed = choose_feet(state, input, body);
+  lift_again(state, input, body);
   if (++state.planned >= plan_cycles(period_) || changed) plan(state, input, body);
   const Gait& gait = this->gait(state);
   out.legged.gait = state.gait;
@@ -139,7 +146,7 @@ bool Walker::step(State& state, const WalkInput& input, CommandFrame& out) noexc
 void Walker::move(State& state, const WalkInput& input, const WalkingBody& body) const noexcept {
   const Eigen::Vector3d turning(0, 0, body.rate.z());
   for (std::size_t leg = 0; leg < kLegs; ++leg) {
-    for (Vector3* kept : {&state.footprints[leg], &state.touch_places[leg]}) {
+    for (Vector3* kept : {&state.footprints[leg], &state.departs[leg], &state.touch_places[leg]}) {
       Map place(kept->data());
       place -= period_ * (body.velocity + turning.cross(place));
     }
@@ -222,7 +229,8 @@ bool Walker::choose_feet(State& state, const WalkInput& input, const WalkingBody
       state.bears[leg] = 1;
     } else if (state.swings[leg] == 0) {
       state.bears[leg] = 0;
-      state.footprints[leg] = plain(body.feet[leg]);
+      state.footprints[leg] = state.departs[leg] = plain(body.feet[leg]);
+      state.departed[leg] = gait.swung(leg, state.phase);
     } else if (gait.swung(leg, state.phase) > kEarliestTouchdown && state.touch_times[leg] >= kTouchTime) {
       state.bears[leg] = 1;
     }
@@ -251,11 +259,11 @@ Eigen::Vector3d Walker::landing(const State& state, const WalkInput& input, cons
 
 void Walker::plan(State& state, const WalkInput& input, const WalkingBody& body) noexcept {
   const Gait& gait = this->gait(state);
-  ForcePlanInput to;
+  ForcePlanInput to{.ground = ground_axes(state.ground[1], state.ground[2])};
   to.place << body.roll, body.pitch, 0, 0, 0, body.centre.z() - ground_below(state, body.centre);
   to.speed << body.rate, body.moves;
-  to.target << input.body[1] + state.ground[2], input.body[2] - state.ground[1], state.target[2], state.target[0],
-      state.target[1], height_ + input.body[0];
+  to.target << input.body[1] + std::atan(state.ground[2]), input.body[2] - std::atan(state.ground[1]), state.target[2],
+      state.target[0], state.target[1], (height_ + input.body[0]) / to.ground(2, 2);
   to.target_speed << input.rates[1], input.rates[2], input.twist[2], input.twist[0], input.twist[1], input.rates[0];
   to.steps = std::min(kPlanSteps, static_cast<std::size_t>(5 / gait.duty));
   const double step = plan_parameters_.horizon / static_cast<double>(to.steps);
@@ -338,7 +346,10 @@ void Walker::bear(const State& state, const WalkingBody& body, std::size_t leg, 
   const Eigen::Vector3d own = body.equations.bias.segment<3>(joint_row(leg));
   const Eigen::Vector3d load =
       -body.jacobians[leg].transpose() * (body.turned.transpose() * ConstMap(state.forces[leg].data()));
-  double part = 1;
+  const Eigen::Map<const Eigen::Vector3d> rates(&body.rates[kLegJoints * leg]);
+  const double falls =
+      -body.turned.row(2).dot(body.jacobians[leg] * rates) / (kReachSpeed * std::sqrt(length_ / kReferenceLeg));
+  double part = std::clamp(2 - falls, 0.0, 1.0);
   for (std::size_t i = 0; i < kLegJoints; ++i) {
     const double room = effort_limits_[kLegJoints * leg + i] - std::copysign(own[i], own[i] * load[i]);
     if (std::abs(load[i]) > room) part = std::min(part, std::max(0.0, room) / std::abs(load[i]));
@@ -354,13 +365,32 @@ void Walker::bear(const State& state, const WalkingBody& body, std::size_t leg, 
   }
 }
 
+SwingPoint Walker::path(const State& state, const WalkInput& input, const WalkingBody& body,
+                        std::size_t leg) const noexcept {
+  const Gait& gait = this->gait(state);
+  const ConstMap from(state.departs[leg].data());
+  const Eigen::Vector3d to = landing(state, input, body, leg);
+  const double left = 1 - state.departed[leg], part = (gait.swung(leg, state.phase) - state.departed[leg]) / left;
+  return swing_point(from, to, std::max(from.z(), to.z()) + gait.lift, part, left * gait.swing_time());
+}
+
+/// Begins another path for each foot that has met a riser.
+void Walker::lift_again(State& state, const WalkInput& input, const WalkingBody& body) const noexcept {
+  const double scale = length_ / kReferenceLeg;
+  for (std::size_t leg = 0; leg < kLegs; ++leg) {
+    const double part = gait(state).swung(leg, state.phase);
+    if (state.bears[leg] != 0 || part > kLastLift || part - state.departed[leg] < kFirstLift) continue;
+    const Eigen::Vector3d behind = path(state, input, body, leg).place - body.feet[leg];
+    if (behind.head<2>().norm() < kMetRiser * scale) continue;
+    state.departs[leg] =
+        plain(body.feet[leg] - kBackOff * scale * Eigen::Vector3d(behind.x(), behind.y(), 0).normalized());
+    state.departed[leg] = part;
+  }
+}
+
 void Walker::swing(const State& state, const WalkInput& input, const WalkingBody& body, std::size_t leg,
                    CommandFrame& out) const noexcept {
-  const Gait& gait = this->gait(state);
-  const Eigen::Vector3d from = ConstMap(state.footprints[leg].data());
-  const Eigen::Vector3d to = landing(state, input, body, leg);
-  const double top = std::max(from.z(), to.z()) + gait.lift;
-  const SwingPoint point = swing_point(from, to, top, gait.swung(leg, state.phase), gait.swing_time());
+  const SwingPoint point = path(state, input, body, leg);
   const LegKinematics& kinematics = legs_[leg].kinematics;
   const Eigen::Matrix3d back = body.turned.transpose();
   const LegSolution solution = kinematics.inverse(back * point.place);

@@ -8,11 +8,15 @@
 ///             begins its swing where it is. One whose swing would have begun before the gait stands until its next
 ///             one. A walk ends in a cycle in which no foot is far from where it left the ground
 ///   contact   a foot that touches the ground in the second half of its swing, for kTouchTime within kTouchRadius, bears
-///             from then on. A foot that is late is pushed down by the force that it is to bear
+///             from then on. A foot that is late is pushed down by the force that it is to bear, which fades from
+///             kReachSpeed to twice that: it meets lower ground without a blow
+///   riser     a foot that stays kMetRiser behind its path over ground, in the part kFirstLift … kLastLift of its swing, has
+///             met a riser. It goes kBackOff back, and over the riser by another path from there to its foothold
 ///   ground    is the plane through the places where the feet bore last. So a foot lands where the others stand,
 ///             whatever the error of the estimated tilt
 ///   target    moves from where the robot was, with the twist, its velocity through a low pass of half a period: a body
 ///             follows it when the next feet have landed. It stays within kFarthest of the robot
+///   slope     the body is parallel to the ground, at its height across it; μ is that of force_plan.h
 ///   plan      every kPlanTime or cycle, and where other feet bear, the forces of the feet (force_plan.h), which knows
 ///             the gait that follows
 ///   stance    τ = h − Jᵀ f, f the planned force, h what holds the leg itself. f is scaled down until each |τ| is
@@ -37,6 +41,7 @@
 #include "control/legged/walk/force_plan.h"
 #include "control/legged/walk/gait_table.h"
 #include "control/legged/walk/leg_use.h"
+#include "control/legged/walk/swing.h"
 #include "control/legged/walk/twist_limiter.h"
 #include "machine/legs/leg_dynamics.h"
 #include "machine/legs/leg_model.h"
@@ -85,6 +90,8 @@ class Walker {
     std::array<double, kLegs> touch_times{};    ///< s for which a contact is probable and it stays at its touch place
     std::array<Vector3, kLegs> touch_places{};  ///< m, level axes: where that began
     std::array<Vector3, kLegs> footprints{};    ///< m, level axes: where it bore last
+    std::array<Vector3, kLegs> departs{};       ///< m, level axes: where its path through the air begins
+    std::array<double, kLegs> departed{};       ///< 0 … 1, the part of the swing then
     std::array<Vector3, kLegs> forces{};        ///< N, level axes
     WalkingTwist follows{};                     ///< the twist with which the target moves
     std::array<double, 3> target{};             ///< m, m, rad, from the robot
@@ -135,6 +142,8 @@ class Walker {
   double bears_for(const State& state, std::uint64_t wanted, std::size_t leg) const noexcept;
   void plan(State& state, const WalkInput& input, const WalkingBody& body) noexcept;
   void bear(const State& state, const WalkingBody& body, std::size_t leg, CommandFrame& out) const noexcept;
+  SwingPoint path(const State& state, const WalkInput& input, const WalkingBody& body, std::size_t leg) const noexcept;
+  void lift_again(State& state, const WalkInput& input, const WalkingBody& body) const noexcept;
   void swing(const State& state, const WalkInput& input, const WalkingBody& body, std::size_t leg,
              CommandFrame& out) const noexcept;
   const Gait& gait(const State& state) const noexcept { return gaits_[state.gait]; }

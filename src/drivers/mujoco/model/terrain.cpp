@@ -5,11 +5,21 @@
 #include <array>
 #include <random>
 
+#include "drivers/driver.h"
 #include "drivers/mujoco/model/mjcf_shapes.h"
 
 namespace robot_control {
+
 Terrain::Terrain(const TerrainParameters& course, std::uint64_t seed)
     : heading_(course.heading), friction_(course.friction * (course.kind == TerrainKind::kIce ? kIceFriction : 1)) {
+  lay(course, seed);
+  if (course.kind == TerrainKind::kNone || (!boxes_.empty() && boxes_.size() <= kMaxBoxes)) return;
+  throw DriverError("mujoco_plant.terrain: height, length and count give " + std::to_string(boxes_.size()) +
+                    " boxes; there must be 1 to " + std::to_string(kMaxBoxes) +
+                    ". Set a height above 0, a length of at most 4 m, a larger length or a smaller count.");
+}
+
+void Terrain::lay(const TerrainParameters& course, std::uint64_t seed) {
   const double begin = course.distance, length = course.length, height = course.height;
   const auto count = static_cast<double>(course.count);
   switch (course.kind) {

@@ -29,6 +29,9 @@ class Terrain {
   static constexpr double kIceFriction = 0.15;  ///< of a floor, under rubber
   static constexpr double kPatch = 0.002;       ///< m
 
+  static constexpr std::size_t kMaxBoxes = 2000;
+
+  /// Throws DriverError if the parameters give no box, or more than kMaxBoxes.
   Terrain(const TerrainParameters& parameters, std::uint64_t seed);
 
   /// Height of the ground at a place in the axes of the site `start`, in m from its x-y plane without a course.
@@ -45,6 +48,7 @@ class Terrain {
     Eigen::Vector2d from, to;  ///< m, axes of the course
     double height;             ///< m
   };
+  void lay(const TerrainParameters& parameters, std::uint64_t seed);
   void add(double from, double to, double height, double left = kWidth / 2, double right = -kWidth / 2);
 
   double heading_, friction_;

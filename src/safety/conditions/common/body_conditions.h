@@ -1,8 +1,10 @@
 #pragma once
 /// Conditions of the body, from IMU and contact sensors (body_motion.h).
 ///
-///   tilt       angle between the vertical u (attitude.h) and the base's z axis > limit
-///   tip over   tilt > half the limit of tilt, and tilt rate > limit
+///   tilt       angle between the ground's normal n and the base's z axis > limit. On wheels n is the vertical u
+///              (attitude.h), on legs that of standing_feet.h. The angle to u has a limit of its own there
+///   tip over   tilt > half the limit of tilt, and its rate > limit. A robot that walks catches itself with its next
+///              step: the limit of tilt itself counts
 ///   free fall  |a| < limit
 ///   lift       Σ F·u < limit · m g, if the robot has contact sensors; m = MachineModel::mass
 ///   impact     component of a perpendicular to u, mean over kImpactWindow, > limit; that is a speed change of
@@ -33,15 +35,20 @@ struct BodyMeasurements {
   std::uint64_t elapsed;      ///< cycles since the last step, ≥ 1
   double dt;                  ///< s, the same
   const BodyMotion& body;
-  double least_tilt = 0;  ///< rad, the limit of tilt is at least this
+  const FixedDirection& ground;  ///< n
+  double least_tilt = 0;         ///< rad, the limit of tilt is at least this
+  double least_slope = 0;        ///< rad, the limit of the angle to u is at least this
+  bool catches = false;          ///< it walks
 };
 
 struct BodyLaws {
   static ConditionMeasurement tilt(const BodyMeasurements& now, const ConditionWatch& watch) noexcept {
     const Attitude& attitude = now.body.attitude();
-    const double limit = std::max(watch.limit(), now.least_tilt);
-    if (!attitude.known() || attitude.surely_within(limit)) return kNothingMeasured;
-    return beyond(kMaxJoints, attitude.tilt(), limit);
+    if (!attitude.known()) return kNothingMeasured;
+    const double limit = std::max(watch.limit(), now.least_tilt), steepest = std::max(limit, now.least_slope);
+    if (!attitude.surely_within(steepest) && attitude.tilt() > steepest)
+      return beyond(kMaxJoints, attitude.tilt(), steepest);
+    return now.ground.surely_within(limit) ? kNothingMeasured : beyond(kMaxJoints, now.ground.tilt(), limit);
   }
   static ConditionMeasurement free_fall(const BodyMeasurements& now, const ConditionWatch& watch) noexcept {
     return now.body.felt() ? below(now.body.force(), watch.limit()) : kNothingMeasured;
@@ -69,10 +76,10 @@ class TipOver {
       : tilt_(parameters.tilt.limit.value_or(0) / 2) {}
   void enter_run() noexcept {}
   ConditionMeasurement measure(const BodyMeasurements& now, const ConditionWatch& watch) const noexcept {
-    const Attitude& attitude = now.body.attitude();
-    if (attitude.tilt_rate() <= watch.limit()) return kNothingMeasured;  // before the angle, which costs more
-    const bool leans = attitude.known() && attitude.tilt() > tilt_;
-    return leans ? beyond(kMaxJoints, attitude.tilt_rate(), watch.limit()) : kNothingMeasured;
+    const double rate = now.ground.tilt_rate(now.body.rate());
+    if (!(rate > watch.limit())) return kNothingMeasured;  // before the angle, which costs more; without a gyro, too
+    const bool leans = now.body.attitude().known() && now.ground.tilt() > (now.catches ? 2 : 1) * tilt_;
+    return leans ? beyond(kMaxJoints, rate, watch.limit()) : kNothingMeasured;
   }
 
  private:

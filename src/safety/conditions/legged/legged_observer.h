@@ -2,8 +2,9 @@
 /// The measurements of a robot on legs in one cycle: its body, its feet, its command, and whether its joints stand.
 /// Joints stand while every one stays within kWindow of its angle for kStandingTime.
 ///
-/// A robot that lies on its body falls from no slope on which it rests. Its limit of tilt is then at least kLyingTilt,
-/// half way to its side. A robot on its side or back is still named.
+/// The angle of the body to the vertical has the limit kSteepest, half way to its side. A robot that lies on its body
+/// falls from no slope on which it rests: kSteepest is then its limit of tilt, too. A robot on its side or back is
+/// still named.
 ///
 ///   moving    a joint left its window, or its angle is not known; until the robot stands again
 ///   standing  all joints are inside for kStandingTime
@@ -47,7 +48,7 @@ class LeggedObserver {
   static constexpr double kStandingTime = 0.1;  ///< s
   static constexpr double kForceTime = 0.3;     ///< s, of attitude.h: some steps of a trot
   static constexpr double kLanding = 0.5;       ///< s, of body_motion.h: a fold in a walk, and its blow
-  static constexpr double kLyingTilt = 0.785;   ///< rad, π/4
+  static constexpr double kSteepest = 0.785;    ///< rad, π/4
 
   /// `period` s.
   LeggedObserver(const SafetyParameters& parameters, const LegModel& robot, double period)
@@ -76,8 +77,10 @@ class LeggedObserver {
     body_.step(sensors, elapsed, 0, moving_);
     const LegPhase phase = input.command != nullptr ? input.command->legged.phase : LegPhase::kLying;
     const bool lies = input.command != nullptr && (phase < LegPhase::kRising || phase == LegPhase::kJoints);
-    const BodyMeasurements body{input, elapsed, dt, body_, lies ? kLyingTilt : 0};
-    return {body, feet_.step(body), limits_, phase};
+    const FootMeasurements feet = feet_.step(input, body_, elapsed);
+    const BodyMeasurements body{
+        input, elapsed, dt, body_, feet_.ground(), lies ? kSteepest : 0, kSteepest, phase == LegPhase::kWalking};
+    return {body, feet, limits_, phase};
   }
 
   bool moving() const noexcept { return moving_; }

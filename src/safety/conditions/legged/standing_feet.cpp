@@ -33,7 +33,8 @@ Eigen::Vector3d turned(const Eigen::Vector3d& axis, double angle, const Eigen::V
 }  // namespace
 
 StandingFeet::StandingFeet(const SafetyParameters& parameters, const LegModel& robot, double period)
-    : weight_(robot.mass * kGravity),
+    : period_(period),
+      weight_(robot.mass * kGravity),
       interval_(
           std::max<std::uint64_t>(1, static_cast<std::uint64_t>(std::lround(kWindow / kSamplesInWindow / period)))),
       window_(static_cast<double>(interval_ * kSamplesInWindow) * period),
@@ -68,40 +69,50 @@ void StandingFeet::enter_run() noexcept {
   since_ = {};
   unbraked_ = 0;
   stood_ = false;
+  placed_ = bore_ = {};
+  uneven_ = 0;
 }
 
-FootMeasurements StandingFeet::step(const BodyMeasurements& now) noexcept {
-  const SensorFrame& sensors = *now.input.sensors;
+FootMeasurements StandingFeet::step(const MonitorInput& input, const BodyMotion& body, std::uint64_t elapsed) noexcept {
+  const SensorFrame& sensors = *input.sensors;
   static constexpr CommandFrame kNoCommand;
-  const CommandFrame& command = now.input.command != nullptr ? *now.input.command : kNoCommand;
-  const Eigen::Vector3d up = now.body.attitude().up();
-  const bool stands = command.legged.phase == LegPhase::kStanding, walks = command.legged.phase == LegPhase::kWalking;
-  Feet judged{};
-  for (std::size_t leg = 0; leg < kLegs; ++leg)
-    judged[leg] = stands ? leg + 1 != command.legged.lifted : walks && command.contact_schedule[leg] > kEdge;
+  const CommandFrame& command = input.command != nullptr ? *input.command : kNoCommand;
+  const Eigen::Vector3d up = body.attitude().up();
+  const double dt = static_cast<double>(elapsed) * period_;
+  const LegPhase phase = command.legged.phase;
+  const bool stands = phase == LegPhase::kStanding, walks = phase == LegPhase::kWalking;
+  const bool on_feet = stands || walks || phase == LegPhase::kRising || phase == LegPhase::kLowering;
+  Feet bears{}, judged{};
+  for (std::size_t leg = 0; leg < kLegs; ++leg) {
+    bears[leg] = walks ? command.contact_schedule[leg] > kEdge : on_feet && leg + 1 != command.legged.lifted;
+    judged[leg] = bears[leg] && (stands || walks);
+  }
   const bool begins = counts_ == std::array<std::size_t, kLegs>{};
   for (std::size_t leg = 0; leg < kLegs; ++leg) {
     if (!judged[leg]) counts_[leg] = 0;
   }
   if (!walks) loads_.fill(1);
-  waited_ += now.elapsed;
+  waited_ += elapsed;
   const bool any = judged != Feet{};
   if (!any) measured_.foot_slip = kNothingMeasured;
   if (!any || !walks) measured_.body_turn = kNothingMeasured;
   if (!walks) measured_.sinking = kNothingMeasured;
-  unbraked_ = sensors.gate.verdict == GateVerdict::kBrake ? 0 : unbraked_ + now.dt;
-  *since_.turn += now.dt * now.body.rate();
-  if (any && (begins || waited_ >= interval_)) {
+  unbraked_ = sensors.gate.verdict == GateVerdict::kBrake ? 0 : unbraked_ + dt;
+  *since_.turn += dt * body.rate();
+  if (!on_feet) placed_ = {};
+  ground_.turn(turned_back(body.rate(), dt));
+  if (bears != Feet{} && ((any && begins) || waited_ >= interval_)) {
+    sample(sensors, command, up, bears, judged, static_cast<double>(waited_) * period_);
     waited_ = 0;
-    sample(sensors, command, up, judged);
   }
+  if (placed_ != Feet{true, true, true, true}) ground_ = body.attitude().vertical();
   const double share = weight_ / static_cast<double>(stands && command.legged.lifted != 0 ? kLegs - 1 : kLegs);
   measured_.foot_load = stands || walks ? lightest(sensors, up, judged, share, walks) : kNothingMeasured;
   return measured_;
 }
 
 void StandingFeet::sample(const SensorFrame& sensors, const CommandFrame& command, const Eigen::Vector3d& up,
-                          const Feet& judged) noexcept {
+                          const Feet& bears, const Feet& judged, double dt) noexcept {
   std::array<double, kLegsJoints> angles{};
   for (std::size_t i = 0; i < kLegsJoints; ++i) {
     if (!has_position(sensors.joints[i])) return;
@@ -109,25 +120,50 @@ void StandingFeet::sample(const SensorFrame& sensors, const CommandFrame& comman
   }
   Sample now = since_;
   since_ = {};
-  double height = 0, count = 0;
+  const Sample& before = samples_[(next_ + kSamplesInWindow - 1) % kSamplesInWindow];
+  double height = 0;  // m, of the body above the lowest foot
+  bool any = false;
   for (std::size_t leg = 0; leg < kLegs; ++leg) {
     const Eigen::Vector3d foot = position(legs_[leg], LegModel::angles_of(angles, leg));
     now.feet[leg] = Vector(foot);
     if (!judged[leg]) continue;
-    height -= up.dot(foot);
-    ++count;
+    if (counts_[leg] > 0 && ground_.vector().dot(*before.feet[leg] - foot) > kReaching * length_ * dt) counts_[leg] = 0;
+    height = std::max(height, -ground_.vector().dot(foot));
+    any = true;
   }
-  height = height / count - command.legged.body[2];
+  follow_ground(now, bears, command.legged.phase == LegPhase::kWalking, dt);
+  if (!any) return;
+  height -= command.legged.body[2];
   if (command.legged.phase == LegPhase::kStanding) {
     reference_ = height;
     stood_ = true;
   } else if (stood_) {
-    measured_.sinking = beyond(kMaxJoints, (reference_ - height) / length_, sinking_limit_);
+    measured_.sinking = beyond(kMaxJoints, (reference_ - height - uneven_) / length_, sinking_limit_);
   }
   compare(now, command, up);
   samples_[next_] = now;
   next_ = (next_ + 1) % kSamplesInWindow;
   for (std::size_t leg = 0; leg < kLegs; ++leg) counts_[leg] += judged[leg] ? 1 : 0;
+}
+
+/// The place of a foot that is lifted for long is that in the plane of the others.
+void StandingFeet::follow_ground(const Sample& now, const Feet& bears, bool walks, double dt) noexcept {
+  const bool known = placed_ == Feet{true, true, true, true};
+  uneven_ *= 1 - std::min(1.0, dt / kUnevenTime);
+  for (std::size_t leg = 0; leg < kLegs; ++leg) {
+    const std::size_t beside = leg ^ 1U, behind = leg ^ 2U, across = leg ^ 3U;
+    const double beside_plane =
+        ground_.vector().dot(*now.feet[leg] - *places_[beside] - *places_[behind] + *places_[across]);
+    if (known && walks && bears[leg] && !bore_[leg]) uneven_ = std::max(uneven_, std::abs(beside_plane));
+    if (bears[leg]) places_[leg] = now.feet[leg];
+    if (!bears[leg] && !walks) places_[leg] = Vector(*now.feet[beside] + *now.feet[behind] - *now.feet[across]);
+    placed_[leg] = placed_[leg] || bears[leg] || !walks;
+  }
+  bore_ = bears;
+  const Eigen::Vector3d normal = between(places_, 2, 1).cross(between(places_, 3, 0));
+  const bool turns = known && (*now.turn).norm() > kMaxTurn * dt;
+  if (placed_ == Feet{true, true, true, true} && !turns)
+    ground_.pull(normal.normalized(), known ? std::min(1.0, dt / kGroundTime) : 1);
 }
 
 /// A foot whose stance ends bears little, and may leave the ground early.
@@ -158,7 +194,8 @@ void StandingFeet::compare(const Sample& now, const CommandFrame& command, const
       return;
     const Eigen::Vector3d middle = (first + last) / 2, change = last - first + turn_within(samples).cross(middle);
     const double rise = std::abs(change.dot(up)), yaw = std::abs(change.dot(up.cross(middle).normalized()));
-    turn = std::max(turn, (std::max(rise, kYawShare * yaw) - kSlipFactor * along) / middle.norm());
+    turn = std::max(turn,
+                    (std::max(rise, kYawShare * yaw) - kSlipFactor * along - kUnevenShare * uneven_) / middle.norm());
   });
   const auto foot = static_cast<std::size_t>(std::ranges::max_element(slips) - slips.begin());
   measured_.foot_slip = beyond(knee_of(foot), slip / window_, (walks ? kStepShare : 1) * slip_limit_);

@@ -3,9 +3,9 @@
 /// left out. While it walks, a foot is judged after kEdge of its stance, and its slip with kStepShare of the limit.
 ///
 ///   foot slip  |Δd| / kWindow > limit, max over pairs of standing feet
-///   body turn  (max(|c·u|, kYawShare |h|) − kSlipFactor |Δd|) / |v| > limit, max over these pairs
+///   body turn  (max(|c·u|, kYawShare |h|) − kSlipFactor |Δd| − kUnevenShare e) / |v| > limit, max over these pairs
 ///   foot load  F·u / w < limit
-///   sinking    (c − c₀ − (h − h₀)) / l > limit
+///   sinking    (c − c₀ − (h − h₀) − e) / l > limit
 ///
 /// foot slip: d is the distance of two feet by the measured angles, and Δd its change within kWindow.
 ///
@@ -17,8 +17,18 @@
 /// foot load: F is the measured force of a foot, w an equal share of the weight. While it walks, the load of a foot is
 /// the largest of its present or last step. Without contact sensors it is not evaluated.
 ///
-/// sinking, while it walks: h is the mean height of the body above its feet by the measured angles. The commanded
-/// height is c, and the leg length l. h₀ and c₀ are those of the robot that stood.
+/// sinking, while it walks: h is the height of the body above its lowest foot, along n, by the measured angles. The
+/// commanded height is c, and the leg length l. h₀ and c₀ are those of the robot that stood. e is the distance of a
+/// foot that lands from the plane of the others; it fades within kUnevenTime. The body rises onto a step after its
+/// feet.
+///
+/// A foot that bears cannot go down from the body by more than kReaching leg lengths per second: one that does has not
+/// met the ground yet, and its stance begins anew.
+///
+/// The ground's normal n is fixed in the world (fixed_direction.h). On its feet, the robot measures it across the
+/// diagonals of the places where its feet bore last, with the time constant kGroundTime. A robot that falls over turns
+/// these places with it: nothing is measured while the body turns by more than kMaxTurn. Before each foot has borne,
+/// and off its feet, n is the vertical.
 ///
 /// Slip and load name the knee of the worst foot. The reasons: docs/evidence/derivations.md.
 
@@ -28,7 +38,10 @@
 
 #include "machine/legs/leg_model.h"
 #include "machine/stored.h"
-#include "safety/conditions/common/body_conditions.h"
+#include "safety/conditions/common/condition_list.h"
+#include "safety/measurements/body_motion.h"
+#include "safety/measurements/fixed_direction.h"
+#include "safety/monitor_input.h"
 
 namespace robot_control {
 
@@ -48,13 +61,21 @@ class StandingFeet {
   static constexpr double kSlipFactor = 2;          ///< docs/evidence/legs.md
   static constexpr double kYawShare = 0.5;          ///< docs/evidence/legs.md
   static constexpr double kEdge = 0.15;
-  static constexpr double kStepShare = 0.55;  ///< docs/evidence/derivations.md
+  static constexpr double kStepShare = 0.55;   ///< docs/evidence/derivations.md
+  static constexpr double kReaching = 0.7;     ///< 1/s; a body that turns its feet down so fast tips over
+  static constexpr double kUnevenShare = 0.1;  ///< a foot on an edge rolls about it
+  static constexpr double kUnevenTime = 0.5;   ///< s, in which the body rises onto a step
+  static constexpr double kGroundTime = 1.0;   ///< s, some steps
+  static constexpr double kMaxTurn = 0.5;      ///< rad/s
 
   /// `period` s.
   StandingFeet(const SafetyParameters& parameters, const LegModel& robot, double period);
 
   void enter_run() noexcept;
-  FootMeasurements step(const BodyMeasurements& now) noexcept;
+  FootMeasurements step(const MonitorInput& input, const BodyMotion& body, std::uint64_t elapsed) noexcept;
+
+  /// n, after `step`.
+  const FixedDirection& ground() const noexcept { return ground_; }
 
  private:
   using Feet = std::array<bool, kLegs>;
@@ -63,8 +84,9 @@ class StandingFeet {
     Stored<Eigen::Vector3d> turn{};                     ///< rad, of the gyro since the sample before
   };
 
-  void sample(const SensorFrame& sensors, const CommandFrame& command, const Eigen::Vector3d& up,
-              const Feet& judged) noexcept;
+  void sample(const SensorFrame& sensors, const CommandFrame& command, const Eigen::Vector3d& up, const Feet& bears,
+              const Feet& judged, double dt) noexcept;
+  void follow_ground(const Sample& now, const Feet& bears, bool walks, double dt) noexcept;
   void compare(const Sample& now, const CommandFrame& command, const Eigen::Vector3d& up) noexcept;
   ConditionMeasurement lightest(const SensorFrame& sensors, const Eigen::Vector3d& up, const Feet& judged, double share,
                                 bool walks) noexcept;
@@ -77,6 +99,7 @@ class StandingFeet {
   static Eigen::Vector3d position(const Lengths& leg, const LegAngles& angles) noexcept;
 
   std::array<Lengths, kLegs> legs_{};
+  double period_;           ///< s
   double weight_;           ///< N
   std::uint64_t interval_;  ///< cycles between two samples
   double window_;           ///< s
@@ -93,6 +116,11 @@ class StandingFeet {
   bool stood_ = false;                       ///< reference_ is known
   double reference_ = 0;                     ///< m, height of the body less the commanded one, when it stood last
   FootMeasurements measured_;                ///< of the last sample
+  FixedDirection ground_;
+  std::array<Stored<Eigen::Vector3d>, kLegs> places_{};  ///< m, base axes: where the feet bore last
+  Feet placed_{};                                        ///< their place is known
+  Feet bore_{};                                          ///< in the last sample
+  double uneven_ = 0;                                    ///< m, e
 };
 
 }  // namespace robot_control

@@ -124,7 +124,8 @@ class WheeledObserver {
     slide_.step(motion_, standstill_.standing(), elapsed);
     targets_.step(input);
     body_.step(sensors, elapsed, rim_speed_.value(sensors), standstill_.moving());
-    const BodyMeasurements body{input, elapsed, static_cast<double>(elapsed) * period_, body_};
+    const BodyMeasurements body{input, elapsed, static_cast<double>(elapsed) * period_, body_,
+                                body_.attitude().vertical()};
     const bool efforts_measured = joints_have(sensors, motion_.wheels(), kValidEffort);
     const double in_force = in_force_.step(speed_limit, elapsed);
     return {body,     wheels_,          motion_,  standstill_,

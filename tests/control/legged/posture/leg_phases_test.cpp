@@ -61,7 +61,7 @@ Quaternion uphill(double slope) {
 }
 
 TEST(GatheredLegs, LieWhereTheGroundSlopesTooMuch) {
-  EXPECT_NEAR(std::tan(kMaxSlope), 0.5 * 0.5, 0.01) << "half of the grip at a friction of 0.5";
+  EXPECT_LT(kSlopeGrip * std::tan(kMaxSlope), 0.7) << "the friction of rubber on a floor";
   IdealLegs legs(lopsided());
   legs.has_estimate = true;
   legs.estimate.base.flags = kStateValid;

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <random>
 
+#include "control/legged/posture/ground_slope.h"
 #include "control/legged/walk/foothold.h"
 #include "control/legged/walk/gait_table.h"
 #include "machine/gravity.h"
@@ -161,6 +162,26 @@ TEST(ForcePlan, ForcesStayWithinFrictionAndBoundsAndReachThem) {
   EXPECT_NEAR(grip, kFriction, kForceRounding);
   EXPECT_NEAR(smallest, kSmallest, kForceRounding);
   EXPECT_NEAR(largest, kLargest, kForceRounding);
+}
+
+TEST(ForcePlan, ForcesOnASlopeStayWithinTheFrictionThatItNeeds) {
+  constexpr double kSlope = 0.36;  // 20°
+  ForcePlan plan(parameters());
+  double grip = 0;
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> number(-1, 1);
+  for (int trial = 0; trial < 200; ++trial) {
+    ForcePlanInput input = standing();
+    input.ground = ground_axes(kSlope, 0);
+    for (Eigen::Index i = 0; i < 6; ++i) input.place[i] = 0.2 * number(random), input.speed[i] = 2 * number(random);
+    const ForcePlanResult result = plan.step(input);
+    ASSERT_EQ(result.outcome, QpOutcome::kSolved) << trial;
+    for (const Eigen::Vector3d& force : result.forces) {
+      const Eigen::Vector3d along = input.ground.transpose() * force;
+      grip = std::max(grip, along.head<2>().cwiseAbs().maxCoeff() / along.z());
+    }
+  }
+  EXPECT_NEAR(grip, kSlopeGrip * kSlope, kForceRounding);
 }
 
 TEST(ForcePlan, CutsTheHorizonWhereTheForcesAreTooMany) {

@@ -1,6 +1,7 @@
 /// How a walk begins, chooses its gait, carries the body, and ends.
 
 #include <algorithm>
+#include <limits>
 
 #include "control/legged/ideal_legs.h"
 #include "control/legged/walk/own_gaits.h"
@@ -554,7 +555,8 @@ TEST(LegWalk, BeginsWithThePoseInWhichItStands) {
 TEST(LegWalk, StandsWhereItIsAfterFourPlansThatFail) {
   WalkingLegs legs = ready();
   legs.run(0.5, twist_of(0.2));
-  LegController slippery(legs.robot(), {.friction = -1}, kCycle);  // no force is within this friction
+  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+  LegController slippery(legs.robot(), {.friction = kNone}, kCycle);  // no force is within this friction
   slippery.set_state(legs.legs.state());
   legs.legs.controller = slippery;
   std::uint64_t failures = 0;

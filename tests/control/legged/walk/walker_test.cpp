@@ -2,6 +2,7 @@
 
 #include "control/legged/walk/walker.h"
 
+#include "control/legged/stand/stand.h"
 #include "control/legged/walk/own_gaits.h"
 #include "control/legged/walk/walking_speed.h"
 #include "machine/legs/legs_corpus.h"
@@ -83,6 +84,48 @@ TEST_F(WalkerTest, ACrawlIsSoSlowThatAFootReachesThroughItsStanceAfterTheEndOfTh
   }
   EXPECT_GT(speeds[gait_named("walking_trot")][0], 1.0);
   EXPECT_DOUBLE_EQ(speeds[gait_named("trot")][0], 1.7);  // of any gait
+}
+
+TEST_F(WalkerTest, AFootThatMeetsARiserIsLiftedAgainFromThere) {
+  state.gait = gait_named("trot");
+  state.bears = {1, 0, 0, 1};
+  state.swings = {0, 1, 1, 0};
+  const Gait& trot = walker.gaits()[state.gait];
+  for (std::size_t leg = 0; leg < kLegs; ++leg) state.departs[leg] = state.footprints[leg];
+  state.departs[1][0] -= 0.3;  // its path is ahead of it
+  while (trot.swung(1, state.phase) < 0.4) state.phase += 0.01;
+  const double height = state.footprints[1][2], ahead = state.footprints[1][0];
+  walker.step(state, {.sensors = &sensors, .state = &estimate, .twist = {}, .gait = state.gait}, out);
+  EXPECT_GT(state.departed[1], 0.39);
+  EXPECT_NEAR(state.departs[1][2], height, 0.01) << "it begins where it is";
+  EXPECT_GT(std::abs(state.departs[1][0] - ahead), 0.01) << "and backs off";
+  EXPECT_EQ(state.departed[2], 0) << "the other foot swings on";
+}
+
+TEST_F(WalkerTest, AFootThatFindsNoGroundIsNotThrownDown) {
+  ASSERT_TRUE(plan());
+  const double bears = std::abs(out.joints[2].effort);
+  sensors.joints[2].velocity = 10;
+  sensors.joints[2].valid = kValidMotion;
+  const WalkingBody body = walker.measure(sensors, estimate);
+  const double falls = -(body.jacobians[0] * Eigen::Map<const Eigen::Vector3d>(body.rates.data())).z();
+  if (falls < 0) sensors.joints[2].velocity = -10;
+  ASSERT_GT(std::abs(falls), 1);
+  ASSERT_TRUE(plan());
+  EXPECT_LT(std::abs(out.joints[2].effort), 0.5 * bears);
+}
+
+TEST_F(WalkerTest, AWalkThatEndsOnASlopeStandsParallelToIt) {
+  for (const double slope : {0.0, 0.3}) {
+    estimate.base.attitude = {0, std::sin(-slope / 2), 0, std::cos(-slope / 2)};
+    walker.begin(state, sensors, estimate);
+    const Stand stand(robot, 0.001);
+    Stand::State standing;
+    stand.begin(standing, walker.measure(sensors, estimate), state.ground);
+    EXPECT_NEAR(standing.body[Stand::kPitch].value, 0, 0.01) << slope;
+    EXPECT_NEAR(stand.lean(standing)[0].value, 0, 0.003) << slope;
+    EXPECT_NEAR(std::atan2(standing.up[0], standing.up[2]), slope, 0.01) << "the vertical leans back";
+  }
 }
 
 }  // namespace robot_control::tests

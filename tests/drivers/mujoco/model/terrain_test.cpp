@@ -69,4 +69,12 @@ TEST_F(TerrainTest, TheWorldRisesAlongTheHeadingOfTheSlope) {
   }
 }
 
+TEST_F(TerrainTest, ACourseWithoutABoxOrWithTooManyIsRefused) {
+  for (const TerrainParameters& course : {TerrainParameters{.kind = TerrainKind::kRough, .length = 0.02, .count = 100},
+                                          TerrainParameters{.kind = TerrainKind::kRough, .length = 5},
+                                          TerrainParameters{.kind = TerrainKind::kBars, .height = 0}})
+    EXPECT_THROW(Terrain(course, 0), DriverError);
+  EXPECT_NO_THROW(Terrain(TerrainParameters{.height = 0}, 0)) << "there is no course";
+}
+
 }  // namespace robot_control::tests

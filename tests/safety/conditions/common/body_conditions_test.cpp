@@ -73,7 +73,9 @@ struct BodyConditionsTest : testing::Test {
     out_.clear();
     facts_.body.step(sensors_, elapsed, RimSpeed(robot_).value(sensors_), wheels_turn_);
     const MonitorInput input{.sensors = &sensors_};
-    facts_.conditions.step(BodyMeasurements{input, elapsed, static_cast<double>(elapsed) * kPeriod, facts_.body}, out_);
+    facts_.conditions.step(BodyMeasurements{input, elapsed, static_cast<double>(elapsed) * kPeriod, facts_.body,
+                                            facts_.body.attitude().vertical()},
+                           out_);
   }
   void steps(int count) {
     for (int i = 0; i < count; ++i) step();

@@ -110,7 +110,8 @@ TEST_F(LeggedConditionsTest, ALyingRobotIsTiltedTooFarHalfWayToItsSide) {
       });
       return seen < 0.2;
     };
-    EXPECT_EQ(tilted(LegPhase::kStanding, 0.45), limit < 0.45);
+    EXPECT_FALSE(tilted(LegPhase::kStanding, 0.45)) << "it stands on a slope";
+    EXPECT_TRUE(tilted(LegPhase::kStanding, std::max(limit, std::numbers::pi / 4) + 0.02)) << limit;
     for (const LegPhase phase : {LegPhase::kLying, LegPhase::kGathering, LegPhase::kJoints}) {
       EXPECT_FALSE(tilted(phase, 0.45));
       EXPECT_TRUE(tilted(phase, std::max(limit, std::numbers::pi / 4) + 0.02)) << limit;
@@ -656,6 +657,58 @@ TEST_F(WalkingConditionsTest, ABodyThatSinksBrakes) {
   EXPECT_EQ(walk(1, sinks(1.1 * limit)), 1) << "it is asked to be lower";
   EXPECT_LT(walk(1, sinks(1.3 * limit)), 0.15);
   EXPECT_EQ(causes(Reaction::kBrake), "sinking");
+}
+
+// The feet know the slope on which they stand, and what falls is tilted against it.
+TEST_F(WalkingConditionsTest, ABodyThatWalksOnASlopeIsNotTiltedAndOneThatFallsThereIs) {
+  conditions_.enter_run();
+  const auto on_slope = [&](double) {
+    sensors_.imu.linear_acceleration[1] = 9.81 * std::sin(0.38);
+    sensors_.imu.linear_acceleration[2] = 9.81 * std::cos(0.38);
+  };
+  EXPECT_EQ(walk(2, on_slope), 2) << causes(Reaction::kBrake);
+  const double seen = walk(1, [&](double t) {
+    rate_ = 1.2 * Eigen::Vector3d::UnitY();
+    turn_body(Eigen::Vector3d::UnitY(), 1.2 * t);
+  });
+  EXPECT_NEAR(seen, 0.42 / 1.2 + 0.05, 0.02);
+  EXPECT_EQ(causes(Reaction::kBrake), "tilt");
+}
+
+// Front left swings for 0.2 s, and then bears for 0.2 s.
+TEST_F(WalkingConditionsTest, ABodyRisesOntoAStepAfterItsFeet) {
+  const double step = 0.1, depth = 1.3 * 0.13 * robot_.leg_length();
+  for (const bool lands : {true, false}) {
+    conditions_.enter_run();
+    command_.legged.phase = LegPhase::kStanding;
+    place(stand_);
+    run(0.3);
+    command_.legged.phase = LegPhase::kWalking;
+    walk(0.8);
+    const double seen = walk(0.4, [&](double t) {
+      std::array<Eigen::Vector3d, kLegs> feet = stand_;
+      for (Eigen::Vector3d& foot : feet) foot.z() += depth * std::clamp(t / 0.15 - 1, 0.0, 1.0);
+      if (lands) feet[0].z() += step * std::min(1.0, t / 0.2);
+      place(feet);
+      follow();
+    });
+    EXPECT_EQ(seen == 0.4, lands) << seen << causes(Reaction::kBrake);
+  }
+}
+
+TEST_F(WalkingConditionsTest, AFootThatStillGoesDownHasNotLanded) {
+  for (const double speed : {0.4, 0.25}) {
+    conditions_.enter_run();
+    const double seen = walk(2, [&](double t) {
+      const double since = std::fmod(t, 0.4), last = std::max(0.0, 0.05 - 0.2 * speed);
+      std::array<Eigen::Vector3d, kLegs> feet = stand_;
+      feet[0].z() += since < 0.2 ? last + (0.05 - last) * since / 0.2 : std::max(0.0, 0.05 - speed * (since - 0.2));
+      place(feet);
+      follow();
+    });
+    EXPECT_EQ(seen == 2, speed > 0.3) << seen;
+    EXPECT_EQ(causes(Reaction::kBrake), speed > 0.3 ? "" : "body_turn");
+  }
 }
 
 // It turns to and fro by up to 1.8 rad/s about a slanting axis, above feet that stand. The IMU's x axis points left.

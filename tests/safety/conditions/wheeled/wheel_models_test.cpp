@@ -437,7 +437,7 @@ TEST(WheelModels, RandomDrivesAreJudgedAsTheHeadersSayInEveryRun) {
         const MonitorInput input{.sensors = &facts.sensors, .command = facts.command ? &*facts.command : nullptr};
         const double dt = static_cast<double>(facts.elapsed) * kModelPeriod;
         const bool efforts_measured = joints_have(facts.sensors, robot.wheels.size(), kValidEffort);
-        conditions.step(WheeledMeasurements{{input, facts.elapsed, dt, body},
+        conditions.step(WheeledMeasurements{{input, facts.elapsed, dt, body, body.attitude().vertical()},
                                             wheels,
                                             measured.motion,
                                             measured.standstill,
