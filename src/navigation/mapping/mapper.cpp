@@ -5,8 +5,8 @@
 #include <unordered_set>
 #include <utility>
 
-#include "navigation/mapping/scan_matcher.h"
 #include "navigation/mapping/ray_grid.h"
+#include "navigation/mapping/scan_matcher.h"
 
 namespace robot_control::navigation {
 namespace {

@@ -6,9 +6,9 @@
 ///   3. the file of the YAML file's `robot.urdf`.
 ///
 /// A plant publishes the text that it has read as `robot_description` and sets `robot/urdf` to its `~urdf` for all
-/// nodes. With robot.simulated_laser that text has the link of a laser (with_laser). When it ends, it restores the parameter server. A text from the server has no folder. Meshes named relative
-/// to the URDF are therefore found only if that text equals the file in 3. Meshes named by package:// and file:// are
-/// always found.
+/// nodes. With robot.simulated_laser that text has the link of a laser (with_laser). When it ends, it restores the
+/// parameter server. A text from the server has no folder. Meshes named relative to the URDF are therefore found only
+/// if that text equals the file in 3. Meshes named by package:// and file:// are always found.
 
 #include <string>
 #include <vector>
