@@ -109,7 +109,7 @@ int main(int argc, char** argv) {
   return run_node(
       argc, argv,
       {.name = "device_simulator",
-       .purpose = "Simulates a robot with motor drives on CAN or a motor board, commanded by the program driver "
+       .purpose = "Simulates a robot with motor drives on CAN or a motor board. The program driver commands it "
                   "over the bus or line of the drive file.",
        .make = [](const Setup& setup) -> std::unique_ptr<Node> {
          return std::make_unique<DeviceSimulatorNode>(setup);

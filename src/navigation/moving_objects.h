@@ -51,8 +51,8 @@ std::vector<MovingObject> composed(const PlanarPose& frame, std::vector<MovingOb
 /// there is no safer than driving on.
 std::vector<Point> predicted_points(const std::vector<MovingObject>& objects, const Footprint& footprint);
 
-/// The costmap gets the predicted and present points of these objects for paths, and loses the marks of the present
-/// ones: the LocalController has their velocities. Objects and `base` are given in its frame.
+/// The costmap gets the predicted and present points of these objects for paths. It loses the marks of the present
+/// ones, because the LocalController has their velocities. Objects and `base` are given in its frame.
 void foresee(const std::vector<MovingObject>& objects, const PlanarPose& base, Costmap& costmap);
 
 }  // namespace robot_control::navigation

@@ -19,26 +19,26 @@ struct Crossing {
   std::string causes;
 };
 
-/// Walks straight ahead at `speed` m/s until `way` m of the course are behind, as a pilot who corrects heading and side
+/// Walks straight ahead at `speed` m/s until `distance` m of the course are behind. A pilot corrects heading and side
 /// by the estimate.
-Crossing cross(const LegModel& model, const Parameters& parameters, double speed, double way) {
+Crossing cross(const LegModel& model, const Parameters& parameters, double speed, double distance) {
   QuadrupedLoop robot(model, parameters);
   stand_up(robot);
   const Vector3 begin = robot.truth().pose_world.position, known = robot.state().base.pose_odom.position;
-  way /= std::cos(parameters.plant.terrain.heading);
+  distance /= std::cos(parameters.plant.terrain.heading);
   Crossing crossing;
   double time = 0;
-  while (time < kSlow * way / speed && !crossing.reached && robot.permit().causes == 0) {
+  while (time < kSlow * distance / speed && !crossing.reached && robot.permit().causes == 0) {
     const Pose& pose = robot.state().base.pose_odom;
     const double yaw = yaw_of(pose.orientation), beside = std::clamp(pose.position[1] - known[1], -0.1, 0.1);
     const Eigen::Vector2d twist = Eigen::Rotation2Dd(-yaw) * Eigen::Vector2d(speed, -beside);
     robot.run(kSend, {.twist = {.linear = {twist.x(), twist.y(), 0}, .angular = {0, 0, -yaw}}, .posture = {}});
     time += kSend;
-    crossing.reached = robot.truth().pose_world.position[0] - begin[0] >= way;
+    crossing.reached = robot.truth().pose_world.position[0] - begin[0] >= distance;
   }
   const double climbed = robot.truth().pose_world.position[2] - begin[2];
   crossing.height_error = std::abs(robot.state().base.pose_odom.position[2] - known[2] - climbed);
-  crossing.speed = way / (time * speed);
+  crossing.speed = distance / (time * speed);
   crossing.stopped = robot.permit().causes != 0;
   crossing.causes = robot.causes();
   robot.run(3, {});
@@ -79,27 +79,27 @@ constexpr double kCrossing = 0.4;  // m/s
 void steps(const LegModel& model, std::uint64_t seed, WorstValues& worst) {
   for (const double height : {0.05, 0.10, 0.12}) {
     const Parameters parameters = on(model, seed, {.kind = TerrainKind::kStairs, .height = height, .count = 1});
-    const std::string of = "step of " + std::to_string(std::lround(100 * height)) + " cm";
+    const std::string name = "step of " + std::to_string(std::lround(100 * height)) + " cm";
     const double edge = parameters.plant.terrain.distance;
-    add(model, of + " up", seed, cross(model, parameters, kCrossing, edge + 0.8), worst);
-    add(model, of + " up and down", seed, cross(model, parameters, kCrossing, edge + 3), worst);
+    add(model, name + " up", seed, cross(model, parameters, kCrossing, edge + 0.8), worst);
+    add(model, name + " up and down", seed, cross(model, parameters, kCrossing, edge + 3), worst);
   }
 }
 
 void stairs(const LegModel& model, std::uint64_t seed, WorstValues& worst) {
   for (const double height : {0.05, 0.10}) {
     const Parameters parameters = on(model, seed, {.kind = TerrainKind::kStairs, .height = height});
-    const std::string of = "five stairs of " + std::to_string(std::lround(100 * height)) + " cm";
+    const std::string name = "five stairs of " + std::to_string(std::lround(100 * height)) + " cm";
     const double edge = parameters.plant.terrain.distance;
-    add(model, of + " up", seed, cross(model, parameters, kCrossing, edge + 2.2), worst);
-    add(model, of + " up and down", seed, cross(model, parameters, kCrossing, edge + 5.5), worst);
+    add(model, name + " up", seed, cross(model, parameters, kCrossing, edge + 2.2), worst);
+    add(model, name + " up and down", seed, cross(model, parameters, kCrossing, edge + 5.5), worst);
   }
 }
 
 void terrain(const LegModel& model, std::uint64_t seed, WorstValues& worst) {
-  const auto over = [&](const std::string& name, const TerrainParameters& terrain, double way) {
+  const auto over = [&](const std::string& name, const TerrainParameters& terrain, double length) {
     const Parameters parameters = on(model, seed, terrain);
-    add(model, name, seed, cross(model, parameters, kCrossing, parameters.plant.terrain.distance + way), worst);
+    add(model, name, seed, cross(model, parameters, kCrossing, parameters.plant.terrain.distance + length), worst);
   };
   over("rough 3 cm", {.kind = TerrainKind::kRough, .height = 0.06, .length = 0.25, .count = 12}, 3.5);
   over("rough 5 cm", {.kind = TerrainKind::kRough, .height = 0.10, .length = 0.25, .count = 12}, 3.5);

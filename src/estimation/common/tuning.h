@@ -53,7 +53,7 @@ struct Tuning {
   static constexpr double kSlowWheels = 0.08;         ///< s, likewise between two readings of the wheels
   static constexpr double kMaxGap = 0.5;              ///< s, upper bound of the usual gap between readings of a wheel
 
-  static constexpr double kShowTime = 0.5;            ///< s, low pass of corrections of the pose that is shown
+  static constexpr double kShowTime = 0.5;       ///< s, low pass of corrections of the pose that is shown
   static constexpr double kConstantRate = 10.0;  ///< s of one rate on standing wheels: time-out for an old bias
 
   // These limits are physical bounds or stated tolerances. None was tuned.

@@ -144,7 +144,9 @@ class LaunchTest(unittest.TestCase):
         self.assertEqual(second.wait(), 0, second.output)
         plant = rospy.get_param("/mujoco_plant")
         self.assertEqual(set(plant), {"config", "cycles", "scene", "seed", "laser", "terrain"})
-        self.assertEqual([plant[key] for key in ("scene", "seed", "laser", "terrain")], ["", "", {"rate": ""}, {"kind": ""}])
+        self.assertEqual(
+            [plant[key] for key in ("scene", "seed", "laser", "terrain")], ["", "", {"rate": ""}, {"kind": ""}]
+        )
         self.assertEqual([rospy.get_param(f"/robot/{name}") for name in ("urdf", "command_script", "bus")], [""] * 3)
         self.assertTrue(rospy.get_param("/diff_drive_controller/config").endswith("/robot_params.yaml"))
 

@@ -3,8 +3,8 @@
 /// and writes.
 ///
 /// The plant sets solver, cone, integrator and time step (Newton, elliptic, impratio 100, Euler). Gravity and the rest
-/// of `<option>` are those of the scene. `slope` rotates gravity about an axis of the x-y plane of the site `start`, so
-/// that the world rises along its x, or `slope_heading` from it. `terrain` lies on this plane (terrain.h). The robot's
+/// of `<option>` are those of the scene. `slope` rotates gravity about an axis of the x-y plane of the site `start`.
+/// The world rises along its x, or `slope_heading` from it. `terrain` lies on this plane (terrain.h). The robot's
 /// lowest collision point, with the joints at JointModel::rest_position, is on the plane or the terrain.
 ///
 /// A benchmark runs a minimal loop as follows; with native friction, mj_step alone is enough:

@@ -153,7 +153,7 @@ class PlanarCore {
   Stored<Matrix> covariance_;
   Stored<Vector> held_;             ///< corrections that were not applied
   Stored<Eigen::Vector3d> hidden_;  ///< corrections of x, y, yaw that are not shown yet
-  bool turned_ = false;  ///< The first rest has corrected the pose.
+  bool turned_ = false;             ///< The first rest has corrected the pose.
   WheelNoise noise_;
   WheelCalibration start_;                ///< calibration at the start
   double worse_ = 0;                      ///< nis by which what was learned predicts worse than the start

@@ -18,12 +18,11 @@
 /// the largest of its present or last step. Without contact sensors it is not evaluated.
 ///
 /// sinking, while it walks: h is the height of the body above its lowest foot, along n, by the measured angles. The
-/// commanded height is c, and the leg length l. h₀ and c₀ are those of the robot that stood. e is the distance of a
-/// foot that lands from the plane of the others; it fades within kUnevenTime. The body rises onto a step after its
-/// feet.
+/// commanded height is c, and the leg length l. h₀ and c₀ are those of the robot that stood. A foot lands at a distance
+/// e from the plane of the others, and e fades within kUnevenTime: the body rises onto a step after its feet.
 ///
-/// A foot that bears cannot go down from the body by more than kReaching leg lengths per second: one that does has not
-/// met the ground yet, and its stance begins anew.
+/// A foot in stance goes down from the body by at most kReaching leg lengths per second. A faster one has not met the
+/// ground yet, and its stance begins anew.
 ///
 /// The ground's normal n is fixed in the world (fixed_direction.h). On its feet, the robot measures it across the
 /// diagonals of the places where its feet bore last, with the time constant kGroundTime. A robot that falls over turns
