@@ -19,7 +19,7 @@
 ///
 /// sinking, while it walks: h is the height of the body above its lowest foot, along n, by the measured angles. The
 /// commanded height is c, and the leg length l. h₀ and c₀ are those of the robot that stood. A foot lands at a distance
-/// e from the plane of the others, and e fades within kUnevenTime: the body rises onto a step after its feet.
+/// e from the plane of the others, which fades within kUnevenTime. The body rises onto a step after its feet.
 ///
 /// A foot in stance goes down from the body by at most kReaching leg lengths per second. A faster one has not met the
 /// ground yet, and its stance begins anew.
