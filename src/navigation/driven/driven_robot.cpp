@@ -50,8 +50,6 @@ DriveLimits limits_within(const Controller& controller) {
   return limits;
 }
 
-}  // namespace
-
 DriveLimits limits_of(const DriveControllerParameters& wheels) {
   DriveLimits limits = limits_within(wheels);
   limits.reverse = std::min(limits.reverse, -wheels.min_linear_speed.value_or(-limits.reverse));
@@ -69,6 +67,8 @@ DriveLimits limits_of(const LegControllerParameters& legs) {
   return limits;
 }
 
+}  // namespace
+
 DrivenRobot driven_robot(const RobotDescription& description, const Parameters& parameters) {
   DrivenRobot driven;
   if (kind_of(description, parameters.kind) == MachineKind::kOnLegs) {
@@ -76,10 +76,20 @@ DrivenRobot driven_robot(const RobotDescription& description, const Parameters& 
     driven.outline = walking_outline(read_legs(description, parameters.robot, parameters.legs), driven.limits,
                                      std::min(driven.limits.forward, parameters.navigate.speed));
   } else {
-    driven.limits = limits_of(parameters.controller);
+    driven.wheels = parameters.controller;
+    driven.limits = limits_of(driven.wheels);
     driven.outline = footprint_of(read_rigid_bodies(description));
   }
   return driven;
+}
+
+void set_in_force(DrivenRobot& robot, std::string_view name, double value) {
+  for (const Key& key : keys(robot.wheels)) {
+    if (key.name != name || !key.group.empty() || !(value >= key.min && value <= key.max)) continue;
+    if (auto* const* field = std::get_if<double*>(&key.field)) **field = value;
+    if (auto* const* field = std::get_if<std::optional<double>*>(&key.field)) **field = value;
+    robot.limits = limits_of(robot.wheels);
+  }
 }
 
 }  // namespace robot_control::navigation

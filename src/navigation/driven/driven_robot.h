@@ -9,6 +9,8 @@
 /// The limits are those of the controller, within those of follow_path. Both accelerations of an axis are the smaller
 /// one of acceleration and deceleration.
 
+#include <string_view>
+
 #include "configuration/parameters.h"
 #include "machine/description/robot_description.h"
 #include "navigation/footprint.h"
@@ -21,12 +23,14 @@ inline constexpr double kMaxLateral = 0.3;  ///< m/s, on legs; as teleop.py
 struct DrivenRobot {
   Footprint outline;
   DriveLimits limits;
+  DriveControllerParameters wheels;  ///< of the controller on wheels, in force
 };
-
-DriveLimits limits_of(const DriveControllerParameters& wheels);
-DriveLimits limits_of(const LegControllerParameters& legs);
 
 /// Throws RobotError as read_rigid_bodies, on legs as read_legs, and what footprint_of throws.
 DrivenRobot driven_robot(const RobotDescription& description, const Parameters& parameters);
+
+/// Takes over a parameter of the controller on wheels that was set while it runs. Other names, and values that their
+/// key does not allow, have no effect.
+void set_in_force(DrivenRobot& robot, std::string_view name, double value);
 
 }  // namespace robot_control::navigation

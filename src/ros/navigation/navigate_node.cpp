@@ -10,7 +10,6 @@
 #include "navigation/driven/driven_robot.h"
 #include "navigation/map_consistency.h"
 #include "navigation/map_file.h"
-#include "ros/navigation/controller_limits.h"
 #include "ros/navigation/goal_servers.h"
 #include "ros/navigation/navigation_messages.h"
 #include "ros/navigation/path_client.h"
@@ -34,7 +33,6 @@ class NavigateService {
  public:
   explicit NavigateService(const Parameters& parameters)
       : parameters_(parameters.navigate),
-        wheels_(parameters.controller),
         robot_(driven_robot(published_description(), parameters)),
         zones_(parameters_.zones.empty() ? Grid() : read_map(parameters_.zones)),
         scans_(handle_),
@@ -45,8 +43,7 @@ class NavigateService {
     map_.connect(handle_, [this](const nav_msgs::OccupancyGrid& message) { receive_map(message); });
     localized_.connect(handle_, [this](const LocalizationState& message) { localization_ = message; });
     updates_.connect(handle_, [this](const dynamic_reconfigure::Config& message) {
-      take_over(message, wheels_);
-      robot_.limits = limits_of(wheels_);
+      for (const auto& entry : message.doubles) set_in_force(robot_, entry.name, entry.value);
     });
     costmap_topic_ = handle_.advertise<nav_msgs::OccupancyGrid>("costmap", 1, true);
     clear_ = handle_.advertiseService("clear_costmaps", &NavigateService::clear, this);
@@ -249,7 +246,6 @@ class NavigateService {
 
   ros::NodeHandle handle_;
   const NavigateParameters parameters_;
-  DriveControllerParameters wheels_;  // in force
   DrivenRobot robot_;
   const Zones zones_;
   ScanStore scans_;

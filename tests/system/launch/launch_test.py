@@ -40,6 +40,7 @@ OF_NAVIGATION = {
     "amcl_pose",
     "particlecloud",
     "initialpose",
+    "follow_path/velocity",
 }
 SILENT = COMMANDS | OF_OTHER_NODES | OF_LEGS | OF_NAVIGATION | {"battery_state", "tf_static", "/clock", "/rosout"}
 """Topics on which there may be no messages. The robot has no battery, no transform is static, and /clock belongs to

@@ -13,6 +13,7 @@ from robot_control.files.files import given_path, in_words
 REQUESTS = (
     *("cmd_vel", "cmd_vel_stamped", "joy_vel", "key_vel", "console_vel", "path_vel", "pause", "body_pose"),
     *("foot_target", "joint_trajectory", "e_stop", "heartbeat", "clearance", "joy", "imu/input", "initialpose"),
+    "follow_path/velocity",
 )
 REPORTS = (
     *("joint_commands", "joint_targets", "joint_states", "odom", "wheel_odom", "tf", "tf_static", "imu/data_raw"),

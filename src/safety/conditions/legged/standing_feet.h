@@ -22,7 +22,7 @@
 /// e from the plane of the others, which fades within kUnevenTime. The body rises onto a step after its feet.
 ///
 /// A foot in stance goes down from the body by at most kReaching leg lengths per second. A faster one has not met the
-/// ground yet, and its stance begins anew.
+/// ground yet, and its stance begins again.
 ///
 /// The ground's normal n is fixed in the world (fixed_direction.h). On its feet, the robot measures it across the
 /// diagonals of the places where its feet bore last, with the time constant kGroundTime. A robot that falls over turns

@@ -8,6 +8,7 @@
 #include <random>
 
 #include "control/legged/ideal_legs.h"
+#include "control/legged/posture/ground_slope.h"
 #include "control/legged/walk/foothold.h"
 #include "control/legged/walk/own_gaits.h"
 #include "control/legged/walk/swing.h"
@@ -94,7 +95,7 @@ struct WalkerLaws : testing::Test {
     for (std::size_t leg = 0; leg < kLegs; ++leg) {
       state.swings[leg] = gait().bears(leg, state.phase) ? 0 : 1;
       state.bears[leg] = 1 - state.swings[leg];
-      state.footprints[leg] = array(feet[leg] + around(0.02));
+      state.footprints[leg] = state.departs[leg] = array(feet[leg] + around(0.02));
       estimate.contacts[leg].probability = uniform(1) > 0 ? 0.5 : 0.49;
       if (state.swings[leg] != 0) estimate.contacts[leg].probability = 0;
       state.touch_places[leg] = array(feet[leg] + around(0.001));
@@ -306,11 +307,12 @@ TEST_F(WalkerLaws, PlansTheForcesOfItsFeetFromWhereItIsToItsTarget) {
     step();
     ASSERT_EQ(state.planned, 0u);
     const WalkingBody now = body();
-    ForcePlanInput to;
+    ForcePlanInput to{.ground = ground_axes(state.ground[1], state.ground[2])};
     to.place << now.roll, now.pitch, 0, 0, 0, now.centre.z() - ground_below(now.centre);
     to.speed << now.rate, now.moves;
-    to.target << input.body[1] + state.ground[2], input.body[2] - state.ground[1], state.target[2], state.target[0],
-        state.target[1], nominal_centre() + input.body[0];
+    to.target << input.body[1] + std::atan(state.ground[2]), input.body[2] - std::atan(state.ground[1]),
+        state.target[2], state.target[0], state.target[1],
+        (nominal_centre() + input.body[0]) * std::hypot(1, state.ground[1], state.ground[2]);
     to.target_speed << 0, 0, input.twist[2], input.twist[0], input.twist[1], 0;
     to.steps = gait().duty > 0.7 ? 6 : gait().duty > 0.55 ? 8 : 10;
     const double part = parameters.horizon / static_cast<double>(to.steps);
@@ -562,11 +564,20 @@ TEST_F(WalkerLaws, AFootInTheAirFollowsItsPathToTheFoothold) {
       const Eigen::Matrix3d back = turned.transpose();
       for (std::size_t leg = 0; leg < kLegs; ++leg) {
         if (state.bears[leg] != 0) continue;
-        const Eigen::Vector3d from = vector(state.footprints[leg]), to = landing(leg);
-        const double top = std::max(from.z(), to.z()) + gait().lift;
+        const Eigen::Vector3d from = vector(state.departs[leg]), to = landing(leg);
+        const double top = std::max(from.z(), to.z()) + gait().lift, left = 1 - state.departed[leg];
         const double part = (gait().leg_phase(leg, state.phase) - gait().duty) / (1 - gait().duty);
-        const SwingPoint point = swing_point(from, to, top, part, gait().swing_time());
-        if (robot.legs[leg].kinematics.inverse(back * point.place).reach != FootReach::kReached) continue;
+        const SwingPoint point =
+            swing_point(from, to, top, (part - state.departed[leg]) / left, left * gait().swing_time());
+        const LegKinematics& kinematics = robot.legs[leg].kinematics;
+        const LegSolution solution = kinematics.inverse(back * point.place);
+        bool reaches = solution.reach == FootReach::kReached;
+        for (std::size_t i = 0; i < kLegJoints; ++i) {
+          const JointRange& range = kinematics.range(i);
+          const double angle = solution.angles[static_cast<Eigen::Index>(i)];
+          reaches = reaches && std::min(angle - range.lower, range.upper - angle) >= kFromEnd;
+        }
+        if (!reaches) continue;
         ++swinging;
         const JointCommand* joint = &out.joints[kLegJoints * leg];
         const LegAngles commanded(joint[0].position, joint[1].position, joint[2].position);
