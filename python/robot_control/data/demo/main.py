@@ -66,16 +66,19 @@ def run_demo(
 
     try:
         log = read_log(out / "run.bag")
-        with ProcessPoolExecutor(1) as beside:
-            table = beside.submit(write_csv, out / "run.bag", out / "run.csv")
-            summary = summarize(log, LINEAR, ANGULAR, driven, stolen, legged=legged, clock=clock)
-            (out / "summary.json").write_text(to_json(summary))
-            verdict = "tracked" if summary.passed else "NOT TRACKED"
-            title = f"{robot}, {LINEAR} m/s and {ANGULAR} rad/s, {CLOCK_WORDS[clock]}, 1 ms cycles: {verdict}"
-            draw_run(log, summary, title, out / "run.png")
-            table.result()
     except (OSError, LogError) as error:
         raise DemoError(f"no log of the run: {in_words(error)}; see {out / 'launch.log'}") from error
+    with ProcessPoolExecutor(1) as beside:
+        table = beside.submit(write_csv, out / "run.bag", out / "run.csv")
+        summary = summarize(log, LINEAR, ANGULAR, driven, stolen, legged=legged, clock=clock)
+        (out / "summary.json").write_text(to_json(summary))
+        verdict = "tracked" if summary.passed else "NOT TRACKED"
+        title = f"{robot}, {LINEAR} m/s and {ANGULAR} rad/s, {CLOCK_WORDS[clock]}, 1 ms cycles: {verdict}"
+        draw_run(log, summary, title, out / "run.png")
+    try:
+        table.result()
+    except LogError as error:
+        raise DemoError(f"no table of the run: {in_words(error)}") from error
     if clock == "wall":
         _print_refusals((out / "launch.log").read_text(errors="replace"))
     else:
