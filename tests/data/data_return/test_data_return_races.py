@@ -177,6 +177,23 @@ def test_a_file_that_takes_the_name_at_the_moment_of_the_deletion_stays(tmp_path
     assert (logs / "run.1.bag").read_bytes() == b"another file"
 
 
+def test_a_file_that_is_rewritten_at_the_moment_of_the_deletion_returns_again(tmp_path, monkeypatch):
+    """Neither its inode nor its size and time tell."""
+    system = System(tmp_path, {"run.1.bag": some_bytes(PART)}, local_quota=1e-9)
+    renamed = parts.renamed
+
+    def late(path, target):
+        write(path, some_bytes(PART, 2))
+        monkeypatch.setattr(parts, "renamed", renamed)
+        return renamed(path, target)
+
+    monkeypatch.setattr(parts, "renamed", late)
+    for _ in range(20):
+        system.step()
+    assert some_bytes(PART, 2) in whole(system)
+    assert list((tmp_path / "logs").iterdir()) == []
+
+
 def test_a_file_that_takes_the_other_name_before_the_deletion_stays(tmp_path, monkeypatch):
     system = System(tmp_path, {"run.1.bag": some_bytes(PART)}, local_quota=1e-9)
     logs = tmp_path / "logs"

@@ -62,25 +62,25 @@ def opened(path: Path, key: str) -> Iterator[int]:
         os.close(file)
 
 
-def remove(path: Path, known: os.stat_result) -> None:
-    """Deletes the file of this status, which is open. It first gets a name that nothing else uses.
+@contextmanager
+def set_aside(path: Path) -> Iterator[Path]:
+    """The file under a name that nothing else uses, within the block. A file that is still there gets its own again.
 
     Raises:
-        ChangedError: another file now has its name, and stays, or it was touched.
-        OSError: it cannot be deleted.
+        ChangedError: no file has the name.
+        OSError: it cannot be renamed.
     """
-    if (now := path.lstat()).st_ctime_ns != known.st_ctime_ns or identity(now) != identity(known):
-        raise ChangedError("it was touched before it could be deleted")
     aside = path.with_name(f"_{path.name}")
-    while not renamed(path, aside):
-        aside = aside.with_name(f"_{aside.name}")
-    if identity(aside.lstat()) == identity(known):
-        aside.unlink()
-        return
-    with suppress(OSError):  # otherwise it keeps the other name
-        os.link(aside, path, follow_symlinks=False)
-        aside.unlink()
-    raise ChangedError("another file now has its name")
+    try:
+        while not renamed(path, aside):
+            aside = aside.with_name(f"_{aside.name}")
+    except FileNotFoundError:
+        raise ChangedError("it now has another name") from None
+    try:
+        yield aside
+    finally:
+        with suppress(OSError):  # it was deleted, or keeps the other name
+            renamed(aside, path)
 
 
 def renamed(path: Path, new: Path) -> bool:

@@ -1,15 +1,15 @@
 """One step of the return: scan, delete beyond the quota, send some parts or a manifest. Its clock is an argument."""
 
-import os
 import shutil
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import suppress
+from pathlib import Path
 from typing import NamedTuple
 
 from robot_control.data.data_return import parts
 from robot_control.data.data_return.plan import GB, Entry, Part, deletable, next_entry, next_parts, progress, wait_after
 from robot_control.data.data_return.queue_file import QueueFile
-from robot_control.data.data_return.remote import InterruptedCallError, Remote, RemoteError
+from robot_control.data.data_return.remote import InterruptedCallError, Remote, RemoteError, RemoteFile
 from robot_control.data.data_return.settings import Settings
 from robot_control.files.files import fit_for_message, in_words, printable
 
@@ -99,11 +99,10 @@ class Sender:
 
     def _delete(self, entry: Entry) -> None:
         """Deletes a file that the remote still has; another one is sent again."""
-        path = self._settings.logs / entry.path
-        with parts.opened(path, entry.key) as file:  # no other file gets its inode meanwhile
-            before = os.fstat(file)
-            if len(self._proven(entry, self._known(entry.target))) == entry.count:
-                parts.remove(path, before)
+        known, there = self._known(entry.target), self._remote.files(entry.target, size=entry.size)
+        with parts.set_aside(self._settings.logs / entry.path) as path:  # what is proven is what is deleted
+            if len(self._proven(entry, path, known, there)) == entry.count:
+                path.unlink()
                 del self._queue.entries[entry.key]
             else:
                 entry.returned = False
@@ -142,18 +141,17 @@ class Sender:
                 return dict(enumerate(content["parts"]))
         return {}
 
-    def _packed(self, entry: Entry, numbers: Iterable[int]) -> Iterator[tuple[int, Part, bytes]]:
-        """Parts of the local file. Raises OSError, and ChangedError at the end."""
-        with parts.opened(self._settings.logs / entry.path, entry.key) as file:
+    def _packed(self, entry: Entry, numbers: Iterable[int], path: Path | None = None) -> Iterator[tuple[int, Part, bytes]]:
+        """Parts of the local file, whose name may be another `path` now. Raises OSError, and ChangedError at the end."""
+        with parts.opened(path or self._settings.logs / entry.path, entry.key) as file:
             for number in numbers:
                 yield number, *parts.packed(file, number)
 
-    def _proven(self, entry: Entry, known: Mapping[int, Part]) -> set[int]:
-        """Numbers of the parts that are as they were sent, here, and on the remote by its hash, else by its size."""
-        there = self._remote.files(entry.target, size=entry.size)
+    def _proven(self, entry: Entry, path: Path, known: Mapping[int, Part], there: Mapping[str, RemoteFile]) -> set[int]:
+        """Numbers of the parts that are as they were sent, at `path`, and on the remote by its hash, else by its size."""
         return {
             number
-            for number, part, data in self._packed(entry, range(entry.count))
+            for number, part, data in self._packed(entry, range(entry.count), path)
             if known.get(number) == part and part.name in there and there[part.name].holds(data)
         }
 
@@ -186,7 +184,8 @@ class Sender:
 
     def _finish(self, entry: Entry) -> None:
         """The manifest, once the remote has all parts of the file; it has returned when the manifest was read back."""
-        proven = self._proven(entry, entry.parts)
+        there = self._remote.files(entry.target, size=entry.size)
+        proven = self._proven(entry, self._settings.logs / entry.path, entry.parts, there)
         if len(proven) < entry.count:
             entry.parts = {number: entry.parts[number] for number in proven}
             self._queue.save()
