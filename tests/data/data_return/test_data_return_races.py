@@ -148,6 +148,20 @@ def test_the_local_quota_deletes_no_file_that_the_far_side_has_lost(tmp_path, lo
     assert not (tmp_path / "logs/run.1.bag").exists()
 
 
+@pytest.mark.parametrize("lost", ["00000", "00001"])
+def test_what_the_far_side_has_lost_of_a_whole_file_is_sent_again_without_a_queue(tmp_path, lost):
+    """As after another file of this size and time took its place in the queue, too."""
+    content = some_bytes(2 * PART if lost == "00001" else PART)
+    system = System(tmp_path, {"run.1.bag": content})
+    system.finish()
+    (name,) = [name for name in system.far.content if name.endswith(lost)]
+    del system.far.content[name]
+    (tmp_path / "queue/queue.json").unlink()
+    system.begin()
+    system.finish(20)
+    assert whole(system) == [content]
+
+
 def test_a_part_that_the_far_side_damaged_is_noticed_before_the_file_is_deleted(tmp_path):
     system = System(tmp_path, {"run.1.bag": some_bytes(3 * PART)})
     system.finish()

@@ -101,7 +101,7 @@ class Sender:
         """Deletes a file that the remote still has; another one is sent again."""
         known, there = self._known(entry.target), self._remote.files(entry.target, size=entry.size)
         with parts.set_aside(self._settings.logs / entry.path) as path:  # what is proven is what is deleted
-            if len(self._proven(entry, path, known, there)) == entry.count:
+            if len(self._proven(entry, known, there, path)) == entry.count:
                 path.unlink()
                 del self._queue.entries[entry.key]
             else:
@@ -127,10 +127,12 @@ class Sender:
             entry.target = f"{first}-{number}"
 
     def _may_use(self, entry: Entry) -> bool:
+        """Whether the folder holds this file or none. The parts that it still has are not sent again."""
         known = self._known(entry.target)
-        is_this = bool(known) and known == {number: part for number, part, _ in self._packed(entry, range(entry.count))}
-        entry.parts = known if is_this else {}
-        return is_this or not known
+        if known and known != {number: part for number, part, _ in self._packed(entry, range(entry.count))}:
+            return False
+        entry.parts = {number: known[number] for number in self._proven(entry, known)} if known else {}
+        return True
 
     def _known(self, target: str) -> dict[int, Part]:
         """The parts of the whole file that a folder of the remote holds; empty: it holds none."""
@@ -141,14 +143,23 @@ class Sender:
                 return dict(enumerate(content["parts"]))
         return {}
 
-    def _packed(self, entry: Entry, numbers: Iterable[int], path: Path | None = None) -> Iterator[tuple[int, Part, bytes]]:
-        """Parts of the local file, whose name may be another `path` now. Raises OSError, and ChangedError at the end."""
+    def _packed(
+        self, entry: Entry, numbers: Iterable[int], path: Path | None = None
+    ) -> Iterator[tuple[int, Part, bytes]]:
+        """Parts of the local file, at `path` if it has another name now. Raises OSError; ChangedError at the end."""
         with parts.opened(path or self._settings.logs / entry.path, entry.key) as file:
             for number in numbers:
                 yield number, *parts.packed(file, number)
 
-    def _proven(self, entry: Entry, path: Path, known: Mapping[int, Part], there: Mapping[str, RemoteFile]) -> set[int]:
-        """Numbers of the parts that are as they were sent, at `path`, and on the remote by its hash, else by its size."""
+    def _proven(
+        self,
+        entry: Entry,
+        known: Mapping[int, Part],
+        there: Mapping[str, RemoteFile] | None = None,
+        path: Path | None = None,
+    ) -> set[int]:
+        """Numbers of the parts that are as they were sent, here, and on the remote by its hash, else by its size."""
+        there = self._remote.files(entry.target, size=entry.size) if there is None else there
         return {
             number
             for number, part, data in self._packed(entry, range(entry.count), path)
@@ -184,8 +195,7 @@ class Sender:
 
     def _finish(self, entry: Entry) -> None:
         """The manifest, once the remote has all parts of the file; it has returned when the manifest was read back."""
-        there = self._remote.files(entry.target, size=entry.size)
-        proven = self._proven(entry, self._settings.logs / entry.path, entry.parts, there)
+        proven = self._proven(entry, entry.parts)
         if len(proven) < entry.count:
             entry.parts = {number: entry.parts[number] for number in proven}
             self._queue.save()
