@@ -38,7 +38,8 @@ void cost(const LegModel& model, std::uint64_t seed, WorstValues& worst);
 /// in `cost`.
 void walking_cost(const LegModel& model, std::uint64_t seed, WorstValues& worst);
 
-/// The estimated way of a straight line, a square and an eight of 20 m against the truth, without foot sensors.
+/// The estimate against the truth, with the errors of the field and without foot sensors: a line, a square, an eight,
+/// tiles, other gaits. Then climbs of 1 m.
 void odometry(const LegModel& model, std::uint64_t seed, WorstValues& worst);
 /// Touchdowns that the estimator finds without foot sensors.
 void contact(const LegModel& model, std::uint64_t seed, WorstValues& worst);

@@ -5,6 +5,7 @@
 #include "bench/programs/legs/loop_rows.h"
 #include "control/legged/walk/gait_table.h"
 #include "estimation/legged/legged_estimator.h"
+#include "support/robots/quadruped_trials.h"
 
 namespace robot_control::bench {
 namespace {
@@ -13,6 +14,7 @@ using Eigen::Quaterniond;
 using Eigen::Vector3d;
 
 constexpr double kWalk = 0.5;   // m/s
+constexpr double kCrawl = 0.2;  // m/s
 constexpr double kStand = 3;    // s, before and after the walk
 constexpr double kTurn = 0.5;   // rad/s
 constexpr double kSide = 10;    // s, of the square
@@ -22,21 +24,36 @@ struct Course {
   std::string name;
   double seconds;
   std::function<std::array<double, 2>(double)> speed;  ///< m/s and rad/s at a time
+  std::uint64_t gait = gait_named("trot");
+  TerrainParameters terrain = {};
 };
 
 std::vector<Course> courses() {
   constexpr double kCorner = kPi / 2 / kTurn;
+  const auto square = [](double speed) {
+    return [speed](double t) {
+      return std::fmod(t, kSide + kCorner) < kSide ? std::array{speed, 0.0} : std::array{0.0, kTurn};
+    };
+  };
+  const double round = 4 * (kSide + kCorner);
   return {{"straight", 40,
            [](double) {
              return std::array{kWalk, 0.0};
            }},
-          {"square", 4 * (kSide + kCorner),
+          {"square", round, square(kWalk)},
+          {"eight", 2 * kCircle,
            [](double t) {
-             return std::fmod(t, kSide + kCorner) < kSide ? std::array{kWalk, 0.0} : std::array{0.0, kTurn};
-           }},
-          {"eight", 2 * kCircle, [](double t) {
              return std::array{kWalk, (t < kCircle ? 2 : -2) * kPi / kCircle};
-           }}};
+           }},
+          {"crawl", round, square(kCrawl), gait_named("crawl")},
+          {"walking trot", round, square(kWalk), gait_named("walking_trot")},
+          {"tiles",
+           43,
+           [](double t) {
+             return t < 3 ? std::array{kWalk, 0.0} : std::array{0.8 * kTurn, kTurn};
+           },
+           gait_named("trot"),
+           {.kind = TerrainKind::kRough, .height = 0.04, .length = 0.25, .count = 16}}};
 }
 
 Request walk(const std::array<double, 2>& speed, const Mode& mode = {}) {
@@ -72,12 +89,19 @@ struct Difference {
   }
 };
 
-void drive(const LegModel& model, const Course& course, std::uint64_t seed, WorstValues& worst) {
+Parameters in_the_field(std::uint64_t seed) {
   Parameters parameters = QuadrupedLoop::parameters(seed, ErrorLevel::kField);
   parameters.plant.contact_sensors = false;
   parameters.plant.gyro_bias = 0.02;
   parameters.plant.accelerometer_bias = 0.2;
   parameters.plant.joint_offset = 0.01;
+  return parameters;
+}
+
+void drive(const LegModel& model, const Course& course, std::uint64_t seed, WorstValues& worst) {
+  Parameters parameters = in_the_field(seed);
+  parameters.plant.terrain = course.terrain;
+  parameters.plant.terrain.height *= model.leg_length() / kReferenceLeg;
   QuadrupedLoop robot(model, parameters);
   LeggedEstimator beside(model, parameters.loop.period());  // its plain estimate alone counts
   StateFrame unused;
@@ -100,7 +124,7 @@ void drive(const LegModel& model, const Course& course, std::uint64_t seed, Wors
       cycles += 1;
     }
   };
-  run(course.seconds, [&](double t) { return walk(course.speed(t)); });
+  run(course.seconds, [&](double t) { return walk(course.speed(t), {ModeKind::kGait, course.gait}); });
   run(kStand, [](double) { return Request{}; });
   if (robot.permit().causes != 0)
     std::fprintf(stderr, "%s, seed %llu: stopped by %s\n", course.name.c_str(), static_cast<unsigned long long>(seed),
@@ -111,7 +135,7 @@ void drive(const LegModel& model, const Course& course, std::uint64_t seed, Wors
   const double plain_error = 100 * plain.head<2>().norm() / travelled;
   worst.add_p95("error of the way, " + course.name, error, "%");
   worst.add("error of yaw, " + course.name, std::abs(end.pose[5]) * 180 / kPi, "deg");
-  worst.add("error of height, " + course.name, std::abs(end.pose[2]), "m");
+  worst.add_p95("drift of height, " + course.name, 1000 * std::abs(end.pose[2]) / travelled, "mm/m");
   worst.add("RMS of the speed, " + course.name, std::sqrt(squares / cycles), "m/s");
   worst.average("mean error of the way, " + course.name, error, "%");
   worst.average("mean error of the plain estimate, " + course.name, plain_error, "%");
@@ -122,10 +146,31 @@ void drive(const LegModel& model, const Course& course, std::uint64_t seed, Wors
             "runs");
 }
 
+/// Turns once on the spot, which shows the bias of the accelerometer, and climbs 1 m.
+void climb(const LegModel& model, double degrees, std::uint64_t seed, WorstValues& worst) {
+  const TemporaryFolder folder;
+  const double slope = degrees * kPi / 180;
+  Parameters parameters = in_the_field(seed);
+  parameters.plant.scene = sloping_scene(folder, slope, 0);
+  QuadrupedLoop robot(model, parameters);
+  stand_up(robot);
+  const auto place = [&] { return vector_of(robot.truth().pose_world.position); };
+  const Vector3d up(std::sin(slope), 0, std::cos(slope)), begin = place();  // axes of the scene, which is turned
+  const double known = robot.state().base.pose_odom.position[2];
+  const auto run = [&](double seconds, const std::array<double, 2>& speed) {
+    for (double t = 0; t < seconds; t += 0.02) robot.run(0.02, walk(speed));
+  };
+  run(2 * kPi / kTurn, {0, kTurn});
+  run(1 / (kWalk * std::sin(slope)), {kWalk, 0});
+  const double error = std::abs(robot.state().base.pose_odom.position[2] - known - up.dot(place() - begin));
+  worst.add_p95("error of a climb of 1 m at " + std::to_string(std::lround(degrees)) + " deg", error, "m");
+}
+
 }  // namespace
 
 void odometry(const LegModel& model, std::uint64_t seed, WorstValues& worst) {
   for (const Course& course : courses()) drive(model, course, seed, worst);
+  for (const double degrees : {5, 10}) climb(model, degrees, seed, worst);
 }
 
 void contact(const LegModel& model, std::uint64_t seed, WorstValues& worst) {

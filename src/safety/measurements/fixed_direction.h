@@ -1,5 +1,5 @@
 #pragma once
-/// A direction that is fixed in the world, in base axes: the gyro carries it, measurements pull it.
+/// A direction that is fixed in the world, in base axes: the gyro carries it, measurements pull it. It begins as z.
 ///
 ///   prediction  ḋ = −ω × d
 ///   correction  d ← d + w (m − d), of unit length; m a measured direction, w its weight 0 … 1
@@ -22,9 +22,6 @@ inline Eigen::Matrix3d turned_back(const Eigen::Vector3d& rate, double dt) noexc
 
 class FixedDirection {
  public:
-  explicit FixedDirection(const Eigen::Vector3d& direction = Eigen::Vector3d::UnitZ()) noexcept
-      : direction_(direction), across_(direction.head<2>().norm()) {}
-
   /// `back` is turned_back() of the body's turn.
   void turn(const Eigen::Matrix3d& back) noexcept { set(back * vector()); }
 
@@ -55,8 +52,8 @@ class FixedDirection {
     across_ = std::hypot(direction.x(), direction.y());
   }
 
-  Stored<Eigen::Vector3d> direction_;
-  double across_;  ///< length of its part across the base's z axis
+  Stored<Eigen::Vector3d> direction_{Eigen::Vector3d::UnitZ()};
+  double across_ = 0;  ///< length of its part across the base's z axis
 };
 
 }  // namespace robot_control

@@ -105,7 +105,7 @@ FootMeasurements StandingFeet::step(const MonitorInput& input, const BodyMotion&
     sample(sensors, command, up, bears, judged, static_cast<double>(waited_) * period_);
     waited_ = 0;
   }
-  if (placed_ != Feet{true, true, true, true}) ground_ = body.attitude().vertical();
+  if (!placed()) ground_ = body.attitude().vertical();
   const double share = weight_ / static_cast<double>(stands && command.legged.lifted != 0 ? kLegs - 1 : kLegs);
   measured_.foot_load = stands || walks ? lightest(sensors, up, judged, share, walks) : kNothingMeasured;
   return measured_;
@@ -148,7 +148,7 @@ void StandingFeet::sample(const SensorFrame& sensors, const CommandFrame& comman
 
 /// The place of a foot that is lifted for long is that in the plane of the others.
 void StandingFeet::follow_ground(const Sample& now, const Feet& bears, bool walks, double dt) noexcept {
-  const bool known = placed_ == Feet{true, true, true, true};
+  const bool known = placed();
   uneven_ *= 1 - std::min(1.0, dt / kUnevenTime);
   for (std::size_t leg = 0; leg < kLegs; ++leg) {
     const std::size_t beside = leg ^ 1U, behind = leg ^ 2U, across = leg ^ 3U;
@@ -162,8 +162,7 @@ void StandingFeet::follow_ground(const Sample& now, const Feet& bears, bool walk
   bore_ = bears;
   const Eigen::Vector3d normal = between(places_, 2, 1).cross(between(places_, 3, 0));
   const bool turns = known && (*now.turn).norm() > kMaxTurn * dt;
-  if (placed_ == Feet{true, true, true, true} && !turns)
-    ground_.pull(normal.normalized(), known ? std::min(1.0, dt / kGroundTime) : 1);
+  if (placed() && !turns) ground_.pull(normal.normalized(), known ? std::min(1.0, dt / kGroundTime) : 1);
 }
 
 /// A foot whose stance ends bears little, and may leave the ground early.

@@ -85,6 +85,8 @@ class StandingFeet {
 
   void sample(const SensorFrame& sensors, const CommandFrame& command, const Eigen::Vector3d& up, const Feet& bears,
               const Feet& judged, double dt) noexcept;
+  /// Each foot has borne: there is a plane.
+  bool placed() const noexcept { return placed_ == Feet{true, true, true, true}; }
   void follow_ground(const Sample& now, const Feet& bears, bool walks, double dt) noexcept;
   void compare(const Sample& now, const CommandFrame& command, const Eigen::Vector3d& up) noexcept;
   ConditionMeasurement lightest(const SensorFrame& sensors, const Eigen::Vector3d& up, const Feet& judged, double share,
