@@ -222,6 +222,18 @@ TEST(Walking, IsStoppedByAFaultThatIsNamedBeforeItFalls) {
   }
 }
 
+TEST(Walking, IsStoppedUprightByAGyroOfWrongSignInEachPhase) {
+  for (int phase = 0; phase < 10; ++phase) {
+    QuadrupedLoop robot = loop_of("quadbot", 0, ErrorLevel::kDataSheet);
+    robot.run(2.0 + 0.038 * phase, walk(0.5, 0, 0));
+    robot.loop.inject_fault("gyro", "wrong");
+    robot.run(0.3, walk(0.5, 0, 0));
+    EXPECT_EQ(names_of(kStopCauseNames, robot.permit().first_cause), "body_turn") << phase;
+    robot.run(2.0, {});
+    EXPECT_LT(robot.tilt_now(), 0.3) << phase;
+  }
+}
+
 /// A walk that goes on until it ends, or a robot that lies down as usual, needs feet that hold.
 TEST(Walking, IsStoppedUprightWhereItsFeetSlip) {
   for (const std::uint64_t seed : {0, 1}) {

@@ -10,11 +10,11 @@
 namespace robot_control {
 namespace {
 
-constexpr double kReachSpeed = 1;   // m/s, from which on a foot that bears is pushed down with less force
-constexpr double kMetRiser = 0.03;  // m, by which a foot stays behind its path
-constexpr double kBackOff = 0.02;   // m, from the riser
-constexpr double kFirstLift = 0.1;  // of the swing
-constexpr double kLastLift = 0.6;   // of the swing
+constexpr double kReachSpeed = 0.8;  // m/s, from which on a foot that bears is pushed down with less force
+constexpr double kMetRiser = 0.03;   // m, by which a foot stays behind its path
+constexpr double kBackOff = 0.02;    // m, from the riser
+constexpr double kFirstLift = 0.1;   // of the swing
+constexpr double kLastLift = 0.6;    // of the swing
 
 using Map = Eigen::Map<Eigen::Vector3d>;
 using ConstMap = Eigen::Map<const Eigen::Vector3d>;
