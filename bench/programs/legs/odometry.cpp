@@ -161,9 +161,11 @@ void climb(const LegModel& model, double degrees, std::uint64_t seed, WorstValue
     for (double t = 0; t < seconds; t += 0.02) robot.run(0.02, walk(speed));
   };
   run(2 * kPi / kTurn, {0, kTurn});
-  run(1 / (kWalk * std::sin(slope)), {kWalk, 0});
+  for (double t = 0; up.dot(place() - begin) < 1 && t < 2 / (kWalk * std::sin(slope)); t += 0.1) run(0.1, {kWalk, 0});
   const double error = std::abs(robot.state().base.pose_odom.position[2] - known - up.dot(place() - begin));
-  worst.add_p95("error of a climb of 1 m at " + std::to_string(std::lround(degrees)) + " deg", error, "m");
+  const std::string name = "a climb of 1 m at " + std::to_string(std::lround(degrees)) + " deg";
+  worst.add_p95("error of " + name, error, "m");
+  worst.add("stopped or degraded, " + name, up.dot(place() - begin) < 1 || robot.permit().causes != 0, "runs");
 }
 
 }  // namespace

@@ -150,7 +150,7 @@ def test_the_local_quota_deletes_no_file_that_the_far_side_has_lost(tmp_path, lo
 
 @pytest.mark.parametrize("lost", ["00000", "00001"])
 def test_what_the_far_side_has_lost_of_a_whole_file_is_sent_again_without_a_queue(tmp_path, lost):
-    """As after another file of this size and time took its place in the queue, too."""
+    """The first of one part is the case in which nothing came further."""
     content = some_bytes(2 * PART if lost == "00001" else PART)
     system = System(tmp_path, {"run.1.bag": content})
     system.finish()
@@ -247,8 +247,14 @@ def test_a_report_that_surprises_the_program_does_not_end_its_reports(monkeypatc
     assert node.boundary.dropped == {"a report": 1}
 
 
-def test_a_deletion_that_was_ended_half_way_costs_no_file(tmp_path, monkeypatch):
+@pytest.mark.parametrize("newer", [False, True])
+def test_a_deletion_that_was_ended_half_way_costs_no_file(tmp_path, monkeypatch, newer):
     system = System(tmp_path, {"run.1.bag": some_bytes(PART)}, local_quota=1e-9)
+
+    def ended(*_, **__):
+        monkeypatch.setattr(parts, "renamed", ended)
+        raise PowerLoss
+
     monkeypatch.setattr("pathlib.Path.unlink", ended)
     with pytest.raises(PowerLoss):
         for _ in range(10):
@@ -256,17 +262,16 @@ def test_a_deletion_that_was_ended_half_way_costs_no_file(tmp_path, monkeypatch)
     monkeypatch.undo()
     use_small_parts(monkeypatch)
     logs = tmp_path / "logs"
-    assert [path.read_bytes() for path in logs.iterdir()] == [some_bytes(PART)]
-    write(logs / "run.1.bag", b"a newer file")
+    assert {path.name: path.read_bytes() for path in logs.iterdir()} == {"_run.1.bag": some_bytes(PART)}
+    if newer:
+        write(logs / "run.1.bag", b"a newer file")
     system.begin()
+    system.step("no link")
+    assert {path.name for path in logs.iterdir()} == ({"_run.1.bag", "run.1.bag"} if newer else {"run.1.bag"})
     for _ in range(10):
         system.step()
-    assert sorted(whole(system)) == sorted([some_bytes(PART), b"a newer file"])
+    assert sorted(whole(system)) == sorted([some_bytes(PART), *[b"a newer file"] * newer])
     assert list(logs.iterdir()) == []
-
-
-def ended(*_, **__):
-    raise PowerLoss
 
 
 @pytest.mark.parametrize("again", [False, True], ids=["together", "after the first is deleted"])

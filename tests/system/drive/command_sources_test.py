@@ -130,6 +130,7 @@ class CommandSourcesTest(RobotTestCase):
         wait_for("standstill", lambda: abs(self.robot.speed) < 0.01)
         wait_for("its words", lambda: "no pad answers" in pad.output)
 
+    @again_after_a_stall
     def test_a_path_that_is_masked_pauses_until_resume_and_reaches_its_end(self) -> None:
         path = Program("drive_path.py", "circle", "--size", "1")
         self.addCleanup(path.end)

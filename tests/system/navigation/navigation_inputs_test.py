@@ -68,7 +68,7 @@ class NavigationInputsTest(unittest.TestCase):
         end = time.monotonic() + 6.0
         while time.monotonic() < end and not self.paths:
             if self.client.get_state() == GoalStatus.ABORTED:  # its status; the result is another message
-                self.client.wait_for_result(rospy.Duration(5.0))
+                self.assertTrue(self.client.wait_for_result(rospy.Duration(5.0)))
                 return str(self.client.get_result().reason)
             time.sleep(0.02)
         self.client.cancel_goal()

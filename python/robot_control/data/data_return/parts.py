@@ -66,6 +66,8 @@ def opened(path: Path, key: str) -> Iterator[int]:
 def set_aside(path: Path) -> Iterator[Path]:
     """The file under a name that nothing else uses, within the block. A file that is still there gets its own again.
 
+    It may be another file than the one that was meant, which `opened` refuses. After a SIGKILL in the block see `get_back`.
+
     Raises:
         ChangedError: no file has the name.
         OSError: it cannot be renamed.
@@ -80,6 +82,14 @@ def set_aside(path: Path) -> Iterator[Path]:
         yield aside
     finally:
         with suppress(OSError):  # it was deleted, or keeps the other name
+            renamed(aside, path)
+
+
+def get_back(path: Path, key: str) -> None:
+    """Gives the file of this key its name again if a program that was killed left it set aside."""
+    aside = path.with_name(f"_{path.name}")
+    with suppress(OSError):
+        if identity(aside.lstat()) == key:
             renamed(aside, path)
 
 

@@ -10,7 +10,7 @@ from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
 
-from robot_control.data.data_return.parts import read_part
+from robot_control.data.data_return.parts import get_back, read_part
 from robot_control.data.data_return.plan import KINDS, Entry, identity, kind_of
 from robot_control.files.files import printable
 from robot_control.files.kept_file import put_aside, read_kept, write_kept
@@ -74,6 +74,8 @@ class QueueFile:
         Raises:
             OSError: the queue cannot be written.
         """
+        for queued in self.entries.values():
+            get_back(logs / queued.path, queued.key)
         found = {each.key: each for path in logs.rglob("*") if (each := _finished(path, logs, day))}
         missing = [each for key, each in self.entries.items() if key not in found and not each.returned]
         for key, each in found.items():
