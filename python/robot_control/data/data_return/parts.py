@@ -66,7 +66,7 @@ def opened(path: Path, key: str) -> Iterator[int]:
 def set_aside(path: Path) -> Iterator[Path]:
     """The file under a name that nothing else uses, within the block. A file that is still there gets its own again.
 
-    It may be another file than the one that was meant, which `opened` refuses. After a SIGKILL in the block see `get_back`.
+    It may be another file than the one that was meant: `opened` refuses it. After a SIGKILL in it see `get_back`.
 
     Raises:
         ChangedError: no file has the name.
