@@ -157,11 +157,9 @@ void climb(const LegModel& model, double degrees, std::uint64_t seed, WorstValue
   const auto place = [&] { return vector_of(robot.truth().pose_world.position); };
   const Vector3d up(std::sin(slope), 0, std::cos(slope)), begin = place();  // axes of the scene, which is turned
   const double known = robot.state().base.pose_odom.position[2];
-  const auto run = [&](double seconds, const std::array<double, 2>& speed) {
-    for (double t = 0; t < seconds; t += 0.02) robot.run(0.02, walk(speed));
-  };
-  run(2 * kPi / kTurn, {0, kTurn});
-  for (double t = 0; up.dot(place() - begin) < 1 && t < 2 / (kWalk * std::sin(slope)); t += 0.1) run(0.1, {kWalk, 0});
+  robot.run(2 * kPi / kTurn, walk({0, kTurn}));
+  for (double t = 0; up.dot(place() - begin) < 1 && t < 2 / (kWalk * std::sin(slope)); t += 0.1)
+    robot.run(0.1, walk({kWalk, 0}));
   const double error = std::abs(robot.state().base.pose_odom.position[2] - known - up.dot(place() - begin));
   const std::string name = "a climb of 1 m at " + std::to_string(std::lround(degrees)) + " deg";
   worst.add_p95("error of " + name, error, "m");

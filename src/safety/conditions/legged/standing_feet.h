@@ -60,9 +60,8 @@ class StandingFeet {
   static constexpr double kSlipFactor = 2;          ///< docs/evidence/legs.md
   static constexpr double kYawShare = 0.5;          ///< docs/evidence/legs.md
   static constexpr double kEdge = 0.15;
-  static constexpr double kStepShare = 0.55;  ///< docs/evidence/derivations.md
-  static constexpr double kReaching =
-      1.2;  ///< 1/s; free feet are faster (Walker's kReachSpeed), those of a body that tips slower
+  static constexpr double kStepShare = 0.55;   ///< docs/evidence/derivations.md
+  static constexpr double kReaching = 1.2;     ///< 1/s; free feet are faster, those of a body that tips slower
   static constexpr double kUnevenShare = 0.1;  ///< a foot on an edge rolls about it
   static constexpr double kUnevenTime = 0.5;   ///< s, in which the body rises onto a step
   static constexpr double kGroundTime = 1.0;   ///< s, some steps
