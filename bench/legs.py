@@ -182,6 +182,7 @@ WITHOUT_BOUND = (
     "push taken, ",
     "neither, ",
     "mean error of",
+    "set by hand, ",
     "error of height",
     "stands on ",
     "crossed, ",

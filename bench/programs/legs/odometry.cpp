@@ -89,17 +89,24 @@ struct Difference {
   }
 };
 
-Parameters in_the_field(std::uint64_t seed) {
+/// The zeros of the encoders: as a maker calibrates them, or set by hand.
+struct Zeros {
+  std::string name;
+  double deviation;  ///< rad
+};
+const std::array kZeros{Zeros{"", 0}, Zeros{"set by hand, ", 0.01}};
+
+Parameters in_the_field(std::uint64_t seed, const Zeros& zeros) {
   Parameters parameters = QuadrupedLoop::parameters(seed, ErrorLevel::kField);
   parameters.plant.contact_sensors = false;
   parameters.plant.gyro_bias = 0.02;
   parameters.plant.accelerometer_bias = 0.2;
-  parameters.plant.joint_offset = 0.01;
+  parameters.plant.joint_offset = zeros.deviation;
   return parameters;
 }
 
-void drive(const LegModel& model, const Course& course, std::uint64_t seed, WorstValues& worst) {
-  Parameters parameters = in_the_field(seed);
+void drive(const LegModel& model, const Course& course, std::uint64_t seed, const Zeros& zeros, WorstValues& worst) {
+  Parameters parameters = in_the_field(seed, zeros);
   parameters.plant.terrain = course.terrain;
   parameters.plant.terrain.height *= model.leg_length() / kReferenceLeg;
   QuadrupedLoop robot(model, parameters);
@@ -133,44 +140,68 @@ void drive(const LegModel& model, const Course& course, std::uint64_t seed, Wors
   const double error = 100 * end.pose.head<2>().norm() / travelled;
   const Vector3d plain = vector_of(beside.state().plain.position) - vector_of(robot.truth().pose_world.position);
   const double plain_error = 100 * plain.head<2>().norm() / travelled;
-  worst.add_p95("error of the way, " + course.name, error, "%");
-  worst.add("error of yaw, " + course.name, std::abs(end.pose[5]) * 180 / kPi, "deg");
-  worst.add_p95("drift of height, " + course.name, 1000 * std::abs(end.pose[2]) / travelled, "mm/m");
-  worst.add("RMS of the speed, " + course.name, std::sqrt(squares / cycles), "m/s");
-  worst.average("mean error of the way, " + course.name, error, "%");
-  worst.average("mean error of the plain estimate, " + course.name, plain_error, "%");
-  worst.add("error beyond 1.1 of the plain estimate, " + course.name, std::max(0.0, error - 1.1 * plain_error), "%");
-  worst.average("NEES of the pose, " + course.name, pose_nees / cycles, "");
-  worst.average("NEES of the speed, " + course.name, speed_nees / cycles, "");
-  worst.add("stopped or degraded, " + course.name, robot.permit().causes != 0 || robot.state().base.degraded != 0,
-            "runs");
+  worst.add_p95(zeros.name + "error of the way, " + course.name, error, "%");
+  worst.add(zeros.name + "error of yaw, " + course.name, std::abs(end.pose[5]) * 180 / kPi, "deg");
+  worst.add_p95(zeros.name + "drift of height, " + course.name, 1000 * std::abs(end.pose[2]) / travelled, "mm/m");
+  worst.add(zeros.name + "RMS of the speed, " + course.name, std::sqrt(squares / cycles), "m/s");
+  worst.average(zeros.name + "mean error of the way, " + course.name, error, "%");
+  worst.average(zeros.name + "mean error of the plain estimate, " + course.name, plain_error, "%");
+  worst.add(zeros.name + "error beyond 1.1 of the plain estimate, " + course.name,
+            std::max(0.0, error - 1.1 * plain_error), "%");
+  worst.average(zeros.name + "NEES of the pose, " + course.name, pose_nees / cycles, "");
+  worst.average(zeros.name + "NEES of the speed, " + course.name, speed_nees / cycles, "");
+  worst.add(zeros.name + "stopped or degraded, " + course.name,
+            robot.permit().causes != 0 || robot.state().base.degraded != 0, "runs");
 }
 
-/// Turns once on the spot, which shows the bias of the accelerometer, and climbs 1 m.
-void climb(const LegModel& model, double degrees, std::uint64_t seed, WorstValues& worst) {
+/// A floor that begins to rise by `slope` rad 1.5 m ahead.
+std::string ramp(const TemporaryFolder& folder, double slope) {
+  constexpr double kAhead = 1.5, kHalf = 8, kThick = 0.1;  // m
+  const auto number = [](double value) { return std::to_string(value) + " "; };
+  return folder.write("ramp.xml",
+                      "<mujoco><compiler angle=\"radian\"/><worldbody><geom type=\"plane\" size=\"50 50 1\"/>"
+                      "<geom type=\"box\" size=\"" +
+                          number(kHalf) + number(kHalf) + number(kThick) + "\" pos=\"" +
+                          number(kAhead + kHalf * std::cos(slope) + kThick * std::sin(slope)) + "0 " +
+                          number(kHalf * std::sin(slope) - kThick * std::cos(slope)) + "\" euler=\"0 " +
+                          number(-slope) + "0\"/><site name=\"start\"/></worldbody></mujoco>");
+}
+
+/// Climbs 1 m: on a ramp, or on a slope on which it stood up, after one turn on the spot that shows the bias of the
+/// accelerometer.
+void climb(const LegModel& model, double degrees, bool on_ramp, std::uint64_t seed, const Zeros& zeros,
+           WorstValues& worst) {
   const TemporaryFolder folder;
   const double slope = degrees * kPi / 180;
-  Parameters parameters = in_the_field(seed);
-  parameters.plant.scene = sloping_scene(folder, slope, 0);
+  Parameters parameters = in_the_field(seed, zeros);
+  parameters.plant.scene = on_ramp ? ramp(folder, slope) : sloping_scene(folder, slope, 0);
   QuadrupedLoop robot(model, parameters);
   stand_up(robot);
   const auto place = [&] { return vector_of(robot.truth().pose_world.position); };
-  const Vector3d up(std::sin(slope), 0, std::cos(slope)), begin = place();  // axes of the scene, which is turned
+  const Vector3d begin = place();
+  const double tilted = on_ramp ? 0 : slope;
+  const Vector3d up(std::sin(tilted), 0, std::cos(tilted));  // axes of the scene
   const double known = robot.state().base.pose_odom.position[2];
-  robot.run(2 * kPi / kTurn, walk({0, kTurn}));
-  for (double t = 0; up.dot(place() - begin) < 1 && t < 2 / (kWalk * std::sin(slope)); t += 0.1)
-    robot.run(0.1, walk({kWalk, 0}));
-  const double error = std::abs(robot.state().base.pose_odom.position[2] - known - up.dot(place() - begin));
-  const std::string name = "a climb of 1 m at " + std::to_string(std::lround(degrees)) + " deg";
-  worst.add_p95("error of " + name, error, "m");
-  worst.add("stopped or degraded, " + name, up.dot(place() - begin) < 1 || robot.permit().causes != 0, "runs");
+  if (!on_ramp) robot.run(2 * kPi / kTurn, walk({0, kTurn}));
+  const auto climbed = [&] { return up.dot(place() - begin); };
+  for (double t = 0; climbed() < 1 && t < 2 / (kWalk * std::sin(slope)); t += 0.1)
+    robot.run(0.1, walk({kWalk, -yaw_of(robot.truth().pose_world.orientation) * (on_ramp ? kTurn : 0)}));
+  const double error = std::abs(robot.state().base.pose_odom.position[2] - known - climbed());
+  const std::string name = "a climb of 1 m on a " + std::string(on_ramp ? "ramp" : "slope") + " of " +
+                           std::to_string(std::lround(degrees)) + " deg";
+  worst.add_p95(zeros.name + "error of " + name, error, "m");
+  worst.average(zeros.name + "mean error of " + name, error, "m");
+  worst.add(zeros.name + "stopped or degraded, " + name, climbed() < 1 || robot.permit().causes != 0, "runs");
 }
 
 }  // namespace
 
 void odometry(const LegModel& model, std::uint64_t seed, WorstValues& worst) {
-  for (const Course& course : courses()) drive(model, course, seed, worst);
-  for (const double degrees : {5, 10}) climb(model, degrees, seed, worst);
+  for (const Zeros& zeros : kZeros) {
+    for (const Course& course : courses()) drive(model, course, seed, zeros, worst);
+    for (const double degrees : {5, 10})
+      for (const bool on_ramp : {true, false}) climb(model, degrees, on_ramp, seed, zeros, worst);
+  }
 }
 
 void contact(const LegModel& model, std::uint64_t seed, WorstValues& worst) {

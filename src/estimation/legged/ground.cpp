@@ -19,9 +19,8 @@ bool Ground::level(std::size_t foot, double deviation, const LegFilter& filter, 
                            .normalized();
   Eigen::Map<Vector3d> normal(state.normal.data());
   normal += (now - normal) / kFootfalls;
-  // Feet are a leg's length apart, and the mean halves their deviation.
   const double slope = deviation / (2 * length_);
-  bool level = normal.head<2>().squaredNorm() <= kLevelGate * kLevelGate * (slope * slope + filter.tilt_variance());
+  bool level = now.head<2>().squaredNorm() <= kLevelGate * kLevelGate * (slope * slope + filter.tilt_variance());
   for (std::size_t other = 0; other < kLegs; ++other)
     level = level && (other == foot || filter.as_high(foot, other, deviation, kLevelGate));
   return level;

@@ -175,6 +175,7 @@ bool LeggedEstimator::read(const SensorFrame& sensors, double dt) noexcept {
     const Quaterniond attitude = Quaterniond::FromTwoVectors(force, Vector3d::UnitZ());
     store(attitude, state_.plain.attitude);
     leg_filter().begin(attitude, Vector3d::Zero(), kFirstTilt, kRestSpeed);
+    Map(state_.filter.position.data()) = attitude * imu_;
     set_height(0);
   }
   return gyro && accelerometer;

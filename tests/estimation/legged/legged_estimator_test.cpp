@@ -50,6 +50,15 @@ TEST(LeggedEstimator, LearnsTheGyrosBiasAtRest) {
   EXPECT_EQ(robot.out.base.degraded, 0u);
 }
 
+// The filter knows the place of the IMU, the pose that of the base.
+TEST(LeggedEstimator, BeginsAtZeroWhereverTheImuIs) {
+  Standing robot;
+  robot.robot.imu_in_base.position = {0.25, -0.1, 0.05};
+  robot.estimator = LeggedEstimator(robot.robot, Standing::kPeriod);
+  robot.run(0.001);
+  for (const double coordinate : robot.out.base.pose_odom.position) EXPECT_NEAR(coordinate, 0, 1e-6);
+}
+
 // Joints that are not valid keep their last angles, at which the feet would seem to hold the robot where it is.
 TEST(LeggedEstimator, LetsTheDeviationsGrowWithoutTheJoints) {
   Standing robot;
