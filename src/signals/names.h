@@ -133,6 +133,8 @@ inline constexpr auto kCommandReasonNames = std::to_array<BitName>({
      "check odom for a jump, then mass and inertia in the URDF"},
     {kReasonTooSteep, "too_steep", "the slope of the ground is too steep to stand up",
      "set the robot on flatter ground; if the ground is flat, check the IMU"},
+    {kReasonMetRiser, "met_riser", "a foot hit an obstacle, and is lifted over it", ""},
+    {kReasonReaching, "reaching", "a foot finds no ground where it was to land, and goes farther down", ""},
 });
 
 inline constexpr auto kRequestPartNames = std::to_array<BitName>({

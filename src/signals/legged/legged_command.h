@@ -16,7 +16,7 @@ enum class LegPhase : std::uint64_t {
   kWalking = 6
 };
 
-/// Bits 20 to 25 of CommandFrame::reasons.
+/// Bits 20 to 27 of CommandFrame::reasons.
 enum LeggedReason : std::uint64_t {
   kReasonOutOfReach = 1u << 20,   ///< The pose is beyond the ranges of the legs.
   kReasonNotStanding = 1u << 21,  ///< A pose or a foot is requested, and it does not stand.
@@ -24,6 +24,8 @@ enum LeggedReason : std::uint64_t {
   kReasonLegSpeed = 1u << 23,     ///< The legs do not carry the body faster.
   kReasonNoPlan = 1u << 24,       ///< The forces of the feet have no solution: the last ones are in force.
   kReasonTooSteep = 1u << 25,     ///< It lies on a slope on which it does not stand up.
+  kReasonMetRiser = 1u << 26,     ///< A foot hit an obstacle and is lifted over it.
+  kReasonReaching = 1u << 27,     ///< A foot finds no ground where it was to land, and goes down.
 };
 
 /// The values of CommandFrame::stop_profile: how the robot lies down if the gate stops it.

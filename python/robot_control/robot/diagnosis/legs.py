@@ -5,7 +5,7 @@ from robot_control.robot.diagnosis.state import Facts, speeds
 
 REFUSALS = {"refused": "", "not_standing": "standing", "not_lying": "lying", "out_of_reach": "", "too_steep": ""}
 """Reason why a request is not executed → the posture that it needs."""
-LIMITS = ("no_plan", "leg_speed", "speed_limited", "permit_slow", "timed_out", "stale")
+LIMITS = ("no_plan", "leg_speed", "speed_limited", "permit_slow", "timed_out", "stale", "met_riser", "reaching")
 """Reasons why a walk differs from what is requested, or ends."""
 POSTURES = {"gathering": "the legs move to the lying posture", "rising": "standing up", "lowering": "lying down"}
 """The postures in which it moves by itself, in words."""

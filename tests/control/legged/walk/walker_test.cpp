@@ -100,6 +100,7 @@ TEST_F(WalkerTest, AFootThatMeetsARiserIsLiftedAgainFromThere) {
   EXPECT_NEAR(state.departs[1][2], height, 0.01) << "it begins where it is";
   EXPECT_GT(std::abs(state.departs[1][0] - ahead), 0.01) << "and backs off";
   EXPECT_EQ(state.departed[2], 0) << "the other foot swings on";
+  EXPECT_EQ(out.reasons, kReasonMetRiser);
 }
 
 TEST_F(WalkerTest, AFootThatFindsNoGroundIsNotThrownDown) {
@@ -111,8 +112,10 @@ TEST_F(WalkerTest, AFootThatFindsNoGroundIsNotThrownDown) {
   const double falls = -(body.jacobians[0] * Eigen::Map<const Eigen::Vector3d>(body.rates.data())).z();
   if (falls < 0) sensors.joints[2].velocity = -10;
   ASSERT_GT(std::abs(falls), 1);
+  EXPECT_EQ(out.reasons, 0u);
   ASSERT_TRUE(plan());
   EXPECT_LT(std::abs(out.joints[2].effort), 0.5 * bears);
+  EXPECT_EQ(out.reasons, kReasonReaching);
 }
 
 TEST_F(WalkerTest, AWalkThatEndsOnASlopeStandsParallelToIt) {
