@@ -1,5 +1,6 @@
 /// Claims about every drive of drive_table.def: the contract of a driver, and rest when its answers fail.
 
+#include <algorithm>
 #include <cmath>
 
 #include "drivers/driver_contract.h"
@@ -32,6 +33,7 @@ std::vector<MachineUnderTest> drives_with_torques() {
     if (drive.takes_speeds) continue;
     machines.push_back({.name = std::string(drive.row->name),
                         .make = [row = drive.row] { return std::make_unique<DriveMachine>(*row, false); },
+                        .joints = joints_of(example(drive.row->name)).size(),
                         .period = 1 / DriveMachine::kRate,
                         .effort_limit = 3,
                         .effort = 0.1,
@@ -57,7 +59,10 @@ struct EveryDrive : testing::TestWithParam<DriveUnderTest> {
                                      : JointCommand{.mode = JointMode::kVelocity, .velocity = kSpeed, .damping = 0.2};
     return machine_.cycles(static_cast<int>(std::lround(seconds * DriveMachine::kRate)), command).driver_state;
   }
-  bool turns() const { return std::abs(machine_.joints[0].velocity) + std::abs(machine_.joints[1].velocity) > 0.5; }
+  bool turns() const {
+    return std::ranges::any_of(machine_.joints,
+                               [](const JointSample& joint) { return std::abs(joint.velocity) > 0.5; });
+  }
 
   static constexpr double kSpeed = 5;  // rad/s
   DriveMachine machine_{*GetParam().row, GetParam().takes_speeds};
