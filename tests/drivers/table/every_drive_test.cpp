@@ -21,8 +21,8 @@ void PrintTo(const DriveUnderTest& drive, std::ostream* out) {
 std::vector<DriveUnderTest> all_drives() {
   std::vector<DriveUnderTest> drives;
   for (const DriveRow& row : kDriveRows) {
-    if (row.command == "any") drives.push_back({&row, false});
-    drives.push_back({&row, true});
+    if (row.command != "velocity") drives.push_back({&row, false});
+    if (row.command != "impedance") drives.push_back({&row, true});
   }
   return drives;
 }
@@ -35,7 +35,7 @@ std::vector<MachineUnderTest> drives_with_torques() {
                         .make = [row = drive.row] { return std::make_unique<DriveMachine>(*row, false); },
                         .joints = joints_of(example(drive.row->name)).size(),
                         .period = 1 / DriveMachine::kRate,
-                        .effort_limit = 3,
+                        .effort_limit = DriveMachine(*drive.row, false).file().capability(0).torque,
                         .effort = 0.1,
                         .damping = 0.5,
                         .stiffness = 5,
@@ -83,6 +83,7 @@ TEST_P(EveryDrive, IsAtRestWhileItsAnswersFailAndUntilTheReset) {
     EXPECT_EQ(run(2), DriverState::kFault);
     EXPECT_FALSE(turns());
     for (int i = 0; i < 20 && machine_.frame().driver_state == DriverState::kFault; ++i) {
+      machine_.turn_to_start();
       machine_.reset();
       run(1);
     }
