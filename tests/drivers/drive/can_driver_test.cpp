@@ -11,7 +11,7 @@
 
 namespace robot_control::tests {
 
-enum class TestedDialect { kOdrive, kCia402, kVesc };
+enum class TestedDialect { kOdrive, kCia402, kVesc, kDamiao };
 constexpr const char* kNames[] = {"odrive", "cia402", "vesc"};
 
 /// Two drives on devices in virtual time. A datagram socket stands between the driver and the bus.
@@ -27,13 +27,14 @@ class CanMachine final : public Driver {
       if (write_frame(frame) != sizeof frame) ADD_FAILURE() << "the wire is full";
     });
     rig_.host_lives = false;
-    const std::uint8_t first = dialect == TestedDialect::kCia402 ? 1 : 0;  // 0 is all nodes
+    const std::uint8_t first =
+        dialect == TestedDialect::kCia402 || dialect == TestedDialect::kDamiao ? 1 : 0;  // 0 is no node
     add(dialect, first);
     add(dialect, first + 1);
     // At the joint 0.0625 kg·m²: d h/J = 0.16.
     const Brake brake{.effort = 3, .hold_effort = 3, .damping = 10, .stiffness = 400, .hold_speed = 0.3};
     driver_.emplace(CanBusParameters{}, rig_.made_drives(), std::vector{brake, brake}, joints, kPeriod,
-                    CanSocket(ends[0]), [this] { return CanTime{.time_ns = rig_.now_ns(), .utc_ns = rig_.now_ns()}; });
+                    sockets(ends[0]), [this] { return CanTime{.time_ns = rig_.now_ns(), .utc_ns = rig_.now_ns()}; });
   }
   ~CanMachine() override { close(wire_); }
   CanMachine(const CanMachine&) = delete;
@@ -66,10 +67,16 @@ class CanMachine final : public Driver {
   CanDriver& driver() { return *driver_; }
 
  private:
+  static CanSockets sockets(int descriptor) {
+    CanSockets one;
+    one.emplace_back(descriptor);
+    return one;
+  }
   ssize_t write_frame(const can_frame& frame) const { return ::send(wire_, &frame, sizeof frame, 0); }
   void add(TestedDialect dialect, std::uint8_t node) {
     if (dialect == TestedDialect::kOdrive) robot_control::add(rig_, odrive_pair(node));
     if (dialect == TestedDialect::kCia402) robot_control::add(rig_, cia402_pair(node));
+    if (dialect == TestedDialect::kDamiao) robot_control::add(rig_, damiao_pair(node));
     if (dialect != TestedDialect::kVesc) return;
     VescPair pair = vesc_pair(node);
     pair.drive.drive.max_silence = 10;  // of 2 ms
@@ -210,6 +217,56 @@ TEST_P(CanDriverOn, BrakesAndHoldsOnASlope) {
   cycles(1000);
   const double held = cycle().joints[0].position;
   EXPECT_NEAR(cycles(1000).joints[0].position, held, 0.01);
+}
+
+/// Drives that close an impedance by themselves.
+struct CanDriverOfImpedances : ::testing::Test {
+  void SetUp() override { machine_.start(); }
+  SensorFrame cycles(int count, const JointCommand& command) {
+    SensorFrame frame;
+    for (int i = 0; i < count; ++i) {
+      machine_.read(frame);
+      machine_.write(std::vector<JointCommand>(2, command));
+    }
+    return frame;
+  }
+  /// N·m, of joint 0: the gear is 2.5.
+  double torque() { return 2.5 * std::abs(machine_.rig().motor(0).torque); }
+
+  CanMachine machine_{TestedDialect::kDamiao};
+};
+
+TEST_F(CanDriverOfImpedances, TheSumOfImpedanceAndTorqueIsWithinTheLimit) {
+  constexpr double kLimit = 4, kStep = 2.5 * 2 * 54 / 4095;  // N·m, of drive_parameters; of the protocol
+  const double position = cycles(1, {}).joints[0].position;
+  const JointCommand far{.mode = JointMode::kImpedance, .position = position + 10, .stiffness = 50, .effort = -2};
+  for (int i = 0; i < 20; ++i) {
+    cycles(1, far);
+    EXPECT_LE(torque(), kLimit + kStep);
+  }
+  EXPECT_GT(torque(), kLimit - kStep);
+}
+
+/// The motor computes its torque from its own motion, so the damping acts in the cycle of a push.
+TEST_F(CanDriverOfImpedances, TheDriveReactsWithoutTheDriver) {
+  const double position = cycles(1000, {}).joints[0].position;
+  const JointCommand held{.mode = JointMode::kImpedance, .position = position, .stiffness = 20, .damping = 1};
+  cycles(1000, held);
+  machine_.rig().motor(0).velocity = 2.5;  // rad/s; of the joint 1
+  machine_.rig().cycle();
+  EXPECT_NEAR(torque(), 1, 0.15);  // the push slows down by a tenth within the cycle
+}
+
+TEST_F(CanDriverOfImpedances, ReadAndWriteDoNotAllocate) {
+  const std::vector<JointCommand> commands(
+      2, {.mode = JointMode::kImpedance, .position = 0.1, .stiffness = 20, .damping = 1});
+  SensorFrame frame;
+  const AllocationGuard guard;
+  for (int i = 0; i < 100; ++i) {
+    machine_.read(frame);
+    machine_.write(commands);
+  }
+  EXPECT_EQ(guard.count(), 0u);
 }
 
 INSTANTIATE_TEST_SUITE_P(Dialects, CanDriverOn,

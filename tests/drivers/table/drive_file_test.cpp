@@ -1,12 +1,11 @@
 #include <filesystem>
-#include <fstream>
 #include <regex>
 
 #include "drivers/cia402/cia402_parameters.h"
+#include "drivers/damiao/damiao_parameters.h"
 #include "drivers/drive/can_drive_file.h"
 #include "drivers/odrive/odrive_parameters.h"
-#include "drivers/table/drive_table.h"
-#include "drivers/table/read_drive_file.h"
+#include "drivers/table/drive_machine.h"
 #include "drivers/vesc/vesc_parameters.h"
 #include "parameters/problem_list.h"
 #include "support/matchers.h"
@@ -37,12 +36,19 @@ left_wheel_joint: {node: 0}
 right_wheel_joint: {node: 1}
 )";
 
+constexpr const char* kDamiao = R"(
+bus: {dialect: damiao}
+every_joint: {position_range: 12.5, velocity_range: 45, torque_range: 54, torque_limit: 40, velocity_limit: 30}
+left_wheel_joint: {node: 1}
+right_wheel_joint: {node: 2}
+)";
+
 struct DriveFileTest : ::testing::Test {
   template <class File = DriveFile>
   const File& read(const std::string& text, double rate = 500, bool takes_speeds = false,
                    std::string_view driver = "can") {
     std::ofstream(path_) << text;
-    file_ = read_drive_file(path_, driver, {.joints = kWheels, .rate = rate, .takes_speeds = takes_speeds});
+    file_ = read_drive_file(path_, driver, {.joints = joints_, .rate = rate, .takes_speeds = takes_speeds});
     return dynamic_cast<const File&>(*file_);
   }
   std::string refusal(std::string text, const std::string& part, const std::string& replacement, double rate = 500) {
@@ -67,18 +73,18 @@ struct DriveFileTest : ::testing::Test {
     }
     return text;
   }
-  static std::string example(std::string_view name) {
-    return PROJECT_DIRECTORY "/config/drives/" + std::string(name) + ".yaml";
-  }
   void TearDown() override { std::filesystem::remove(path_); }
 
   std::string path_ = ::testing::TempDir() + "drives.yaml";
+  std::vector<std::string> joints_ = kWheels;
   std::unique_ptr<DriveFile> file_;
 };
 
 TEST_F(DriveFileTest, TheExamplesAreAccepted) {
   for (const DriveRow& row : kDriveRows)
-    EXPECT_NO_THROW(read_drive_file(example(row.name), row.driver, {.joints = kWheels, .rate = 1000})) << row.name;
+    EXPECT_NO_THROW(
+        read_drive_file(example(row.name), row.driver, {.joints = joints_of(example(row.name)), .rate = 1000}))
+        << row.name;
 }
 
 TEST_F(DriveFileTest, EveryJointHoldsForAllAndTheBlockOfAJointOutweighsIt) {
@@ -111,13 +117,14 @@ TEST_F(DriveFileTest, EverySpoiltLineOfTheExamplesIsNamed) {
   int spoilt = 0;
   for (const DriveRow& row : kDriveRows) {
     const std::string text = uncommented(row.name);
+    joints_ = joints_of(example(row.name));
     ASSERT_NO_THROW(read(text, 500, false, row.driver)) << text;
     for (std::size_t at = text.find("  "); at != std::string::npos; at = text.find("\n  ", at + 1)) {
       const std::size_t key = text.find_first_not_of(" \n", at);
       const std::size_t colon = text.find(':', key);
       const std::size_t end = text.find('\n', key);
       const std::string word = text.substr(key, colon - key);
-      if (word == "address") continue;  // Any text is an address.
+      if (word == "address" || word == "bus") continue;  // Any text is an address.
       std::string renamed = text;
       renamed.insert(colon, "_");
       EXPECT_THAT(refusal_of(renamed, 500, row.driver), HasSubstr(word + "_")) << word;
@@ -146,6 +153,29 @@ TEST_F(DriveFileTest, TwoJointsOfOneDriveAreRefused) {
   EXPECT_EQ(refusal(kCia402, "node: 2", "node: 1, axis: 1"), "");
 }
 
+TEST_F(DriveFileTest, AJointMayHaveABusOfItsOwn) {
+  const std::string text = std::string(kOdrive).replace(std::string(kOdrive).find("node: 1"), 7, "node: 0, bus: can1");
+  EXPECT_THAT(read<CanDriveFile>(text).drives().buses(), ElementsAre("can0", "can1"));
+  EXPECT_THAT(refusal(kOdrive, "node: 1", "node: 0, bus: can0"), HasSubstr("is the drive of left_wheel_joint, too"));
+}
+
+/// Two ODrives on one bus would need more than 70 % of it at 1500 Hz.
+TEST_F(DriveFileTest, EachBusIsLoadedByItsOwnDrives) {
+  EXPECT_THAT(refusal(kOdrive, "node: 1", "node: 1", 1500), HasSubstr("load the bus with"));
+  EXPECT_EQ(refusal(kOdrive, "node: 1", "node: 1, bus: can1", 1500), "");
+}
+
+TEST_F(DriveFileTest, MoreThanFourBusesAreRefused) {
+  std::string text =
+      "bus: {dialect: odrive}\nevery_joint: {torque_constant: 0.1, torque_limit: 3, velocity_limit: 30}\n";
+  joints_.clear();
+  for (const std::string number : {"0", "1", "2", "3", "4"}) {
+    joints_.push_back("joint_" + number);
+    text += joints_.back() + ": {node: 0, bus: can" + number + "}\n";
+  }
+  EXPECT_THAT(refusal_of(text), HasSubstr("bus.address = can0: the joints are on 5 buses, at most 4"));
+}
+
 TEST_F(DriveFileTest, WhatADialectCannotDoIsRefused) {
   EXPECT_THAT(refusal(kOdrive, "coasts", "holds"), HasSubstr("an ODrive releases the motor"));
   EXPECT_THAT(refusal(kOdrive, "node: 0", "node: 0, enable_watchdog_endpoint: 7"),
@@ -168,6 +198,37 @@ TEST_F(DriveFileTest, WhatAVescCannotDoIsRefused) {
               HasSubstr("left_wheel_joint.torque_constant: is missing: with robot.wheel_command: torque the currents "
                         "follow from it"));
   EXPECT_THAT(refusal(kVesc, "node: 1", "node: 1, status_period: 0.001", 1000), HasSubstr("load the bus with"));
+}
+
+TEST_F(DriveFileTest, WhatADamiaoCannotDoIsRefused) {
+  EXPECT_EQ(refusal(kDamiao, "node: 1", "node: 15"), "");
+  for (const std::string node : {"0", "16"}) {
+    EXPECT_THAT(refusal(kDamiao, "node: 1", "node: " + node),
+                HasSubstr("left_wheel_joint.node = " + node + ": must be 1 … 15"))
+        << node;
+  }
+  EXPECT_THAT(refusal(kDamiao, "node: 2", "node: 2, answers: 2"), HasSubstr("answers = 2: must not be its node"));
+  EXPECT_THAT(refusal(kDamiao, "torque_limit: 40", "torque_limit: 55"), HasSubstr("must be at most torque_range"));
+  EXPECT_THAT(refusal(kDamiao, "velocity_limit: 30", "velocity_limit: 30, gear: 2"),
+              HasSubstr("must be at most velocity_range / gear"));
+  EXPECT_THAT(refusal(kDamiao, "node: 1", "node: 1, min_voltage: 20"), HasSubstr("does not send its voltage"));
+  EXPECT_THAT(refusal(kDamiao, "node: 1", "node: 1, on_silence: coasts"), HasSubstr("must be left out"));
+  EXPECT_THAT(refusal(kDamiao, "node: 1", "node: 1, timeout: 0.019"), HasSubstr("must be at least ten periods"));
+}
+
+/// A command and its answer have at most 135 bits each.
+TEST_F(DriveFileTest, ABusCarriesThreeDamiaosAtAKilohertzAndSixAtHalf) {
+  std::string text =
+      "bus: {dialect: damiao}\n"
+      "every_joint: {position_range: 12.5, velocity_range: 45, torque_range: 54, torque_limit: 40, velocity_limit: "
+      "30}\n";
+  joints_.clear();
+  for (int node = 1; node <= 7; ++node) {
+    joints_.push_back("joint_" + std::to_string(node));
+    text += joints_.back() + ": {node: " + std::to_string(node) + "}\n";
+    EXPECT_EQ(refusal_of(text, 1000).empty(), node <= 3) << node;
+    EXPECT_EQ(refusal_of(text, 500).empty(), node <= 6) << node;
+  }
 }
 
 TEST_F(DriveFileTest, AVescThatTakesSpeedsNeedsNoTorqueConstant) {

@@ -1,0 +1,114 @@
+/// A robot on legs behind motors in MIT mode, which close the impedances of its joints, on four CAN buses.
+
+#include <filesystem>
+#include <fstream>
+#include <regex>
+
+#include "drivers/table/factory.h"
+#include "robots/quadruped_fixture.h"
+#include "simulation/machines/simulated_machine.h"
+#include "support/matchers.h"
+
+namespace robot_control::tests {
+
+Parameters behind_drives() {
+  Parameters parameters = QuadrupedLoop::parameters(0, ErrorLevel::kDataSheet);
+  parameters.drives = PROJECT_DIRECTORY "/config/drives/damiao.yaml";
+  return parameters;
+}
+
+/// Walks for 4 s, and expects 3 % of the way.
+void expect_walking(QuadrupedLoop& robot) {
+  robot.run(3.5, walk(0.5));
+  ASSERT_EQ(robot.loop.row().driver->sensors.driver_state, DriverState::kRunning) << robot.loop.warning();
+  robot.clear();
+  const Vector3 from = robot.truth().pose_world.position;
+  robot.run(4, walk(0.5));
+  const Vector3& to = robot.truth().pose_world.position;
+  EXPECT_NEAR(std::hypot(to[0] - from[0], to[1] - from[1]), 2, 0.06);
+  EXPECT_LT(robot.tilt, 0.05);
+}
+
+TEST(BehindDrives, ItStandsUpAndWalksAsAsked) {
+  QuadrupedLoop robot = loop_of(behind_drives());
+  EXPECT_EQ(robot.loop.row().driver->sensors.link_count, 4u);
+  expect_walking(robot);
+}
+
+TEST(BehindDrives, ItWalksOnWhileFramesAreLostAndLate) {
+  for (const std::string kind : {"lossy", "disturbed"}) {
+    QuadrupedLoop robot = loop_of(behind_drives());
+    robot.loop.inject_fault("bus", kind);
+    expect_walking(robot);
+  }
+}
+
+TEST(BehindDrives, ItWalksAgainAfterAResetOfTheSimulation) {
+  QuadrupedLoop robot = loop_of(behind_drives());
+  robot.run(5, walk(0.5));
+  robot.loop.reset();
+  robot.wait(0.3);
+  expect_walking(robot);
+}
+
+TEST(BehindDrives, ItFoldsUprightWhenADriveOrABusIsLost) {
+  const std::pair<std::string, std::string> losses[] = {{"bus", "off"},
+                                                        {"can1", "off"},
+                                                        {"front_left_knee_joint", "off"},
+                                                        {"rear_left_hip_joint", "released"},
+                                                        {"front_right_thigh_joint", "encoder"},
+                                                        {"rear_right_thigh_joint", "hot"},
+                                                        {"rear_right_knee_joint", "other_zero"}};
+  for (const auto& [component, kind] : losses) {
+    SCOPED_TRACE(component + " " + kind);
+    QuadrupedLoop robot = loop_of(behind_drives());
+    robot.run(5, walk(0.5));
+    ASSERT_EQ(robot.causes(), "");
+    robot.clear();
+    robot.loop.inject_fault(component, kind);
+    int cycles = 0;
+    for (; robot.causes().empty() && cycles < 100; ++cycles) robot.step();
+    EXPECT_LE(cycles, 20);
+    robot.wait(3);
+    EXPECT_THAT(robot.causes(), HasSubstr("driver_fault"));
+    EXPECT_LT(robot.tilt, 0.6);
+    EXPECT_LT(robot.tilt_now(), 0.2);
+    EXPECT_LT(robot.truth().pose_world.position[2], 0.05);
+    EXPECT_LT(robot.speed(), 0.01);
+  }
+}
+
+/// The driver and the simulated robot of another program meet on four buses without CAN.
+TEST(BehindDrives, AnotherProgramFindsThemOnEachBus) {
+  const std::string folder = testing::TempDir() + "leg_bus_";
+  const std::string path = testing::TempDir() + "leg_drives.yaml";
+  Parameters parameters = behind_drives();
+  std::ifstream example(parameters.drives);
+  const std::string text{std::istreambuf_iterator<char>(example), {}};
+  std::ofstream(path) << std::regex_replace(text, std::regex("can([0-3])"), "unix:" + folder + "$1");
+  parameters.drives = path;
+  const std::vector<Word> words = words_of(DriverName());
+  parameters.driver = static_cast<DriverName>(std::ranges::find(words, "can", &Word::text)->value);
+  const LegModel robot = legged_robot("quadbot");
+  const std::vector<Brake> brakes = Quadruped(parameters, robot).brakes();
+  std::int64_t now_ns = 0;
+  const auto machine = make_device_simulator(parameters, robot, brakes);
+  const auto driver = make_driver(parameters, robot, brakes, [&] { return CanTime{.time_ns = now_ns, .utc_ns = 0}; });
+  driver->start();
+  SensorFrame sensors;
+  for (int i = 0; i < 1000; ++i) {
+    driver->read(sensors);
+    driver->write(std::vector<JointCommand>(kLegsJoints));
+    machine->step();
+    now_ns += parameters.loop.period_ns();
+  }
+  EXPECT_EQ(sensors.driver_state, DriverState::kRunning) << driver->warning();
+  EXPECT_EQ(sensors.link_count, 4u);
+  for (std::size_t i = 0; i < kLegsJoints; ++i) {
+    EXPECT_NEAR(sensors.joints[i].position, robot.joints[i].rest_position, 0.02) << i;
+  }
+  std::filesystem::remove(path);
+  for (const char bus : {'0', '1', '2', '3'}) std::filesystem::remove_all(folder + bus);
+}
+
+}  // namespace robot_control::tests
