@@ -15,6 +15,7 @@
 #include "drivers/drive_motors.h"
 #include "drivers/driver.h"
 #include "drivers/line/can_bus.h"
+#include "drivers/line/datagram_line.h"
 #include "drivers/line/serial_line.h"
 #include "parameters/block.h"
 #include "rt/realtime_thread.h"
@@ -22,7 +23,7 @@
 namespace robot_control {
 
 /// The end of a line in this process.
-using LineEnd = std::variant<CanSocket, std::unique_ptr<SerialLine>>;
+using LineEnd = std::variant<CanSocket, std::unique_ptr<SerialLine>, std::unique_ptr<DatagramLine>>;
 
 /// States the present time; it is called in each cycle.
 using DriverClock = std::function<CanTime()>;
