@@ -60,9 +60,14 @@ inline void add_can_cycle(std::vector<Row>& rows, const std::string& name, const
   constexpr int kStart = 3'000;  // until the drives run
   const Line line, bare_line;
   const DriveMotors motors = drive_motors(robot, brakes_of_slow_drives(robot, period));
-  const auto front = make_front(can, {.motors = motors, .line = CanSocket(line.end(1))});
+  const auto sockets = [](int descriptor) {
+    CanSockets one;
+    one.emplace_back(descriptor);
+    return one;
+  };
+  const auto front = make_front(can, {.motors = motors, .line = sockets(line.end(1))});
   DeviceFront& devices = *front;
-  CanDriver driver(can.bus, can.drives(), motors.brakes, devices.size(), period, CanSocket(line.end(0)),
+  CanDriver driver(can.bus, can.drives(), motors.brakes, devices.size(), period, sockets(line.end(0)),
                    [&devices] { return CanTime{.time_ns = devices.now_ns(), .utc_ns = devices.now_ns()}; });
   BareFrames bare;
   SensorFrame sensors;

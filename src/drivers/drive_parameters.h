@@ -1,5 +1,5 @@
 #pragma once
-/// DriveParameters are common to all dialects: the node of a drive, its place at the joint, its limits, and its
+/// DriveParameters are common to all dialects: bus and node of a drive, its place at the joint, its limits, and its
 /// reaction on silence.
 
 #include <cstdint>
@@ -33,6 +33,7 @@ struct DriveParameters {
   static constexpr const char *kPlace = "node", *kMotor = "drive";
 
   std::string joint;               ///< name in the robot's model; the name of the block
+  std::string bus{};               ///< address of its bus (can_socket.h)
   std::uint64_t node = 0;          ///< of the drive on the bus
   std::int64_t direction = 1;      ///< 1 or −1: the joint turns with the motor, or against it
   double gear = 1;                 ///< turns of the motor per turn of the joint, or per metre
@@ -44,6 +45,10 @@ struct DriveParameters {
   bool takes_effort = false;       ///< beside a speed: it adds the torque of the command (kTakesEffort)
   bool measures_torque = true;     ///< else the effort is not known
   bool effort_is_rare = false;     ///< The torque is measured more rarely than in each cycle.
+  bool is_absolute = false;        ///< Its zero is that of the joint, moved by `offset`, at each power-on.
+  double offset = 0;               ///< rad, angle of the joint where an absolute drive reports 0
+  double max_stiffness = 0;        ///< N·m/rad, of the joint, of an impedance that the drive closes; 0: it closes none
+  double max_damping = 0;          ///< N·m·s/rad, likewise
   double position_step = 0;        ///< rad of the motor, by which a coarse position may move at rest
   double sample_period = 0;        ///< s between positions that the drive sends by itself; 0: one in each cycle
   std::uint64_t max_silence = 20;  ///< samples in a row that may be missing
@@ -55,6 +60,7 @@ struct DriveParameters {
 
 inline Keys keys(DriveParameters& drive) {
   return {
+      {"bus", &drive.bus, {}, 0, 0, kOptional},
       {"node", &drive.node, {}, 0, 254},
       {"direction", &drive.direction, {}, -1, 1, kOptional},
       {"gear", &drive.gear, "turns of the motor per turn of the joint", 1.0e-3, 1.0e5, kOptional},

@@ -10,6 +10,7 @@
 #include "control/legged/stand/nominal_stance.h"
 #include "control/legged/walk/gait.h"
 #include "control/legged/walk/walking_speed.h"
+#include "drivers/table/read_drive_file.h"
 #include "estimation/legged/legged_estimator.h"
 #include "parameters/problem_list.h"
 #include "safety/conditions/legged/legged_conditions.h"
@@ -30,6 +31,31 @@ LegAngles upright(const Leg& leg, double height) noexcept {
   return leg.kinematics.inverse(foot).angles;
 }
 
+/// Throws ParameterError unless the drives close the impedance of each joint and have its limits.
+void require_drives(const Parameters& parameters, const LegModel& machine) {
+  std::vector<std::string> joints;
+  for (const JointModel& joint : machine.joints) joints.push_back(joint.name);
+  const std::unique_ptr<DriveFile> file = read_drive_file(parameters, joints);
+  if (!file->closes_impedance()) {
+    throw ParameterError("robot.drives = " + parameters.drives + ": " + std::string(file->request().drive) +
+                         " drives do not close the impedance of a joint by themselves, and a robot on legs needs it. "
+                         "Use drives that do (docs/drivers.md)");
+  }
+  std::string problems;
+  const auto add = [&](const JointModel& joint, const char* key, double of_drive, double of_joint) {
+    if (of_drive >= of_joint) return;
+    problems += (problems.empty() ? "" : "\n") + parameters.drives + ": " + joint.name + "." + key + " = " +
+                shortest(of_drive) + ": must be at least the limit of the joint, " + shortest(of_joint) +
+                ", with which the robot plans; set a lower limit in the URDF, or use a stronger drive";
+  };
+  for (std::size_t i = 0; i < machine.joints.size(); ++i) {
+    const DriveCapability drive = file->capability(i);
+    add(machine.joints[i], "torque_limit", drive.torque, machine.joints[i].effort_limit);
+    add(machine.joints[i], "velocity_limit", drive.velocity, machine.joints[i].velocity_limit);
+  }
+  if (!problems.empty()) throw ParameterError(problems);
+}
+
 }  // namespace
 
 Quadruped::Quadruped(const Parameters& parameters, const LegModel& machine)
@@ -40,10 +66,7 @@ void Quadruped::require_drivable() const {
     throw ParameterError(
         "robot.fail_action = coast: without torque, a robot on legs falls. Remove it: the robot then folds its legs");
   }
-  if (parameters_.driver != DriverName::kMujoco || !parameters_.drives.empty()) {
-    throw ParameterError(
-        "robot.driver: motor drives support only robots on wheels. Remove robot.driver and robot.drives");
-  }
+  if (!parameters_.drives.empty()) require_drives(parameters_, machine_);
   if (parameters_.loop.rate < kMinWalkingRate) {
     throw ParameterError("robot.rate = " + shortest(parameters_.loop.rate) + " Hz: a robot on legs falls below " +
                          shortest(kMinWalkingRate) +
@@ -92,6 +115,19 @@ std::unique_ptr<MonitorLaw> Quadruped::make_monitor() const {
 MachineNeeds Quadruped::needs() const {
   return {.modes = {JointMode::kBrake, JointMode::kImpedance},
           .inputs = {MachineInput::kJointMotion, MachineInput::kJointEffort, MachineInput::kImu}};
+}
+
+std::vector<Brake> Quadruped::brakes() const {
+  const LegTuning tuning = leg_tuning(machine_);
+  std::vector<Brake> brakes;
+  for (const JointModel& joint : machine_.joints) {
+    brakes.push_back({.effort = joint.effort_limit,
+                      .hold_effort = joint.effort_limit,
+                      .damping = tuning.damping,
+                      .stiffness = tuning.stiffness,
+                      .hold_speed = kHoldSpeed});
+  }
+  return brakes;
 }
 
 GateParameters Quadruped::gate() const {

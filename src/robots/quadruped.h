@@ -28,6 +28,7 @@ class Quadruped : public Robot {
   static constexpr double kWalkingFoldTime = 0.2;  ///< s
   static constexpr double kBrakeTime = 1.5;        ///< s
   static constexpr double kFoldStiffness = 3;      ///< as damping its root
+  static constexpr double kHoldSpeed = 0.03;       ///< rad/s, below which the brake of a drive holds its joint
 
   Quadruped(const Parameters& parameters, const LegModel& machine);
 
@@ -39,6 +40,7 @@ class Quadruped : public Robot {
   std::unique_ptr<ControllerLaw> make_controller() const override;
   std::unique_ptr<MonitorLaw> make_monitor() const override;
   MachineNeeds needs() const override;
+  std::vector<Brake> brakes() const override;
   GateParameters gate() const override;
 
  private:

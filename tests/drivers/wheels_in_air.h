@@ -1,5 +1,6 @@
 #pragma once
-/// Two wheels in the air, moved by the torques of a simulated Board, behind Inner, its driver.
+/// Wheels in the air, two unless their number is given, moved by the torques of a simulated Board, behind Inner, its
+/// driver.
 
 #include <memory>
 #include <span>
@@ -32,11 +33,11 @@ class WheelsInAir : public Driver {
   std::string description() const override { return driver_->description(); }
   std::string warning() const override { return driver_->warning(); }
 
-  /// Runs `count` cycles with one command for both wheels; returns the last frame.
+  /// Runs `count` cycles with one command for all wheels; returns the last frame.
   const SensorFrame& cycles(int count, const JointCommand& command = {}) {
     for (int i = 0; i < count; ++i) {
       read(frame_);
-      write(std::vector<JointCommand>(2, command));
+      write(std::vector<JointCommand>(joints.size(), command));
     }
     return frame_;
   }
@@ -54,10 +55,10 @@ class WheelsInAir : public Driver {
   Board& board() { return *board_; }
   double period() const { return period_; }
 
-  std::vector<JointSample> joints = std::vector<JointSample>(2);
+  std::vector<JointSample> joints;
 
  protected:
-  explicit WheelsInAir(double period) : period_(period) {}
+  explicit WheelsInAir(double period, std::size_t wheels = 2) : joints(wheels), period_(period) {}
 
   void start(int max_cycles) {
     driver_->start();

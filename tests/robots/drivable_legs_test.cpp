@@ -1,5 +1,8 @@
 /// A robot on legs that cannot stand is refused.
 
+#include <filesystem>
+#include <fstream>
+
 #include "robots/quadruped_fixture.h"
 #include "support/matchers.h"
 #include "support/message_of.h"
@@ -41,6 +44,33 @@ TEST(Quadruped, IsRefusedIfItsKneeDoesNotBearATrot) {
   EXPECT_THAT(refusal_of(robot),
               HasSubstr("the knee rear_left_knee_joint needs 6.99 N·m for half of the weight, as in a trot: "
                         "0.66 of its effort limit, at most 0.65. Give"));
+}
+
+std::string refusal_with(const std::string& drives) {
+  Parameters parameters = QuadrupedLoop::parameters(0, ErrorLevel::kIdeal);
+  parameters.drives = drives;
+  parameters.loop.rate = 500;
+  return message_of<ParameterError>([&] { Quadruped(parameters, legged_robot("quadbot")).require_drivable(); }, "");
+}
+
+TEST(Quadruped, IsRefusedBehindDrivesThatDoNotCloseAnImpedance) {
+  const std::string path = testing::TempDir() + "odrives.yaml";
+  std::ofstream file(path);
+  file << "bus: {dialect: odrive}\n"
+          "every_joint: {torque_constant: 0.1, torque_limit: 36, velocity_limit: 30, on_silence: coasts}\n";
+  int number = 0;
+  for (const JointModel& joint : legged_robot("quadbot").joints) {
+    file << joint.name << ": {node: " << number << ", bus: can" << number / 3 << "}\n";
+    ++number;
+  }
+  file.close();
+  EXPECT_THAT(refusal_with(path), HasSubstr("odrive drives do not close the impedance of a joint by themselves"));
+  std::filesystem::remove(path);
+}
+
+TEST(Quadruped, IsRefusedIfTheDriveFileDoesNotMoveAllJoints) {
+  EXPECT_THAT(refusal_with(PROJECT_DIRECTORY "/config/drives/odrive.yaml"),
+              AllOf(HasSubstr("left_wheel_joint: unknown block"), HasSubstr("rear_right_knee_joint.node: missing")));
 }
 
 }  // namespace robot_control::tests

@@ -89,19 +89,23 @@ void Cia402File::check(const Cia402Parameters& joint, JointValues& values) const
 DriveSet cia402_drives(const std::vector<Cia402Parameters>& joints, std::uint8_t host_node, double period) {
   std::vector<std::unique_ptr<Drive>> made;
   std::vector<Cia402Drive*> added;
+  std::vector<std::string> buses;
   double timeout = joints.empty() ? 1 : joints[0].host_timeout;
   for (std::size_t i = 0; i < joints.size(); ++i) {
     auto drive = std::make_unique<Cia402Drive>(joints[i], host_node, period);
     for (std::size_t j = 0; j < i; ++j) {
-      if (joints[j].drive.node != joints[i].drive.node) continue;
+      if (joints[j].drive.bus != joints[i].drive.bus || joints[j].drive.node != joints[i].drive.node) continue;
       const bool second = joints[i].axis != 0;
       Cia402Drive::join(second ? *added[j] : *drive, second ? *drive : *added[j]);
     }
     added.push_back(drive.get());
     made.push_back(std::move(drive));
     timeout = std::min(timeout, joints[i].host_timeout);
+    bus_index(buses, joints[i].drive.bus);
   }
-  return DriveSet(std::move(made), std::make_unique<CanopenHost>(host_node, timeout));
+  std::vector<std::unique_ptr<BusHost>> hosts;
+  for (std::size_t i = 0; i < buses.size(); ++i) hosts.push_back(std::make_unique<CanopenHost>(host_node, timeout));
+  return DriveSet(std::move(made), std::move(hosts));
 }
 
 }  // namespace cia402

@@ -1,5 +1,7 @@
 #pragma once
-/// A CanDriveFile is the drive file of drives on a CAN bus: a block `bus`, and one block per joint.
+/// A CanDriveFile is the drive file of drives on CAN: a block `bus`, and one block per joint. A robot with more than
+/// one bus names the address of a joint's bus beside its node. `bus.address` is that of the other joints, and all buses
+/// have `bus.bit_rate`.
 
 #include <string>
 #include <vector>
@@ -7,6 +9,7 @@
 #include "drivers/drive/drive_file.h"
 #include "drivers/drive/drive_set.h"
 #include "drivers/drive_parameters.h"
+#include "drivers/line/can_load.h"
 #include "parameters/block.h"
 
 namespace robot_control {
@@ -48,13 +51,18 @@ class CanDriveFile : public DriveFile {
   Keys line_keys() override { return keys(bus); }
   std::optional<Overload> overload() override;
   const std::string& address() const override { return bus.address; }
-  LineEnd open_line(RealtimePolicy /*policy*/, const DriverClock& /*clock*/) const override {
-    return CanSocket::open(bus.address);
-  }
+  LineEnd open_line(RealtimePolicy /*policy*/, const DriverClock& /*clock*/) const override { return open_buses(); }
+  bool closes_impedance() const override;
   std::unique_ptr<Driver> make_driver(const DriveMotors& motors, LineEnd line, DriverClock clock) const override;
 
   /// Returns the drives of all joints.
   virtual DriveSet drives() const = 0;
+
+  /// Opens the buses in the order of DriveSet::buses. Throws DriverError.
+  CanSockets open_buses() const;
+
+  /// Returns the part of the bit rate that the planned frames may need.
+  virtual double max_load() const { return kMaxBusLoad; }
 
   CanBusParameters bus;
 
@@ -69,6 +77,16 @@ class CanFileOf : public FileOfJoints<CanDriveFile, Parameters> {
  public:
   explicit CanFileOf(DriveFileRequest request) : FileOfJoints<CanDriveFile, Parameters>(std::move(request)) {
     this->every_.drive.takes_speeds = this->request().takes_speeds;
+  }
+
+  Keys every_keys() override {
+    this->every_.drive.bus = this->bus.address;
+    return FileOfJoints<CanDriveFile, Parameters>::every_keys();
+  }
+
+ private:
+  bool same_line(const Parameters& joint, const Parameters& other) const override {
+    return joint.drive.bus == other.drive.bus;
   }
 };
 

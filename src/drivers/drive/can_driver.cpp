@@ -32,16 +32,19 @@ const char* why_no_velocity(VelocitySource source) noexcept {
 }  // namespace
 
 CanDriver::CanDriver(CanBusParameters parameters, DriveSet drives, std::span<const Brake> brakes,
-                     std::size_t joint_count, double period, CanSocket socket, DriverClock clock)
+                     std::size_t joint_count, double period, CanSockets sockets, DriverClock clock)
     : joint_count_(joint_count),
-      bus_(std::move(socket)),
       parameters_(std::move(parameters)),
       drives_(std::move(drives)),
       takes_speeds_(drives_.size() > 0 && drives_[0].drive_parameters().takes_speeds),
-      load_(bus_load(drives_.plan(), 1 / period, parameters_.bit_rate)),
       clock_(std::move(clock)),
       brakes_(brakes.begin(), brakes.end()),
-      commands_(drives_.size()) {
+      commands_(drives_.size()),
+      send_(sockets.size()) {
+  for (CanSocket& socket : sockets) {
+    load_ = std::max(load_, bus_load(drives_.plan(lines_.size()), 1 / period, parameters_.bit_rate));
+    lines_.emplace_back(std::move(socket));
+  }
   for (std::size_t i = 0; i < drives_.size(); ++i) {
     laws_.emplace_back(brakes[i], drives_[i].drive_parameters().torque_limit);
   }
@@ -58,14 +61,14 @@ bool CanDriver::measures(MachineInput input) const noexcept {
 void CanDriver::stop() noexcept {
   stopped_ = true;
   if (state_ != DriverState::kRunning) return;
-  std::ranges::fill(commands_, DriveCommand{.enabled = true});
+  for (std::size_t i = 0; i < drives_.size(); ++i) commands_[i] = {.enabled = true, .damping = brakes_[i].damping};
   send_commands(clock_().time_ns);
 }
 
 void CanDriver::send_commands(std::int64_t now_ns) noexcept {
-  send_.clear();
+  for (FrameBatch& batch : send_) batch.clear();
   drives_.step(commands_, now_ns, send_);
-  bus_.send(send_.frames());
+  for (std::size_t i = 0; i < lines_.size(); ++i) lines_[i].bus.send(send_[i].frames());
 }
 
 void CanDriver::start() {
@@ -101,15 +104,20 @@ void CanDriver::judge_faults() noexcept {
   }
 }
 
+void CanDriver::receive(std::size_t line, const CanTime& now) noexcept {
+  CanBus& bus = lines_[line].bus;
+  for (int i = 0; i < kMaxBatches; ++i) {
+    const ReceivedFrames received = bus.receive(now);
+    for (const ReceivedFrame& each : received.frames) drives_.receive(each.frame, each.stamp_ns, line);
+    if (!received.more) break;
+  }
+  lines_[line].watch.step(bus, now.time_ns);
+}
+
 void CanDriver::read(SensorFrame& sensors) noexcept {
   const CanTime now = clock_();
   now_ns_ = now.time_ns;
-  for (int i = 0; i < kMaxBatches; ++i) {
-    const ReceivedFrames received = bus_.receive(now);
-    for (const ReceivedFrame& each : received.frames) drives_.receive(each.frame, each.stamp_ns);
-    if (!received.more) break;
-  }
-  watch_.step(bus_, now_ns_);
+  for (std::size_t i = 0; i < lines_.size(); ++i) receive(i, now);
   judge_faults();
   sensors.driver_state = state_;
   sensors.faults = faults_;
@@ -130,18 +138,16 @@ void CanDriver::read(SensorFrame& sensors) noexcept {
     if (sample.voltage > 0) sensors.battery_voltage = sample.voltage;
   }
   if (sensors.battery_voltage > 0) sensors.valid |= kValidBattery;
-  sensors.link_count = 1;
-  sensors.links[0] = link();
+  sensors.link_count = lines_.size();
+  for (std::size_t i = 0; i < lines_.size(); ++i) {
+    const CanCounts& counts = lines_[i].bus.counts();
+    sensors.links[i] = {.state = lines_[i].watch.status().state,
+                        .sent = counts.sent,
+                        .lost = counts.refused + counts.lost,
+                        .late = 0,
+                        .errors = counts.errors + counts.error_frames + counts.malformed};
+  }
   publish_statuses();
-}
-
-LinkStatus CanDriver::link() const noexcept {
-  const CanCounts& counts = bus_.counts();
-  return {.state = watch_.status().state,
-          .sent = counts.sent,
-          .lost = counts.refused + counts.lost,
-          .late = 0,
-          .errors = counts.errors + counts.error_frames + counts.malformed};
 }
 
 void CanDriver::publish_statuses() noexcept {
@@ -152,14 +158,15 @@ void CanDriver::publish_statuses() noexcept {
     changed = true;
   };
   for (std::size_t i = 0; i < drives_.size(); ++i) update(statuses_.drives[i], drives_[i].full_status());
-  update(statuses_.bus, watch_.status());
+  for (std::size_t i = 0; i < lines_.size(); ++i) update(statuses_.buses[i], lines_[i].watch.status());
   if (changed) published_statuses_.store(statuses_);
 }
 
 std::string CanDriver::description() const {
   std::ostringstream text;
-  text << word_of(parameters_.dialect) << (takes_speeds_ ? " that takes speeds" : "") << " on " << parameters_.address
-       << " at " << parameters_.bit_rate / 1000 << " kbit/s, load at most " << std::lround(100 * load_) << " %";
+  text << word_of(parameters_.dialect) << (takes_speeds_ ? " that takes speeds" : "") << " on ";
+  for (const std::string& bus : drives_.buses()) text << (&bus == &drives_.buses().front() ? "" : ", ") << bus;
+  text << " at " << parameters_.bit_rate / 1000 << " kbit/s, load at most " << std::lround(100 * load_) << " %";
   Statuses statuses;
   if (!published_statuses_.load(statuses)) return text.str();
   for (std::size_t i = 0; i < drives_.size(); ++i) {
@@ -185,7 +192,12 @@ std::string CanDriver::description() const {
 std::string CanDriver::warning() const {
   Statuses statuses;
   if (!published_statuses_.load(statuses)) return "";
-  std::string text = robot_control::words(statuses.bus);
+  std::string text;
+  for (std::size_t i = 0; i < lines_.size(); ++i) {
+    const std::string words = robot_control::words(statuses.buses[i]);
+    if (words.empty()) continue;
+    text += (text.empty() ? "" : ". ") + (lines_.size() > 1 ? drives_.buses()[i] + ", " : "") + words;
+  }
   for (std::size_t i = 0; i < drives_.size(); ++i) {
     const DriveStatus& status = statuses.drives[i];
     if (status.state == DrivePhase::kRunning) continue;
@@ -207,8 +219,30 @@ DriveCommand CanDriver::wanted(std::size_t joint, const JointCommand& command) n
   } else {
     const JointSample now = at_time(sample, now_ns_);
     wanted.torque = laws_[joint].step(command, now.position, now.velocity);
+    add_impedance(joint, command, now, wanted);
   }
   return wanted;
+}
+
+void CanDriver::add_impedance(std::size_t joint, const JointCommand& command, const JointSample& now,
+                              DriveCommand& wanted) const noexcept {
+  const DriveParameters& drive = drives_[joint].drive_parameters();
+  if (drive.max_stiffness == 0 || std::abs(wanted.torque) >= drive.torque_limit) return;
+  switch (finite(command) ? command.mode : JointMode::kBrake) {
+    case JointMode::kEffort:
+      return;
+    case JointMode::kImpedance:
+      wanted.stiffness = std::min(command.stiffness, drive.max_stiffness);
+      wanted.position = command.position;
+      [[fallthrough]];
+    case JointMode::kVelocity:
+      wanted.damping = std::min(command.damping, drive.max_damping);
+      wanted.speed = command.velocity;
+      break;
+    default:
+      wanted.damping = std::min(brakes_[joint].damping, drive.max_damping);
+  }
+  wanted.torque -= wanted.stiffness * (wanted.position - now.position) + wanted.damping * (wanted.speed - now.velocity);
 }
 
 void CanDriver::write(std::span<const JointCommand> commands) noexcept {

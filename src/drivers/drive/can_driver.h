@@ -1,5 +1,5 @@
 #pragma once
-/// Motor drives on one CAN bus as a Driver.
+/// Motor drives on one to kMaxLinks CAN buses as a Driver.
 ///
 /// `start` returns at once; `read` reports kStarting until all drives are running, so that the brake of the driver
 /// holds from kRunning on. A fault of a drive stays until the operator's reset, or the next `start`. Meanwhile the
@@ -13,8 +13,14 @@
 /// is computed here from the newest sample (drivers/joint_law.h). The sample is one or two cycles old, and is brought
 /// to the time of the call by its velocity. With an inertia J at the joint and the period h, the brake's damping d is
 /// stable below d h / J = 0.6. Half of that is recommended.
+///
+/// A drive that closes an impedance (DriveParameters::max_stiffness) is given stiffness, damping and their targets. The
+/// torque beside them is what is missing from the law's torque at the time of the call. So the sum is within the
+/// joint's limit, and gains beyond those of the drive act with the delay of the sample. A torque at its limit is given
+/// alone. It brakes with the damping of its Brake.
 
 #include <array>
+#include <deque>
 #include <span>
 #include <string>
 #include <vector>
@@ -34,8 +40,9 @@ class CanDriver final : public Driver {
  public:
   /// The drives move the first joints of a robot that has `joint_count`; the others have no sample. `brakes`: one per
   /// drive. `clock` states the present time and is called in each cycle.
+  /// `sockets`: one for each of `drives.buses()`.
   CanDriver(CanBusParameters parameters, DriveSet drives, std::span<const Brake> brakes, std::size_t joint_count,
-            double period, CanSocket socket, DriverClock clock);
+            double period, CanSockets sockets, DriverClock clock);
 
   void start() override;
   void reset() noexcept override {
@@ -49,43 +56,51 @@ class CanDriver final : public Driver {
   bool accepts(JointMode mode) const noexcept override { return accepted(mode, takes_speeds_); }
   bool measures(MachineInput input) const noexcept override;
 
-  /// Returns the bus with its load, and what each joint does on silence.
+  /// Returns the buses with their greatest load, and what each joint does on silence.
   std::string description() const override;
 
-  /// Returns what is wrong with the bus, and the words of every drive that is not running; any thread may call it.
+  /// Returns what is wrong with the buses, and the words of every drive that is not running; any thread may call it.
   std::string warning() const override;
 
   const DriveSet& drives() const noexcept { return drives_; }
-  const CanBus& bus() const noexcept { return bus_; }
+  const CanBus& bus(std::size_t i = 0) const noexcept { return lines_[i].bus; }
 
  private:
   static constexpr int kMaxBatches = 8;  // of frames in one cycle, so that a flooded bus does not stop the loop
 
   struct Statuses {
     std::array<DriveStatus, kMaxJoints> drives{};
-    BusStatus bus;
+    std::array<BusStatus, kMaxLinks> buses{};
+  };
+
+  struct Line {
+    explicit Line(CanSocket socket) : bus(std::move(socket)) {}
+
+    CanBus bus;
+    BusWatch watch;
   };
 
   void begin() noexcept;
   void send_commands(std::int64_t now_ns) noexcept;
   bool all_are(DrivePhase state) const noexcept;
-  LinkStatus link() const noexcept;
+  void receive(std::size_t line, const CanTime& now) noexcept;
   void publish_statuses() noexcept;
   void judge_faults() noexcept;
   DriveCommand wanted(std::size_t joint, const JointCommand& command) noexcept;
+  void add_impedance(std::size_t joint, const JointCommand& command, const JointSample& now,
+                     DriveCommand& wanted) const noexcept;
 
   std::size_t joint_count_;
-  CanBus bus_;
-  BusWatch watch_;
+  std::deque<Line> lines_;  // of each bus; a CanBus does not move
   CanBusParameters parameters_;
   DriveSet drives_;
   bool takes_speeds_;
-  double load_;  // of the bus, planned
+  double load_ = 0;  // the greatest one of a bus, planned
   DriverClock clock_;
   std::vector<Brake> brakes_;
   std::vector<JointLaw> laws_;
   std::vector<DriveCommand> commands_;
-  FrameBatch send_;
+  std::vector<FrameBatch> send_;  // of each bus
   Statuses statuses_{};
   LatestValue<Statuses> published_statuses_;
   DriverState state_ = DriverState::kStarting;

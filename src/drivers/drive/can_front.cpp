@@ -12,32 +12,47 @@ namespace robot_control {
 
 namespace {
 
-/// Returns the devices' end; that of the driver goes to `driver_end` where the line is in virtual time.
-CanSocket devices_end(std::optional<LineEnd> line, std::optional<CanSocket>& driver_end) {
-  if (line) return std::get<CanSocket>(std::move(*line));
-  std::array<int, 2> ends{};
-  if (socketpair(AF_UNIX, SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0, ends.data()) != 0)
-    throw DriverError(std::string("no socket for the line to the simulated drives: ") + std::strerror(errno));
-  driver_end.emplace(CanSocket::line_end(ends[0]));
-  return CanSocket::line_end(ends[1]);
+/// Returns the devices' ends; those of the driver go to `driver_ends` where the lines are in virtual time.
+CanSockets devices_ends(std::optional<LineEnd> line, std::size_t buses, CanSockets& driver_ends) {
+  if (line) return std::get<CanSockets>(std::move(*line));
+  CanSockets devices;
+  for (std::size_t i = 0; i < buses; ++i) {
+    std::array<int, 2> ends{};
+    if (socketpair(AF_UNIX, SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0, ends.data()) != 0)
+      throw DriverError(std::string("no socket for the line to the simulated drives: ") + std::strerror(errno));
+    driver_ends.push_back(CanSocket::line_end(ends[0]));
+    devices.push_back(CanSocket::line_end(ends[1]));
+  }
+  return devices;
 }
 
 }  // namespace
 
-CanFront::CanFront(const CanDriveFile& file, FrontSetup setup)
-    : bus_(file.bus.bit_rate, setup.seed),
-      line_(devices_end(std::move(setup.line), driver_end_)),
-      period_ns_(std::llround(1.0e9 * file.request().period())),
-      joints_(file.request().joints),
-      host_(bus_.join([this](const can_frame& frame, std::int64_t now_ns) { carry(frame, now_ns); })),
-      random_(setup.seed) {}
+CanFront::Bus::Bus(const CanDriveFile& file, std::string bus_address, CanSocket socket, std::uint64_t seed)
+    : address(std::move(bus_address)),
+      can(file.bus.bit_rate, seed),
+      line(std::move(socket)),
+      host(can.join([this](const can_frame& frame, std::int64_t now_ns) { carry(frame, now_ns); })),
+      random(seed) {}
 
-void CanFront::carry(can_frame frame, std::int64_t now_ns) {
-  if (fault_ == AnswerFault::kLost) return;
-  const auto bit = static_cast<unsigned>(fault_ == AnswerFault::kDamaged ? random_() % 64 : 64);
+CanFront::CanFront(const CanDriveFile& file, FrontSetup setup)
+    : period_ns_(std::llround(1.0e9 * file.request().period())), joints_(file.request().joints) {
+  const std::vector<std::string> addresses = file.drives().buses();
+  CanSockets ends = devices_ends(std::move(setup.line), addresses.size(), driver_ends_);
+  for (std::size_t i = 0; i < addresses.size(); ++i)
+    buses_.emplace_back(file, addresses[i], std::move(ends[i]), setup.seed + i);
+}
+
+VirtualCan& CanFront::bus(const std::string& address) {
+  return std::ranges::find(buses_, address, &Bus::address)->can;
+}
+
+void CanFront::Bus::carry(can_frame frame, std::int64_t now_ns) {
+  if (fault == AnswerFault::kLost) return;
+  const auto bit = static_cast<unsigned>(fault == AnswerFault::kDamaged ? random() % 64 : 64);
   if (bit / 8 < frame.len) frame.data[bit / 8] ^= static_cast<std::uint8_t>(1U << bit % 8);
-  if (fault_ == AnswerFault::kShifted) std::rotate(frame.data, frame.data + 7, frame.data + 8);
-  answers_.push_back({frame, now_ns + (fault_ == AnswerFault::kLate ? kLateAnswerNs : 0)});
+  if (fault == AnswerFault::kShifted) std::rotate(frame.data, frame.data + 7, frame.data + 8);
+  answers.push_back({frame, now_ns + (fault == AnswerFault::kLate ? kLateAnswerNs : 0)});
 }
 
 DeviceMotor& CanFront::add_motor(const DriveParameters& joint) {
@@ -53,27 +68,34 @@ void CanFront::add_device(std::unique_ptr<Device> device, std::span<const std::s
 }
 
 void CanFront::run(std::span<const JointSample> joints) {
-  const std::int64_t now_ns = bus_.now_ns();
-  for (bool more = true; more;) {
-    const ReceivedFrames received = line_.receive({.time_ns = now_ns, .utc_ns = now_ns});
-    for (const ReceivedFrame& each : received.frames) bus_.send(host_, each.frame);
-    more = received.more;
+  const std::int64_t begin_ns = now_ns();
+  for (Bus& bus : buses_) {
+    for (bool more = true; more;) {
+      const ReceivedFrames received = bus.line.receive({.time_ns = begin_ns, .utc_ns = begin_ns});
+      for (const ReceivedFrame& each : received.frames) bus.can.send(bus.host, each.frame);
+      more = received.more;
+    }
   }
   run_devices(joints);
-  std::vector<can_frame> arrived;
-  for (; !answers_.empty() && answers_.front().due_ns <= now_ns + period_ns_; answers_.pop_front())
-    arrived.push_back(answers_.front().frame);
-  line_.send(arrived);
+  for (Bus& bus : buses_) {
+    std::vector<can_frame> arrived;
+    for (; !bus.answers.empty() && bus.answers.front().due_ns <= begin_ns + period_ns_; bus.answers.pop_front())
+      arrived.push_back(bus.answers.front().frame);
+    bus.line.send(arrived);
+  }
 }
 
 /// Meanwhile the joints move on with their velocity.
 void CanFront::run_devices(std::span<const JointSample> joints) {
-  const std::int64_t begin_ns = bus_.now_ns();
+  const std::int64_t begin_ns = now_ns();
   const std::int64_t until_ns = begin_ns + period_ns_;
   const auto seconds = [](std::int64_t ns) { return 1.0e-9 * static_cast<double>(ns); };
   std::ranges::fill(torques_, 0);
+  const auto advance = [this](std::int64_t to_ns) {
+    std::ranges::for_each(buses_, [to_ns](Bus& bus) { bus.can.advance(to_ns); });
+  };
   for (std::int64_t now_ns = begin_ns; now_ns < until_ns;) {
-    bus_.advance(now_ns);
+    advance(now_ns);
     for (std::size_t i = 0; i < motors_.size(); ++i) {
       motors_[i]->position = to_motor_[i] * (joints[i].position + joints[i].velocity * seconds(now_ns - begin_ns));
       motors_[i]->velocity = to_motor_[i] * joints[i].velocity;
@@ -84,29 +106,39 @@ void CanFront::run_devices(std::span<const JointSample> joints) {
     for (std::size_t i = 0; i < motors_.size(); ++i) torques_[i] += share * to_motor_[i] * motors_[i]->torque;
     now_ns = next_ns;
   }
-  bus_.advance(until_ns);
+  advance(until_ns);
+}
+
+void CanFront::Bus::inject(std::string_view kind, std::int64_t period_ns) {
+  const bool disturbed = kind == "disturbed";
+  fault = answer_fault(kind);
+  can.connect(host, kind != "off");
+  can.lose(kind == "lossy" || disturbed ? kFrameLoss : 0);
+  can.delay(disturbed ? period_ns : 0);
 }
 
 std::string CanFront::inject(std::string_view component, std::string_view kind) {
+  constexpr std::array<std::string_view, 4> kBusFaults{"ok", "off", "lossy", "disturbed"};
   const std::vector<Word> words = words_of(DeviceFault());
   const auto word = std::ranges::find(words, kind, &Word::text);
   const auto joint = std::ranges::find(joints_, component);
-  const AnswerFault answers = answer_fault(kind);
-  const auto is = [kind](auto... of_bus) { return ((kind == of_bus) || ...); };
-  if (component == "bus" && (is("ok", "off", "lossy", "disturbed") || answers != AnswerFault::kNone)) {
-    fault_ = answers;
-    bus_.connect(host_, kind != "off");
-    bus_.lose(is("lossy", "disturbed") ? kFrameLoss : 0);
-    bus_.delay(is("disturbed") ? period_ns_ : 0);
-    return "";
+  const bool of_bus =
+      std::ranges::find(kBusFaults, kind) != kBusFaults.end() || answer_fault(kind) != AnswerFault::kNone;
+  bool done = false;
+  for (Bus& bus : buses_) {
+    if (!of_bus || (component != "bus" && component != bus.address)) continue;
+    bus.inject(kind, period_ns_);
+    done = true;
   }
+  if (done) return "";
   if (joint != joints_.end() && word != words.end()) {
     const auto index = static_cast<std::size_t>(joint - joints_.begin());
     devices_.at(device_of_.at(index))->inject(static_cast<DeviceFault>(word->value));
     return "";
   }
-  std::string problem =
-      std::string("component must be bus (with ok, off, lossy, disturbed, ") + kAnswerFaultWords + ")";
+  std::string problem = "component must be bus";
+  for (const Bus& bus : buses_) problem += buses_.size() > 1 ? ", " + bus.address : "";
+  problem += std::string(" (with ok, off, lossy, disturbed, ") + kAnswerFaultWords + ")";
   for (const std::string& name : joints_) problem += ", " + name;
   problem += "; kind";
   for (const Word& each : words) problem += " " + std::string(each.text);

@@ -1,12 +1,14 @@
 #pragma once
-/// A CanFront is the simulated drives of a drive file on a CAN bus in virtual time. Each is set up as its drive file
-/// expects it. Their clocks run fast and slow by kClockPpm in turn.
+/// A CanFront is the simulated drives of a drive file on its CAN buses in virtual time. Each is set up as its drive
+/// file expects it. Their clocks run fast and slow by kClockPpm in turn.
 ///
-/// `inject` takes a joint or `bus` as the component. The kinds of the bus are ok, off, lossy and disturbed. Off means
+/// `inject` takes a joint, the address of a bus, or `bus` for all of them as the component. The kinds of a bus are ok,
+/// off, lossy and disturbed. Off means
 /// that the driver's cable is out, lossy that frames are lost with the probability kFrameLoss. On a disturbed bus the
 /// others are late as well, by up to one period. With a word of AnswerFault this happens to the frames to the driver.
 /// A fault of a drive with two axes belongs to both.
 
+#include <algorithm>
 #include <deque>
 #include <map>
 #include <memory>
@@ -32,7 +34,7 @@ class CanFront final : public DeviceFront {
   static constexpr double kClockPpm = 200;
   static constexpr double kFrameLoss = 0.05;  ///< of a lossy bus
 
-  /// Without devices. `setup.line` is the end of the line that is not the driver's.
+  /// Without devices. `setup.line` holds the ends of the lines that are not the driver's.
   CanFront(const CanDriveFile& file, FrontSetup setup);
   CanFront(const CanFront&) = delete;
   CanFront& operator=(const CanFront&) = delete;
@@ -42,11 +44,12 @@ class CanFront final : public DeviceFront {
   /// Adds a device that turns the motors of these joints. Its clock runs fast by `next_clock_ppm`.
   void add_device(std::unique_ptr<Device> device, std::span<const std::size_t> joints);
   double next_clock_ppm() const noexcept { return devices_.size() % 2 == 0 ? kClockPpm : -kClockPpm; }
-  VirtualCan& bus() noexcept { return bus_; }
+  /// Returns the bus with this address.
+  VirtualCan& bus(const std::string& address);
 
   std::size_t size() const override { return motors_.size(); }
-  std::int64_t now_ns() const override { return bus_.now_ns(); }
-  LineEnd driver_end() override { return std::move(*driver_end_); }
+  std::int64_t now_ns() const override { return buses_.front().can.now_ns(); }
+  LineEnd driver_end() override { return std::move(driver_ends_); }
   void run(std::span<const JointSample> joints) override;
   double torque(std::size_t joint) const override { return torques_.at(joint); }
   std::string inject(std::string_view component, std::string_view kind) override;
@@ -57,18 +60,27 @@ class CanFront final : public DeviceFront {
     std::int64_t due_ns = 0;
   };
 
-  void carry(can_frame frame, std::int64_t now_ns);
+  /// A bus with the devices' end of its line.
+  struct Bus {
+    Bus(const CanDriveFile& file, std::string bus_address, CanSocket socket, std::uint64_t seed);
+    void carry(can_frame frame, std::int64_t now_ns);
+    void inject(std::string_view kind, std::int64_t period_ns);
+
+    std::string address;
+    VirtualCan can;
+    CanBus line;
+    std::size_t host;            // the driver's party on the simulated bus
+    std::deque<Answer> answers;  // on their way to the driver
+    AnswerFault fault = AnswerFault::kNone;
+    std::mt19937_64 random;
+  };
+
   void run_devices(std::span<const JointSample> joints);
 
-  VirtualCan bus_;
-  std::optional<CanSocket> driver_end_;  // of a line in virtual time
-  CanBus line_;
+  CanSockets driver_ends_;  // of lines in virtual time
+  std::deque<Bus> buses_;   // A Bus does not move.
   std::int64_t period_ns_;
   std::vector<std::string> joints_;
-  std::size_t host_;            // the driver's party on the simulated bus
-  std::deque<Answer> answers_;  // on their way to the driver
-  AnswerFault fault_ = AnswerFault::kNone;
-  std::mt19937_64 random_;
 
   std::vector<double> to_motor_;  // motor angle / joint angle
   std::vector<std::unique_ptr<DeviceMotor>> motors_;
@@ -92,10 +104,10 @@ std::unique_ptr<DeviceFront> one_device_per_node(const DriveFile& file, FrontSet
   const std::vector<Brake>& brakes = setup.motors.brakes;
   auto front = std::make_unique<CanFront>(drives, std::move(setup));
   std::vector<DeviceMotor*> motors;
-  std::map<std::uint64_t, std::map<decltype(joints[0].place()), std::size_t>> nodes;
+  std::map<std::pair<std::string, std::uint64_t>, std::map<decltype(joints[0].place()), std::size_t>> nodes;
   for (std::size_t i = 0; i < joints.size(); ++i) {
     motors.push_back(&front->add_motor(joints[i].drive));
-    nodes[joints[i].drive.node][joints[i].place()] = i;
+    nodes[{joints[i].drive.bus, joints[i].drive.node}][joints[i].place()] = i;
   }
   for (const auto& [node, axes] : nodes) {
     std::vector<std::size_t> of_node;
@@ -105,11 +117,12 @@ std::unique_ptr<DeviceFront> one_device_per_node(const DriveFile& file, FrontSet
       its_motors.push_back(motors[joint]);
     }
     const std::size_t first = of_node.front();
+    VirtualCan& bus = front->bus(node.first);
     const Of device = device_of(joints[first], brakes[first], front->next_clock_ppm());
     if constexpr (std::is_constructible_v<Device, Of, VirtualCan&, DeviceMotor&>) {
-      front->add_device(std::make_unique<Device>(device, front->bus(), *its_motors.front()), of_node);
+      front->add_device(std::make_unique<Device>(device, bus, *its_motors.front()), of_node);
     } else {
-      front->add_device(std::make_unique<Device>(device, front->bus(), its_motors), of_node);
+      front->add_device(std::make_unique<Device>(device, bus, its_motors), of_node);
     }
   }
   return front;

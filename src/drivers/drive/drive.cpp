@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace robot_control {
 namespace {
@@ -30,6 +31,7 @@ Drive::Drive(DriveParameters parameters, double period)
     : period_ns_(std::llround(1.0e9 * period)),
       drive_(std::move(parameters)),
       to_joint_(static_cast<double>(drive_.direction) / drive_.gear),
+      zero_(drive_.offset),
       position_(sample_period_ns()) {}
 
 void Drive::step(const DriveCommand& command, std::int64_t now_ns, FrameBatch& send) noexcept {
@@ -42,6 +44,9 @@ void Drive::step(const DriveCommand& command, std::int64_t now_ns, FrameBatch& s
   DriveCommand limited = command;
   limited.torque = within(command.torque, drive_.torque_limit);
   limited.speed = within(command.speed, drive_.velocity_limit);
+  limited.stiffness = std::fmax(0, within(command.stiffness, drive_.max_stiffness));
+  limited.damping = std::fmax(0, within(command.damping, drive_.max_damping));
+  limited.position = within(command.position, std::numeric_limits<double>::max());
   advance(limited, now_ns, send);
   note_order(status().state == DrivePhase::kRunning ? limited.torque : 0);
 }
@@ -49,7 +54,7 @@ void Drive::step(const DriveCommand& command, std::int64_t now_ns, FrameBatch& s
 void Drive::begin(bool reset, std::int64_t now_ns) noexcept {
   forget();
   sample_ = {};
-  zero_ = 0;
+  zero_ = drive_.offset;
   position_.clear();
   difference_.clear();
   on_silence_ = {};
@@ -105,7 +110,7 @@ bool Drive::accept_motion(double position, double velocity, std::int64_t now_ns)
   const double maximum = 2 * drive_.velocity_limit * std::fmax(elapsed, 2 * drive_.sample_period) +
                          std::abs(to_joint_) * drive_.position_step;
   if (sample_.valid && std::abs(moved) > maximum) {
-    if (status().state >= DrivePhase::kRunning) {
+    if (status().state >= DrivePhase::kRunning || drive_.is_absolute) {
       fail(DriveCause::kPositionJump, "position", 0, moved, maximum);
     } else {
       zero_ -= moved;

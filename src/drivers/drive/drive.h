@@ -8,10 +8,11 @@
 /// gets no torque.
 ///
 /// In `starting` a drive may be absent for any time. In `ready` the motor has no torque. A position that jumps before
-/// `running` is that of another zero, and the joint's continues. A fault is left by the
-/// operator's reset alone, with which the start-up begins again. One reset is one attempt: the drive is asked at most
-/// kMaxClears times to clear its errors. A fault that remains waits for the next reset. Position, velocity and torque
-/// belong to the joint: motor angle = direction · gear · joint angle, motor torque = direction · joint torque / gear.
+/// `running` is that of another zero, and the joint's continues; that of an absolute drive is a fault. A fault is left
+/// by the operator's reset alone, with which the start-up begins again. One reset is one attempt: the drive is asked at
+/// most kMaxClears times to clear its errors. A fault that remains waits for the next reset. Position, velocity and
+/// torque belong to the joint: motor angle = direction · gear · joint angle, motor torque = direction · joint torque /
+/// gear.
 
 #include <array>
 #include <cstdint>
@@ -35,6 +36,10 @@ struct DriveCommand {
   double torque = 0;     ///< N·m or N, of the joint; applied in `running` alone; a drive that takes speeds may add it
   double speed = 0;      ///< rad/s or m/s, of the joint, for a drive that takes speeds; the same
   double brake_torque = 0, brake_damping = 0;  ///< N·m, N·m·s/rad, of the joint, of a drive that brakes by itself
+
+  /// The impedance of a drive that closes it (max_stiffness). It adds τ = stiffness · (position − q) + damping ·
+  /// (speed − q̇) to `torque`. Units are N·m/rad, rad, N·m·s/rad and rad/s, of the joint.
+  double stiffness = 0, position = 0, damping = 0;
 };
 
 struct DriveSample {
@@ -123,6 +128,8 @@ class Drive : public DriveStateMachine {
   void accept_voltage(double voltage) noexcept;
   double motor_torque(double joint_torque) const noexcept { return to_joint_ * joint_torque; }
   double motor_speed(double joint_speed) const noexcept { return joint_speed / to_joint_; }
+  double motor_position(double joint_position) const noexcept { return (joint_position - zero_) / to_joint_; }
+  double motor_gain(double joint_gain) const noexcept { return joint_gain * to_joint_ * to_joint_; }
   std::int64_t sample_period_ns() const noexcept;
   std::int64_t max_silence_ns() const noexcept {
     return static_cast<std::int64_t>(drive_.max_silence) * sample_period_ns();

@@ -22,8 +22,9 @@
 
 namespace robot_control {
 
-/// The end of a line in this process.
-using LineEnd = std::variant<CanSocket, std::unique_ptr<SerialLine>, std::unique_ptr<DatagramLine>>;
+/// The end of a line in this process: of each CAN bus, of a serial line, or of a line of datagrams.
+using CanSockets = std::vector<CanSocket>;
+using LineEnd = std::variant<CanSockets, std::unique_ptr<SerialLine>, std::unique_ptr<DatagramLine>>;
 
 /// States the present time; it is called in each cycle.
 using DriverClock = std::function<CanTime()>;
@@ -86,6 +87,9 @@ class DriveFile {
 
   virtual DriveCapability capability(std::size_t joint) const = 0;
 
+  /// Returns whether each drive closes the impedance of its joint (JointMode::kImpedance) by itself.
+  virtual bool closes_impedance() const { return false; }
+
   /// Returns how old in s the samples may become without a fault of the robot, by the nature of the line.
   virtual double tolerated_silence() const { return 0; }
 
@@ -132,7 +136,8 @@ class FileOfJoints : public Base {
     check(joints_[joint], values);
     for (std::size_t other = 0; other < joint; ++other) {
       const auto& before = common_of(joints_[other]);
-      if (joints_[joint].place() == joints_[other].place() && values.accepted(before.kPlace))
+      if (same_line(joints_[joint], joints_[other]) && joints_[joint].place() == joints_[other].place() &&
+          values.accepted(before.kPlace))
         values.refuse(before.kPlace, "is the " + std::string(before.kMotor) + " of " + before.joint + ", too",
                       "each joint has its own");
     }
@@ -147,6 +152,8 @@ class FileOfJoints : public Base {
   const std::vector<Joint>& joints() const noexcept { return joints_; }
 
  protected:
+  /// Returns whether the two joints have one line, on which their places differ.
+  virtual bool same_line(const Joint& /*joint*/, const Joint& /*other*/) const { return true; }
   /// The rules of this drive.
   virtual void check(const Joint& /*joint*/, JointValues& /*values*/) const {}
 

@@ -1,7 +1,9 @@
 #pragma once
-/// The drives of one bus, in the order of the robot's joints, and what their host sends to all of them.
+/// The drives of one robot in the order of its joints, on one or more buses. A host may send frames to a whole bus.
 
 #include <memory>
+#include <span>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -19,26 +21,33 @@ class BusHost {
 
 class DriveSet {
  public:
-  explicit DriveSet(std::vector<std::unique_ptr<Drive>> drives, std::unique_ptr<BusHost> host = nullptr)
-      : drives_(std::move(drives)), host_(std::move(host)) {}
+  /// `hosts`: none, or one for each of `buses`.
+  explicit DriveSet(std::vector<std::unique_ptr<Drive>> drives, std::vector<std::unique_ptr<BusHost>> hosts = {});
 
   std::size_t size() const noexcept { return drives_.size(); }
   Drive& operator[](std::size_t joint) noexcept { return *drives_[joint]; }
   const Drive& operator[](std::size_t joint) const noexcept { return *drives_[joint]; }
 
-  void receive(const can_frame& frame, std::int64_t now_ns) noexcept {
-    for (const auto& drive : drives_) drive->receive(frame, now_ns);
-  }
-  /// Runs one cycle, with one command per joint.
-  void step(std::span<const DriveCommand> commands, std::int64_t now_ns, FrameBatch& send) noexcept;
+  /// Returns the addresses of the buses, in the order of their first joints. There is at least one.
+  const std::vector<std::string>& buses() const noexcept { return buses_; }
+
+  void receive(const can_frame& frame, std::int64_t now_ns, std::size_t bus = 0) noexcept;
+
+  /// Runs one cycle, with one command per joint and one batch per bus.
+  void step(std::span<const DriveCommand> commands, std::int64_t now_ns, std::span<FrameBatch> send) noexcept;
 
   /// Returns all frames that are regularly on the bus.
-  std::vector<PlannedFrames> plan() const;
+  std::vector<PlannedFrames> plan(std::size_t bus = 0) const;
 
  private:
   std::vector<std::unique_ptr<Drive>> drives_;
-  std::unique_ptr<BusHost> host_;  // null: it sends nothing
+  std::vector<std::string> buses_;
+  std::vector<std::size_t> bus_of_;              // each drive
+  std::vector<std::unique_ptr<BusHost>> hosts_;  // of each bus; none: they send nothing
 };
+
+/// Returns the number of the address among `buses`, to which a new one is added.
+std::size_t bus_index(std::vector<std::string>& buses, const std::string& address);
 
 /// Returns one drive per joint. `period` is that of the loop in s.
 template <class DriveType, class Parameters>

@@ -134,17 +134,17 @@ double bus_load(std::span<const PlannedFrames> plan, double rate, double bit_rat
 }
 
 std::optional<std::string> bus_load_problem(std::span<const PlannedFrames> plan, double rate, double bit_rate,
-                                            double min_rate) {
+                                            double min_rate, double max_load) {
   const double load = bus_load(plan, rate, bit_rate);
-  if (load <= kMaxBusLoad) return std::nullopt;
+  if (load <= max_load) return std::nullopt;
   const Bits bits = bits_of(plan);
-  const double fits = bits.per_cycle > 0 ? std::floor((kMaxBusLoad * bit_rate - bits.per_second) / bits.per_cycle) : 0;
+  const double fits = bits.per_cycle > 0 ? std::floor((max_load * bit_rate - bits.per_second) / bits.per_cycle) : 0;
   const std::string problem = formatted(
       "the planned frames load the bus with %.0f %% of %.0f kbit/s at a robot.rate of %g Hz, more than %.0f %%: ",
-      100 * load, bit_rate / 1000, rate, 100 * kMaxBusLoad);
+      100 * load, bit_rate / 1000, rate, 100 * max_load);
   if (fits >= min_rate) return problem + formatted("set robot.rate to at most %.0f", fits);
-  return problem + formatted("no robot.rate fits; set a bit rate of at least %.0f kbit/s, or use two buses",
-                             std::ceil((bits.per_cycle * min_rate + bits.per_second) / kMaxBusLoad / 1000));
+  return problem + formatted("no robot.rate fits; set a bit rate of at least %.0f kbit/s, or use more buses",
+                             std::ceil((bits.per_cycle * min_rate + bits.per_second) / max_load / 1000));
 }
 
 }  // namespace robot_control

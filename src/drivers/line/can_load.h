@@ -38,9 +38,9 @@ inline constexpr double kMaxBusLoad =
 /// Returns the share of the bit rate, with worst-case stuffing. `rate` is the loop's in Hz, `bit_rate` in bit/s.
 double bus_load(std::span<const PlannedFrames> plan, double rate, double bit_rate) noexcept;
 
-/// Returns nothing if the load is at most kMaxBusLoad. Otherwise returns the message of the refusal, which names the
+/// Returns nothing if the load is at most `max_load`. Otherwise returns the message of the refusal, which names the
 /// largest whole robot.rate that fits. If none of at least `min_rate` fits, it names the bit rate that is needed.
 std::optional<std::string> bus_load_problem(std::span<const PlannedFrames> plan, double rate, double bit_rate,
-                                            double min_rate);
+                                            double min_rate, double max_load = kMaxBusLoad);
 
 }  // namespace robot_control

@@ -14,7 +14,7 @@ std::unique_ptr<DeviceFront> make_front(const DriveFile& file, FrontSetup setup)
 }
 
 LineEnd open_devices_end(const DriveFile& file) {
-  if (dynamic_cast<const CanDriveFile*>(&file) != nullptr) return CanSocket::open(file.address());
+  if (const auto* can = dynamic_cast<const CanDriveFile*>(&file)) return can->open_buses();
   if (dynamic_cast<const DatagramDriveFile*>(&file) != nullptr) return UdpSocket::device_end(file.address());
   return std::make_unique<PseudoTerminal>(file.address());
 }

@@ -10,7 +10,7 @@ namespace robot_control {
 /// Returns the devices that the file describes.
 std::unique_ptr<DeviceFront> make_front(const DriveFile& file, FrontSetup setup);
 
-/// Returns the devices' end of a true line at the address of the file. Throws DriverError.
+/// Returns the devices' end of the true lines at the addresses of the file. Throws DriverError.
 LineEnd open_devices_end(const DriveFile& file);
 
 }  // namespace robot_control

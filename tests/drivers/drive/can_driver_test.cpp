@@ -33,7 +33,7 @@ class CanMachine final : public Driver {
     // At the joint 0.0625 kg·m²: d h/J = 0.16.
     const Brake brake{.effort = 3, .hold_effort = 3, .damping = 10, .stiffness = 400, .hold_speed = 0.3};
     driver_.emplace(CanBusParameters{}, rig_.made_drives(), std::vector{brake, brake}, joints, kPeriod,
-                    CanSocket(ends[0]), [this] { return CanTime{.time_ns = rig_.now_ns(), .utc_ns = rig_.now_ns()}; });
+                    sockets(ends[0]), [this] { return CanTime{.time_ns = rig_.now_ns(), .utc_ns = rig_.now_ns()}; });
   }
   ~CanMachine() override { close(wire_); }
   CanMachine(const CanMachine&) = delete;
@@ -66,6 +66,11 @@ class CanMachine final : public Driver {
   CanDriver& driver() { return *driver_; }
 
  private:
+  static CanSockets sockets(int descriptor) {
+    CanSockets one;
+    one.emplace_back(descriptor);
+    return one;
+  }
   ssize_t write_frame(const can_frame& frame) const { return ::send(wire_, &frame, sizeof frame, 0); }
   void add(TestedDialect dialect, std::uint8_t node) {
     if (dialect == TestedDialect::kOdrive) robot_control::add(rig_, odrive_pair(node));

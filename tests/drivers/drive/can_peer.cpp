@@ -56,7 +56,7 @@ void run_drives(const std::string& file, double rate, const std::vector<std::str
     line >> now_ns >> command.enabled >> command.reset >> command.torque;
     for (std::string frame; line >> frame;) drives.receive(frame_from(frame), now_ns);
     send.clear();
-    drives.step(std::vector(drives.size(), command), now_ns, send);
+    drives.step(std::vector(drives.size(), command), now_ns, {&send, 1});
     for (const can_frame& frame : send.frames()) print(frame);
     const JointSample& joint = drives[0].sample().joint;
     std::printf("| %.9g %.9g %.9g | ", joint.position, joint.velocity, joint.effort);

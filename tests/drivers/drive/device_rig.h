@@ -97,7 +97,7 @@ class DeviceRig {
     send_.clear();
     for (const Received& each : received_) drives().receive(each.frame, each.stamp_ns);
     received_.clear();
-    drives().step(commands, now_ns_, send_);
+    drives().step(commands, now_ns_, {&send_, 1});
     for (const can_frame& frame : send_.frames()) bus_.send(host_, frame);
   }
   void advance() {

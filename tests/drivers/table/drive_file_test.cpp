@@ -1,12 +1,10 @@
 #include <filesystem>
-#include <fstream>
 #include <regex>
 
 #include "drivers/cia402/cia402_parameters.h"
 #include "drivers/drive/can_drive_file.h"
 #include "drivers/odrive/odrive_parameters.h"
-#include "drivers/table/drive_table.h"
-#include "drivers/table/read_drive_file.h"
+#include "drivers/table/drive_machine.h"
 #include "drivers/vesc/vesc_parameters.h"
 #include "parameters/problem_list.h"
 #include "support/matchers.h"
@@ -42,7 +40,7 @@ struct DriveFileTest : ::testing::Test {
   const File& read(const std::string& text, double rate = 500, bool takes_speeds = false,
                    std::string_view driver = "can") {
     std::ofstream(path_) << text;
-    file_ = read_drive_file(path_, driver, {.joints = kWheels, .rate = rate, .takes_speeds = takes_speeds});
+    file_ = read_drive_file(path_, driver, {.joints = joints_, .rate = rate, .takes_speeds = takes_speeds});
     return dynamic_cast<const File&>(*file_);
   }
   std::string refusal(std::string text, const std::string& part, const std::string& replacement, double rate = 500) {
@@ -67,18 +65,18 @@ struct DriveFileTest : ::testing::Test {
     }
     return text;
   }
-  static std::string example(std::string_view name) {
-    return PROJECT_DIRECTORY "/config/drives/" + std::string(name) + ".yaml";
-  }
   void TearDown() override { std::filesystem::remove(path_); }
 
   std::string path_ = ::testing::TempDir() + "drives.yaml";
+  std::vector<std::string> joints_ = kWheels;
   std::unique_ptr<DriveFile> file_;
 };
 
 TEST_F(DriveFileTest, TheExamplesAreAccepted) {
   for (const DriveRow& row : kDriveRows)
-    EXPECT_NO_THROW(read_drive_file(example(row.name), row.driver, {.joints = kWheels, .rate = 1000})) << row.name;
+    EXPECT_NO_THROW(
+        read_drive_file(example(row.name), row.driver, {.joints = joints_of(example(row.name)), .rate = 1000}))
+        << row.name;
 }
 
 TEST_F(DriveFileTest, EveryJointHoldsForAllAndTheBlockOfAJointOutweighsIt) {
@@ -111,13 +109,14 @@ TEST_F(DriveFileTest, EverySpoiltLineOfTheExamplesIsNamed) {
   int spoilt = 0;
   for (const DriveRow& row : kDriveRows) {
     const std::string text = uncommented(row.name);
+    joints_ = joints_of(example(row.name));
     ASSERT_NO_THROW(read(text, 500, false, row.driver)) << text;
     for (std::size_t at = text.find("  "); at != std::string::npos; at = text.find("\n  ", at + 1)) {
       const std::size_t key = text.find_first_not_of(" \n", at);
       const std::size_t colon = text.find(':', key);
       const std::size_t end = text.find('\n', key);
       const std::string word = text.substr(key, colon - key);
-      if (word == "address") continue;  // Any text is an address.
+      if (word == "address" || word == "bus") continue;  // Any text is an address.
       std::string renamed = text;
       renamed.insert(colon, "_");
       EXPECT_THAT(refusal_of(renamed, 500, row.driver), HasSubstr(word + "_")) << word;
@@ -144,6 +143,29 @@ TEST_F(DriveFileTest, TwoJointsOfOneDriveAreRefused) {
   EXPECT_THAT(refusal(kOdrive, "node: 1", "node: 0"), HasSubstr("is the drive of left_wheel_joint, too"));
   EXPECT_THAT(refusal(kCia402, "node: 2", "node: 1"), HasSubstr("is the drive of left_wheel_joint, too"));
   EXPECT_EQ(refusal(kCia402, "node: 2", "node: 1, axis: 1"), "");
+}
+
+TEST_F(DriveFileTest, AJointMayHaveABusOfItsOwn) {
+  const std::string text = std::string(kOdrive).replace(std::string(kOdrive).find("node: 1"), 7, "node: 0, bus: can1");
+  EXPECT_THAT(read<CanDriveFile>(text).drives().buses(), ElementsAre("can0", "can1"));
+  EXPECT_THAT(refusal(kOdrive, "node: 1", "node: 0, bus: can0"), HasSubstr("is the drive of left_wheel_joint, too"));
+}
+
+/// Two ODrives on one bus would need more than 70 % of it at 1500 Hz.
+TEST_F(DriveFileTest, EachBusIsLoadedByItsOwnDrives) {
+  EXPECT_THAT(refusal(kOdrive, "node: 1", "node: 1", 1500), HasSubstr("load the bus with"));
+  EXPECT_EQ(refusal(kOdrive, "node: 1", "node: 1, bus: can1", 1500), "");
+}
+
+TEST_F(DriveFileTest, MoreThanFourBusesAreRefused) {
+  std::string text =
+      "bus: {dialect: odrive}\nevery_joint: {torque_constant: 0.1, torque_limit: 3, velocity_limit: 30}\n";
+  joints_.clear();
+  for (const std::string number : {"0", "1", "2", "3", "4"}) {
+    joints_.push_back("joint_" + number);
+    text += joints_.back() + ": {node: 0, bus: can" + number + "}\n";
+  }
+  EXPECT_THAT(refusal_of(text), HasSubstr("bus.address = can0: the joints are on 5 buses, at most 4"));
 }
 
 TEST_F(DriveFileTest, WhatADialectCannotDoIsRefused) {
