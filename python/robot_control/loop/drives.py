@@ -9,7 +9,8 @@ from robot_control.installed_files import share_file
 
 @dataclass(frozen=True)
 class DriveRow:
-    """One drive: its name, the word of robot.driver, and what it takes: `any`, or the one robot.wheel_command."""
+    """One drive: its name, the word of robot.driver, and what it takes: `any`, the one robot.wheel_command, or
+    `impedance`."""
 
     name: str
     driver: str
@@ -17,8 +18,8 @@ class DriveRow:
 
     @property
     def wheel_commands(self) -> tuple[str, ...]:
-        """The values of robot.wheel_command that it takes."""
-        return ("torque", "velocity") if self.command == "any" else (self.command,)
+        """The values of robot.wheel_command that it takes; none of a drive of legs."""
+        return {"any": ("torque", "velocity"), "impedance": ()}.get(self.command, (self.command,))
 
 
 _TABLE = Path(share_file("src/drivers/drive_table.def")).read_text(encoding="utf-8")

@@ -20,10 +20,9 @@ constexpr std::uint32_t kTickNs = 1000;
 
 }  // namespace
 
-UnitreeLeggedFront::UnitreeLeggedFront(UnitreeLeggedParameters parameters, std::vector<double> effort_limits,
-                                       double period, std::uint64_t seed, std::unique_ptr<DatagramLine> true_line)
+UnitreeLeggedFront::UnitreeLeggedFront(UnitreeLeggedParameters parameters, double period, std::uint64_t seed,
+                                       std::unique_ptr<DatagramLine> true_line)
     : parameters_(std::move(parameters)),
-      effort_limits_(std::move(effort_limits)),
       period_ns_(std::llround(1.0e9 * period)),
       true_line_(std::move(true_line)),
       torques_(parameters_.joints.size()) {
@@ -78,7 +77,8 @@ double UnitreeLeggedFront::motor_torque(std::size_t joint) const {
     if (command.q < unitree::kNoPosition) torque += command.kp * (double{command.q} - double{motor.q});
     if (command.dq < unitree::kNoVelocity) torque += command.kd * (double{command.dq} - double{motor.dq});
   }
-  return std::clamp(torque, -effort_limits_[joint], effort_limits_[joint]);
+  const double limit = parameters_.joints[joint].torque_limit;
+  return std::clamp(torque, -limit, limit);
 }
 
 void UnitreeLeggedFront::run(std::span<const JointSample> joints) {
@@ -155,8 +155,7 @@ std::unique_ptr<DeviceFront> make_unitree_legged_front(const DriveFile& file, Fr
   std::unique_ptr<DatagramLine> line;
   if (setup.line) line = std::get<std::unique_ptr<DatagramLine>>(std::move(*setup.line));
   return std::make_unique<UnitreeLeggedFront>(dynamic_cast<const UnitreeLeggedFile&>(file).parameters(),
-                                              setup.motors.effort_limits, file.request().period(), setup.seed,
-                                              std::move(line));
+                                              file.request().period(), setup.seed, std::move(line));
 }
 
 }  // namespace robot_control

@@ -1,7 +1,7 @@
 #pragma once
 /// A UnitreeLeggedFront is a simulated Go1 at its low level, before the motors of a simulated robot. It answers each
 /// LowCmd with a LowState kAnswerNs later. A motor gives torque = tau + kp (q − q_motor) + kd (dq − q̇_motor), within the
-/// effort limit of its joint. After kSilenceNs without a command it damps: an assumption, because what the robot does is
+/// torque_limit of the drive file. After kSilenceNs without a command it damps: an assumption, because what the robot does is
 /// not documented.
 ///
 /// `inject` takes `robot`, `motor` or `line` as the component; the line has faults in virtual time alone.
@@ -27,8 +27,9 @@ class UnitreeLeggedFront final : public DeviceFront {
   static constexpr std::int64_t kBootNs = 300'000'000;
   static constexpr double kSilentDamping = 2;  ///< N·m·s/rad
 
-  UnitreeLeggedFront(UnitreeLeggedParameters parameters, std::vector<double> effort_limits, double period,
-                     std::uint64_t seed, std::unique_ptr<DatagramLine> true_line);
+  /// `true_line`: null for a line in virtual time, with this seed.
+  UnitreeLeggedFront(UnitreeLeggedParameters parameters, double period, std::uint64_t seed,
+                     std::unique_ptr<DatagramLine> true_line);
 
   std::size_t size() const override { return torques_.size(); }
   std::int64_t now_ns() const override { return now_ns_; }
@@ -57,7 +58,6 @@ class UnitreeLeggedFront final : public DeviceFront {
   bool inject_motor(std::string_view kind);
 
   UnitreeLeggedParameters parameters_;
-  std::vector<double> effort_limits_;
   std::int64_t period_ns_;
   std::unique_ptr<DatagramLine> true_line_;
   std::unique_ptr<VirtualDatagrams> virtual_line_;  // null: the true one

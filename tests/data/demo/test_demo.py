@@ -86,11 +86,15 @@ def test_a_run_too_short_to_judge_is_refused(seconds, capsys):
     assert "--seconds" in capsys.readouterr().err
 
 
-def test_drives_of_wheels_on_a_robot_on_legs_are_refused(tmp_path, capsys):
+def test_drives_that_do_not_fit_the_robot_are_refused(tmp_path, capsys):
     assert parse(["--robot", "quadbot", "--out", str(tmp_path)]).robot == "quadbot"
     with pytest.raises(SystemExit):
         parse(["--robot", "quadbot", "--drives", "odrive", "--out", str(tmp_path)])
-    assert "--drives need wheels, but quadbot has legs" in capsys.readouterr().err
+    assert "--drives odrive do not move quadbot: take one of " in capsys.readouterr().err
+    assert parse(["--robot", "quadbot", "--drives", "unitree_legged", "--out", str(tmp_path)]).drives
+    with pytest.raises(SystemExit):
+        parse(["--drives", "unitree_legged", "--out", str(tmp_path)])
+    assert "--drives unitree_legged do not move diffbot: take one of odrive, cia402, vesc" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize("out", ["file", "file/below", "/proc/xx"])

@@ -22,7 +22,7 @@ std::vector<DriveUnderTest> all_drives() {
   std::vector<DriveUnderTest> drives;
   for (const DriveRow& row : kDriveRows) {
     if (row.command != "velocity") drives.push_back({&row, false});
-    if (row.command != "torque") drives.push_back({&row, true});
+    if (row.command != "impedance") drives.push_back({&row, true});
   }
   return drives;
 }
@@ -31,12 +31,11 @@ std::vector<MachineUnderTest> drives_with_torques() {
   std::vector<MachineUnderTest> machines;
   for (const DriveUnderTest& drive : all_drives()) {
     if (drive.takes_speeds) continue;
-    const DriveMachine machine(*drive.row, false);
     machines.push_back({.name = std::string(drive.row->name),
                         .make = [row = drive.row] { return std::make_unique<DriveMachine>(*row, false); },
-                        .joints = machine.joints.size(),
+                        .joints = joints_of(example(drive.row->name)).size(),
                         .period = 1 / DriveMachine::kRate,
-                        .effort_limit = std::min(DriveMachine::kEffortLimit, machine.file().capability(0).torque),
+                        .effort_limit = DriveMachine(*drive.row, false).file().capability(0).torque,
                         .effort = 0.1,
                         .damping = 0.5,
                         .stiffness = 5,

@@ -21,7 +21,7 @@ constexpr double kOffset = 0.25;  // rad, of joint 1
 class Go1InAir final : public WheelsInAir<UnitreeLeggedFront, UnitreeLeggedDriver> {
  public:
   explicit Go1InAir(double rate) : WheelsInAir(1 / rate) {
-    board_ = std::make_unique<UnitreeLeggedFront>(parameters(), motors().effort_limits, period_, 1, nullptr);
+    board_ = std::make_unique<UnitreeLeggedFront>(parameters(), period_, 1, nullptr);
     driver_ = std::make_unique<UnitreeLeggedDriver>(parameters(), motors(), period_,
                                                     std::get<std::unique_ptr<DatagramLine>>(board_->driver_end()),
                                                     [this] { return board_->now_ns(); });

@@ -25,11 +25,13 @@ def parse(arguments: Sequence[str] | None = None) -> argparse.Namespace:
     )
     parser.add_argument("--clock", choices=("lockstep", "wall"), default="lockstep", help=meaning)
     given = parser.parse_args(arguments)
-    if given.drives and given.robot == LEGGED_ROBOT:
-        parser.error(f"--drives need wheels, but {LEGGED_ROBOT} has legs: remove one of the two")
-    if given.wheel_command and given.robot == LEGGED_ROBOT:
+    legged = given.robot == LEGGED_ROBOT
+    if given.drives and (DRIVES[given.drives].command == "impedance") != legged:
+        fitting = ", ".join(name for name, row in DRIVES.items() if (row.command == "impedance") == legged)
+        parser.error(f"--drives {given.drives} do not move {given.robot}: take one of {fitting}")
+    if given.wheel_command and legged:
         parser.error(f"--wheel-command needs wheels, but {LEGGED_ROBOT} has legs: remove one of the two")
-    commands = DRIVES[given.drives].wheel_commands if given.drives else ("torque", "velocity")
+    commands = DRIVES[given.drives].wheel_commands if given.drives and not legged else ("torque", "velocity")
     given.wheel_command = given.wheel_command or commands[0]
     if given.wheel_command not in commands:
         parser.error(f"the board of --drives {given.drives} takes {commands[0]} only: remove --wheel-command")
