@@ -67,11 +67,13 @@ struct UnitreeLegged : testing::TestWithParam<double> {
     return INFINITY;
   }
   void expect_runs_after_reset() {
+    run(kInFlight);
     machine_.reset();
     EXPECT_EQ(run(1).driver_state, DriverState::kRunning) << machine_.warning();
     EXPECT_TRUE(turns());
   }
 
+  static constexpr double kInFlight = 0.01;  ///< s, after which no datagram of before is on the line
   static constexpr JointCommand kTurns{.mode = JointMode::kVelocity, .velocity = 3, .damping = 0.5};
   Go1InAir machine_{GetParam()};
 };
@@ -122,9 +124,9 @@ TEST_P(UnitreeLegged, StopSendsTheBrakeAsTheLastDatagram) {
 
 TEST_P(UnitreeLegged, TheFrameHasWhatTheRobotMeasures) {
   machine_.board().sense({.angular_velocity = {1, 2, 3}, .linear_acceleration = {4, 5, 6}, .orientation = {0, 1, 0, 0}});
-  machine_.joints[1] = {.position = 0.75, .velocity = 0};
+  machine_.joints[1] = {.position = 0.05, .velocity = 0};
   const SensorFrame& frame = run(3 * machine_.period(), {});
-  EXPECT_NEAR(frame.joints[1].position, 0.75, 1e-6);
+  EXPECT_NEAR(frame.joints[1].position, 0.05, 1e-6);
   EXPECT_EQ(frame.joints[1].temperature, 40);
   EXPECT_TRUE(joints_have(frame, 2, kValidMotion | kValidTemperature));
   EXPECT_EQ(frame.valid, kValidGyro | kValidAccelerometer | kValidOrientation | kValidBattery);
@@ -171,7 +173,8 @@ TEST_P(UnitreeLegged, EachLossIsNamedInTimeBrakesAndEndsWithAReset) {
     EXPECT_THAT(machine_.warning(), HasSubstr(loss.words));
     EXPECT_NE(machine_.frame().faults, 0U);
     run(0.5);
-    EXPECT_FALSE(turns());
+    const bool has_power = std::string_view(loss.kind) != "off";
+    EXPECT_FALSE(has_power && turns());
     inject(loss.component, "ok");
     EXPECT_EQ(run(1.5).driver_state, DriverState::kFault);
     EXPECT_FALSE(turns());
@@ -256,6 +259,7 @@ TEST_P(UnitreeLegged, AHotMotorAndALowBatteryAreNamedAndTheMotorsObey) {
 
 TEST_P(UnitreeLegged, ARobotWhoseCheckSumsAreEncryptedIsRefused) {
   inject("robot", "encrypted");
+  run(kInFlight);
   machine_.driver().start();
   EXPECT_EQ(run(0.1).driver_state, DriverState::kFault);
   EXPECT_THAT(machine_.warning(), HasSubstr("its firmware encrypts them, which is not supported"));
@@ -263,6 +267,7 @@ TEST_P(UnitreeLegged, ARobotWhoseCheckSumsAreEncryptedIsRefused) {
 
 TEST_P(UnitreeLegged, AnAbsentRobotIsAwaitedWithTheKeysOfTheRemote) {
   inject("robot", "off");
+  run(kInFlight);
   machine_.driver().start();
   EXPECT_EQ(run(1).driver_state, DriverState::kStarting);
   EXPECT_THAT(machine_.warning(), HasSubstr("L2 and A, L2 and B"));
