@@ -56,17 +56,18 @@ HEAD = "levelFlag frameReserve SN version bandWidth"
 
 
 def numbers_of_command(command):
-    motors = [members(motor, "mode q dq tau Kp Kd reserve") for motor in command.motorCmd]
+    motors = [number for m in command.motorCmd for number in members(m, "mode q dq tau Kp Kd reserve")]
     rest = members(command.bms, "off reserve") + members(command, "wirelessRemote reserve")
-    return members(command, HEAD) + sum(motors, []) + rest
+    return members(command, HEAD) + motors + rest
 
 
 def numbers_of_state(state):
-    motors = [members(m, "mode q dq ddq tauEst q_raw dq_raw ddq_raw temperature reserve") for m in state.motorState]
+    words = "mode q dq ddq tauEst q_raw dq_raw ddq_raw temperature reserve"
+    motors = [number for motor in state.motorState for number in members(motor, words)]
     imu = members(state.imu, "quaternion gyroscope accelerometer rpy temperature")
     bms = members(state.bms, "version_h version_l bms_status SOC current cycle BQ_NTC MCU_NTC cell_vol")
     rest = members(state, "footForce footForceEst tick wirelessRemote reserve")
-    return members(state, HEAD) + imu + sum(motors, []) + bms + rest
+    return members(state, HEAD) + imu + motors + bms + rest
 
 
 def as_float(value):

@@ -10,7 +10,8 @@ from robot_control.installed_files import share_file
 @dataclass(frozen=True)
 class DriveRow:
     """One drive: its name, the word of robot.driver, and what it takes: `any`, the one robot.wheel_command, or
-    `impedance`."""
+    `impedance`.
+    """
 
     name: str
     driver: str

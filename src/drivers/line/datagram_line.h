@@ -1,6 +1,6 @@
 #pragma once
-/// A DatagramLine is one end of a line of datagrams between a driver and its device: each arrives whole, late, twice, out
-/// of order, damaged or not at all.
+/// A DatagramLine is one end of a line of datagrams between a driver and its device. A datagram arrives whole or not at
+/// all. It may be late, twice, out of order or damaged.
 
 #include <cstddef>
 #include <cstdint>
@@ -19,8 +19,8 @@ class DatagramLine {
  public:
   virtual ~DatagramLine() = default;
 
-  /// Takes the oldest datagram that arrived. Returns its size, of which at most bytes.size() bytes were written; 0: there
-  /// is none. Never blocks.
+  /// Takes the oldest datagram that arrived. Returns its size, of which at most bytes.size() bytes were written; 0:
+  /// there is none. Never blocks.
   virtual std::size_t receive(std::span<std::uint8_t> bytes) noexcept = 0;
 
   /// Hands a datagram to the line. Never blocks. Returns false if the line did not take it.

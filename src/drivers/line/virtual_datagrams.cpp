@@ -13,8 +13,8 @@ std::optional<DatagramFaults> datagram_faults(std::string_view word) {
   if (word == "late" || word == "disturbed") faults.jitter_ns = kJitterNs;
   faults.cut = word == "cut";
   faults.answers = answer_fault(word);
-  const bool known = word == "ok" || faults.loss > 0 || faults.jitter_ns > 0 || faults.cut ||
-                     faults.answers != AnswerFault::kNone;
+  const bool known =
+      word == "ok" || faults.loss > 0 || faults.jitter_ns > 0 || faults.cut || faults.answers != AnswerFault::kNone;
   return known ? std::optional(faults) : std::nullopt;
 }
 

@@ -1,6 +1,6 @@
 #pragma once
-/// VirtualDatagrams are a line of datagrams in virtual time with two ends. Each datagram arrives after `delay` and up to
-/// `jitter`, so that one may overtake another, or is lost or damaged.
+/// VirtualDatagrams are a line of datagrams in virtual time with two ends. Each datagram arrives after `delay` and up
+/// to `jitter`, so that one may overtake another, or is lost or damaged.
 
 #include <cstdint>
 #include <memory>
@@ -17,8 +17,8 @@ namespace robot_control {
 struct DatagramFaults {
   std::int64_t delay_ns = 100'000;
   std::int64_t jitter_ns = 0;
-  double loss = 0;   ///< probability per datagram
-  bool cut = false;  ///< Nothing comes.
+  double loss = 0;                           ///< probability per datagram
+  bool cut = false;                          ///< Nothing comes.
   AnswerFault answers = AnswerFault::kNone;  ///< of all datagrams to the driver
 };
 

@@ -81,7 +81,7 @@ void head_layout(Wire& wire, Head& head) noexcept {
 }
 
 template <class Wire, class Command>
-  requires std::is_same_v<std::remove_const_t<Command>, LowCmd>
+requires std::is_same_v<std::remove_const_t<Command>, LowCmd>
 void layout(Wire& wire, Command& command) noexcept {
   head_layout(wire, command.head);
   for (auto& motor : command.motors) {
@@ -99,7 +99,7 @@ void layout(Wire& wire, Command& command) noexcept {
 }
 
 template <class Wire, class State>
-  requires std::is_same_v<std::remove_const_t<State>, LowState>
+requires std::is_same_v<std::remove_const_t<State>, LowState>
 void layout(Wire& wire, State& state) noexcept {
   head_layout(wire, state.head);
   for (auto& value : state.imu.quaternion) wire.real(value, kMaxNumber);

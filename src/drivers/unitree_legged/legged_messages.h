@@ -1,6 +1,7 @@
 #pragma once
-/// The two datagrams of a Unitree Go1 at the low level: a LowCmd goes to the robot, a LowState comes back. The positions
-/// of all bytes were measured with the maker's library (PyPI unitree-legged-sdk 3.8.20231105), and so was this:
+/// The two datagrams of a Unitree Go1 at the low level: a LowCmd goes to the robot, a LowState comes back. The
+/// positions of all bytes were measured with the maker's library (PyPI unitree-legged-sdk 3.8.20231105), and so was
+/// this:
 ///
 ///   layout   little-endian, packed, without gaps: the order of the members here
 ///   motor    kMotors places, of which a Go1 has the first kRobotMotors: front right, front left, rear right, rear left;
@@ -63,13 +64,13 @@ struct LowCmd {
 
 struct MotorState {
   std::uint8_t mode = kDamping;
-  float q = 0;               ///< rad
-  float dq = 0;              ///< rad/s
-  std::int16_t ddq = 0;      ///< rad/s²
-  double tau = 0;            ///< N·m, estimated by the motor
-  float q_raw = 0;           ///< rad
-  float dq_raw = 0;          ///< rad/s
-  std::int16_t ddq_raw = 0;  ///< rad/s²
+  float q = 0;                  ///< rad
+  float dq = 0;                 ///< rad/s
+  std::int16_t ddq = 0;         ///< rad/s²
+  double tau = 0;               ///< N·m, estimated by the motor
+  float q_raw = 0;              ///< rad
+  float dq_raw = 0;             ///< rad/s
+  std::int16_t ddq_raw = 0;     ///< rad/s²
   std::int8_t temperature = 0;  ///< °C
   std::array<std::uint32_t, 2> reserve{};
 };
@@ -85,8 +86,8 @@ struct LegImu {
 struct LegBattery {
   std::uint8_t version_high = 0, version_low = 0;
   std::uint8_t status = 0;
-  std::uint8_t charge = 0;          ///< %
-  std::int32_t current = 0;         ///< mA, negative when discharging
+  std::uint8_t charge = 0;   ///< %
+  std::int32_t current = 0;  ///< mA, negative when discharging
   std::uint16_t cycles = 0;
   std::array<std::int8_t, 2> bq_temperature{}, mcu_temperature{};  ///< °C
   std::array<std::uint8_t, 10> cells{};                            ///< units of kCellVoltage; 0: no cell
@@ -107,8 +108,8 @@ struct LowState {
 };
 
 /// Returns whether the keys L2 and B of the remote are pressed together, with which the maker's controllers go to
-/// their passive state. The two bytes of the keys are those of xKeySwitchUnion (unitree_legged_sdk, joystick.h): R1, L1,
-/// start, select, R2, L2, F1, F2, A, B, X, Y, up, right, down, left, from the lowest bit on.
+/// their passive state. The two bytes of the keys are those of xKeySwitchUnion (unitree_legged_sdk, joystick.h): R1,
+/// L1, start, select, R2, L2, F1, F2, A, B, X, Y, up, right, down, left, from the lowest bit on.
 inline bool requests_stop(const std::array<std::uint8_t, 40>& remote) noexcept {
   constexpr std::uint8_t kL2 = 1U << 5U, kB = 1U << 1U;
   return (remote[2] & kL2) != 0 && (remote[3] & kB) != 0;

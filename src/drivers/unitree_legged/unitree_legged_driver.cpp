@@ -49,7 +49,7 @@ void UnitreeLeggedDriver::receive() noexcept {
         accept(state);
         break;
       case Flaw::kLength:
-        reject({DriveCause::kDiffers, "length of its states, as that of an A1 or Aliengo", static_cast<double>(size),
+        reject({DriveCause::kDiffers, "length of its states, like an A1 or Aliengo", static_cast<double>(size),
                 unitree::kStateBytes});
         break;
       case Flaw::kHead:

@@ -1,6 +1,6 @@
 #pragma once
-/// A Unitree Go1 at its low level as a Driver: one LowCmd to the robot in each `write`, and what it answers in each
-/// `read` (legged_messages.h).
+/// A Unitree Go1 at its low level as a Driver. Each `write` sends one LowCmd to the robot, and each `read` takes what
+/// it answered (legged_messages.h).
 ///
 /// The motors close the loop of an impedance themselves. With s the direction and o the offset of the drive file, the
 /// joint is at q = s q_motor + o, and a command is
@@ -13,9 +13,9 @@
 /// The effort is clamped to torque_limit; the motor limits the sum. `stop` sends the brake as the last datagram.
 ///
 /// `read` takes all states that arrived and uses the one with the newest tick. Its arrival counts as the time of the
-/// sample. The frame has the robot's IMU, its battery (sum of the cells), the temperatures of its motors, and the
-/// emergency stop as long as L2 and B of the remote are pressed. The raw numbers of the feet's sensors are not newton,
-/// so the frame has no contacts.
+/// sample. The frame has the robot's IMU, the temperatures of its motors, and its battery with the sum of the cells. It
+/// has the emergency stop while L2 and B of the remote are pressed. The raw numbers of the feet's sensors are not
+/// newton, so the frame has no contacts.
 ///
 /// kStarting lasts until the first state. Faults stay until the operator's reset. After max_silence without a new state
 /// the cause is what came instead:
@@ -27,9 +27,9 @@
 ///   differs         datagrams of another length or beginning, as those of A1 and Aliengo
 ///   not finite      numbers that no robot can have
 ///
-/// At once come: a state with another serial number, a position that the joint cannot reach within its velocity limit, a
-/// motor above max_temperature, and a charge below min_charge. With the last two the motors obey further, so that the
-/// robot can lie down. With all others they get the brake.
+/// Other causes need no time: a state with another serial number, or a position that the joint cannot reach within its
+/// velocity limit. With a motor above max_temperature and with a charge below min_charge the motors obey further, so
+/// that the robot can lie down. With all other causes they get the brake.
 
 #include <functional>
 #include <memory>
@@ -97,10 +97,10 @@ class UnitreeLeggedDriver final : public Driver, private DriveStateMachine {
   const std::int64_t max_silence_ns_;
   const std::unique_ptr<DatagramLine> line_;
   const std::function<std::int64_t()> clock_;
-  unitree::LowState state_;       // the newest one
-  Rejected rejected_;             // the last datagram since then that was not used
-  bool has_state_ = false;        // since the start or the reset
-  std::int64_t state_ns_ = 0;     // when it came; without one, when the first datagram came that was not used
+  unitree::LowState state_;    // the newest one
+  Rejected rejected_;          // the last datagram since then that was not used
+  bool has_state_ = false;     // since the start or the reset
+  std::int64_t state_ns_ = 0;  // when it came; without one, when the first datagram came that was not used
   std::int64_t now_ns_ = 0;
   LinkStatus link_;
   bool stopped_ = true;

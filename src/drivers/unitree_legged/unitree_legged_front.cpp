@@ -10,8 +10,8 @@
 namespace robot_control {
 namespace {
 
-constexpr std::uint8_t kCharge = 80;      // %
-constexpr std::uint8_t kCell = 120;       // 3.84 V
+constexpr std::uint8_t kCharge = 80;  // %
+constexpr std::uint8_t kCell = 120;   // 3.84 V
 constexpr std::size_t kCells = 6;
 constexpr std::int32_t kCurrent = -3000;  // mA
 constexpr std::int8_t kWarm = 40;         // °C
@@ -146,7 +146,8 @@ std::string UnitreeLeggedFront::inject(std::string_view component, std::string_v
     }
   }
   return std::string(
-             "component must be robot (with ok, off, reset, frozen, encrypted, other_robot, low_battery, e_stop), motor "
+             "component must be robot (with ok, off, reset, frozen, encrypted, other_robot, low_battery, e_stop), "
+             "motor "
              "(with ok, hot, not_finite) or line (with ") +
          kDatagramFaultWords + ", " + kAnswerFaultWords + ")";
 }

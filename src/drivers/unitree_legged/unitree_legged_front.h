@@ -1,8 +1,8 @@
 #pragma once
 /// A UnitreeLeggedFront is a simulated Go1 at its low level, before the motors of a simulated robot. It answers each
-/// LowCmd with a LowState kAnswerNs later. A motor gives torque = tau + kp (q − q_motor) + kd (dq − q̇_motor), within the
-/// torque_limit of the drive file. After kSilenceNs without a command it damps: an assumption, because what the robot does is
-/// not documented.
+/// LowCmd with a LowState kAnswerNs later. A motor gives torque = tau + kp (q − q_motor) + kd (dq − q̇_motor), within
+/// the torque_limit of the drive file. After kSilenceNs without a command it damps: an assumption, because what the
+/// robot does is not documented.
 ///
 /// `inject` takes `robot`, `motor` or `line` as the component; the line has faults in virtual time alone.
 ///
@@ -21,8 +21,8 @@ namespace robot_control {
 
 class UnitreeLeggedFront final : public DeviceFront {
  public:
-  static constexpr std::int64_t kStepNs = 250'000;       ///< between two steps of the motors
-  static constexpr std::int64_t kAnswerNs = 250'000;     ///< from a command to its answer
+  static constexpr std::int64_t kStepNs = 250'000;    ///< between two steps of the motors
+  static constexpr std::int64_t kAnswerNs = 250'000;  ///< from a command to its answer
   static constexpr std::int64_t kSilenceNs = 20'000'000;
   static constexpr std::int64_t kBootNs = 300'000'000;
   static constexpr double kSilentDamping = 2;  ///< N·m·s/rad

@@ -23,9 +23,9 @@ inline constexpr double kLeggedSilence = 0.02;
 
 struct UnitreeLeggedLine {
   LeggedRobot robot = LeggedRobot::kGo1;
-  std::string address;         ///< of the robot's low level: IPV4:PORT
-  std::uint64_t port = 8080;   ///< of this computer
-  double min_charge = 10;      ///< %, of the battery
+  std::string address;                  ///< of the robot's low level: IPV4:PORT
+  std::uint64_t port = 8080;            ///< of this computer
+  double min_charge = 10;               ///< %, of the battery
   double max_silence = kLeggedSilence;  ///< s
 
   /// The reaction of the robot to a host that is silent, which cannot be read.

@@ -34,7 +34,8 @@ struct UdpSocketTest : testing::Test {
 };
 
 TEST(UdpAddress, IsFourNumbersAndAPort) {
-  for (const char* good : {"192.168.123.10:8007", "127.0.0.1:1", "10.0.0.1:65535"}) EXPECT_TRUE(udp_address(good)) << good;
+  for (const char* good : {"192.168.123.10:8007", "127.0.0.1:1", "10.0.0.1:65535"})
+    EXPECT_TRUE(udp_address(good)) << good;
   for (const char* bad : {"", ":8007", "192.168.123.10", "192.168.123.10:", "192.168.123.10:0", "192.168.123.10:65536",
                           "192.168.123:8007", "go1:8007", "192.168.123.10:80x", "192.168.123.10:-1"})
     EXPECT_FALSE(udp_address(bad)) << bad;
@@ -89,8 +90,9 @@ TEST_F(UdpSocketTest, AnAbsentRobotIsSilence) {
 
 TEST_F(UdpSocketTest, WhatCannotBeUsedIsNamed) {
   const auto host = UdpSocket::host_end(device_, port_);
-  EXPECT_THAT(message_of<DriverError>([&] { UdpSocket::host_end(device_, port_); }),
-              AllOf(HasSubstr("UDP " + device_), HasSubstr("port " + std::to_string(port_)), HasSubstr("stop the program")));
+  EXPECT_THAT(
+      message_of<DriverError>([&] { UdpSocket::host_end(device_, port_); }),
+      AllOf(HasSubstr("UDP " + device_), HasSubstr("port " + std::to_string(port_)), HasSubstr("stop the program")));
   EXPECT_THAT(message_of<DriverError>([&] { UdpSocket::host_end("go1", port_); }), HasSubstr("IPV4:PORT"));
   EXPECT_THAT(message_of<DriverError>([] { UdpSocket::device_end("203.0.113.1:8007"); }),
               HasSubstr("an address of this computer"));

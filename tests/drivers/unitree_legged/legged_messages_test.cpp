@@ -1,4 +1,5 @@
-/// The maker's own library is compared by tests/drivers/test_leg_peers_udp.py. Expected positions are those of the header.
+/// The maker's own library is compared by tests/drivers/test_leg_peers_udp.py. Expected positions are those of the
+/// header.
 
 #include "drivers/unitree_legged/legged_messages.h"
 

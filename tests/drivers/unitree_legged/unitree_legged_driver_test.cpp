@@ -35,8 +35,12 @@ class Go1InAir final : public WheelsInAir<UnitreeLeggedFront, UnitreeLeggedDrive
   static UnitreeLeggedParameters parameters() {
     UnitreeLeggedParameters parameters{.line = {.address = "none"}, .joints = {}};
     parameters.joints.push_back({.joint = "thigh", .motor = motor(0), .torque_limit = 3, .velocity_limit = 30});
-    parameters.joints.push_back({.joint = "knee", .motor = motor(1), .direction = -1, .offset = kOffset,
-                                 .torque_limit = 3, .velocity_limit = 30});
+    parameters.joints.push_back({.joint = "knee",
+                                 .motor = motor(1),
+                                 .direction = -1,
+                                 .offset = kOffset,
+                                 .torque_limit = 3,
+                                 .velocity_limit = 30});
     return parameters;
   }
   static DriveMotors motors() {
@@ -79,7 +83,8 @@ struct UnitreeLegged : testing::TestWithParam<double> {
 };
 
 TEST_P(UnitreeLegged, AnImpedanceGoesToTheMotorsAsItIs) {
-  run(0.01, {.mode = JointMode::kImpedance, .position = 1, .velocity = 2, .stiffness = 30, .damping = 4, .effort = 0.5});
+  run(0.01,
+      {.mode = JointMode::kImpedance, .position = 1, .velocity = 2, .stiffness = 30, .damping = 4, .effort = 0.5});
   EXPECT_EQ(machine_.ordered(0).mode, unitree::kServo);
   EXPECT_FLOAT_EQ(machine_.ordered(0).q, 1);
   EXPECT_FLOAT_EQ(machine_.ordered(0).dq, 2);
@@ -123,7 +128,8 @@ TEST_P(UnitreeLegged, StopSendsTheBrakeAsTheLastDatagram) {
 }
 
 TEST_P(UnitreeLegged, TheFrameHasWhatTheRobotMeasures) {
-  machine_.board().sense({.angular_velocity = {1, 2, 3}, .linear_acceleration = {4, 5, 6}, .orientation = {0, 1, 0, 0}});
+  machine_.board().sense(
+      {.angular_velocity = {1, 2, 3}, .linear_acceleration = {4, 5, 6}, .orientation = {0, 1, 0, 0}});
   machine_.joints[1] = {.position = 0.05, .velocity = 0};
   const SensorFrame& frame = run(3 * machine_.period(), {});
   EXPECT_NEAR(frame.joints[1].position, 0.05, 1e-6);
@@ -158,14 +164,15 @@ void PrintTo(const Loss& loss, std::ostream* out) {
 
 TEST_P(UnitreeLegged, EachLossIsNamedInTimeBrakesAndEndsWithAReset) {
   constexpr double kLost = kLeggedSilence + 0.004, kSeen = 0.01;
-  for (const Loss& loss :
-       {Loss{"line", "cut", "is silent: no state", kLost}, {"line", "answers_lost", "is silent: no state", kLost},
-        {"line", "answers_late", "is silent: no state", kLost}, {"robot", "off", "is silent: no state", kLost},
-        {"robot", "encrypted", "sends messages with a wrong check sum; check", kLost},
-        {"robot", "frozen", "repeats its last state", kLost},
-        {"line", "answers_shifted", "differs from the drive file: beginning of its states", kLost},
-        {"motor", "not_finite", "sent NaN or infinity or a number beyond its range", kLost},
-        {"robot", "other_robot", "is another one than before, by its serial number", kSeen}}) {
+  for (const Loss& loss : {Loss{"line", "cut", "is silent: no state", kLost},
+                           {"line", "answers_lost", "is silent: no state", kLost},
+                           {"line", "answers_late", "is silent: no state", kLost},
+                           {"robot", "off", "is silent: no state", kLost},
+                           {"robot", "encrypted", "sends messages with a wrong check sum; check", kLost},
+                           {"robot", "frozen", "repeats its last state", kLost},
+                           {"line", "answers_shifted", "differs from the drive file: beginning of its states", kLost},
+                           {"motor", "not_finite", "sent NaN or infinity or a number beyond its range", kLost},
+                           {"robot", "other_robot", "is another one than before, by its serial number", kSeen}}) {
     SCOPED_TRACE(loss.kind);
     ASSERT_TRUE(turns());
     inject(loss.component, loss.kind);
@@ -212,7 +219,8 @@ TEST_P(UnitreeLegged, ATickThatGoesBackIsARestart) {
   auto line = std::make_unique<Robot>();
   Robot& robot = *line;
   std::int64_t now_ns = 0;
-  UnitreeLeggedDriver driver(Go1InAir::parameters(), Go1InAir::motors(), 0.002, std::move(line), [&] { return now_ns; });
+  UnitreeLeggedDriver driver(Go1InAir::parameters(), Go1InAir::motors(), 0.002, std::move(line),
+                             [&] { return now_ns; });
   SensorFrame frame;
   const auto cycle = [&](std::uint32_t tick) {
     now_ns += 2'000'000;
