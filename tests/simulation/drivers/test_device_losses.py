@@ -19,7 +19,7 @@ DISTURBED = ["disturbed", pytest.param("lossy", marks=pytest.mark.nightly)]
 
 
 def test_every_drive_has_its_losses():
-    assert set(LATEST | SERIAL_LATEST) == set(DRIVES)
+    assert set(LATEST | SERIAL_LATEST) == {name for name, row in DRIVES.items() if row.wheel_commands}
 
 
 @pytest.mark.parametrize(
