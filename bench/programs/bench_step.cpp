@@ -150,6 +150,7 @@ void run(const std::string& path) {
   std::vector<std::string> joints;
   for (const WheelModel& wheel : robot.wheels) joints.push_back(robot.joints[wheel.joint].name);
   for (const DriveRow& row : kDriveRows) {
+    if (row.command == "impedance") continue;  // of legs
     const std::string file = drives / (std::string(row.name) + ".yaml");
     const auto read = read_drive_file(file, row.driver, {.joints = joints, .rate = parameters.loop.rate});
     if (const auto* can = dynamic_cast<const CanDriveFile*>(read.get()))

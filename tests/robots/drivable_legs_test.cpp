@@ -68,6 +68,20 @@ TEST(Quadruped, IsRefusedBehindDrivesThatDoNotCloseAnImpedance) {
   std::filesystem::remove(path);
 }
 
+TEST(Quadruped, IsRefusedBehindDrivesThatAreWeakerThanItsJoints) {
+  const std::string example = PROJECT_DIRECTORY "/config/drives/damiao.yaml";
+  EXPECT_EQ(refusal_with(example), "");
+  std::ifstream file(example);
+  std::string text{std::istreambuf_iterator<char>(file), {}};
+  text.replace(text.find("torque_limit: 36"), 16, "torque_limit: 35");
+  const std::string path = testing::TempDir() + "weak.yaml";
+  std::ofstream(path) << text;
+  EXPECT_THAT(refusal_with(path), AllOf(HasSubstr("front_left_knee_joint.torque_limit = 35: must be at least the limit "
+                                                  "of the joint, 35.55"),
+                                        Not(HasSubstr("hip_joint"))));
+  std::filesystem::remove(path);
+}
+
 TEST(Quadruped, IsRefusedIfTheDriveFileDoesNotMoveAllJoints) {
   EXPECT_THAT(refusal_with(PROJECT_DIRECTORY "/config/drives/odrive.yaml"),
               AllOf(HasSubstr("left_wheel_joint: unknown block"), HasSubstr("rear_right_knee_joint.node: missing")));

@@ -47,6 +47,7 @@ CanDriver::CanDriver(CanBusParameters parameters, DriveSet drives, std::span<con
   }
   for (std::size_t i = 0; i < drives_.size(); ++i) {
     laws_.emplace_back(brakes[i], drives_[i].drive_parameters().torque_limit);
+    closes_impedance_ = closes_impedance_ && drives_[i].drive_parameters().max_stiffness > 0;
   }
 }
 
@@ -246,7 +247,8 @@ void CanDriver::add_impedance(std::size_t joint, const JointCommand& command, co
 }
 
 void CanDriver::write(std::span<const JointCommand> commands) noexcept {
-  const bool obeys = !stopped_ && state_ == DriverState::kRunning && commands.size() == joint_count_;
+  const bool follows = state_ == DriverState::kRunning || (state_ == DriverState::kFault && closes_impedance_);
+  const bool obeys = !stopped_ && follows && commands.size() == joint_count_;
   for (std::size_t i = 0; i < drives_.size(); ++i) commands_[i] = wanted(i, obeys ? commands[i] : JointCommand{});
   reset_ = false;
   send_commands(now_ns_);

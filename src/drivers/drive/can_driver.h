@@ -17,7 +17,8 @@
 /// A drive that closes an impedance (DriveParameters::max_stiffness) is given stiffness, damping and their targets. The
 /// torque beside them is what is missing from the law's torque at the time of the call. So the sum is within the
 /// joint's limit, and gains beyond those of the drive act with the delay of the sample. A torque at its limit is given
-/// alone. It brakes with the damping of its Brake.
+/// alone. It brakes with the damping of its Brake. In a fault of another drive it obeys further: the gate orders the
+/// stop action, with which a robot on legs folds, and braked legs would tip it over.
 
 #include <array>
 #include <deque>
@@ -95,6 +96,7 @@ class CanDriver final : public Driver {
   CanBusParameters parameters_;
   DriveSet drives_;
   bool takes_speeds_;
+  bool closes_impedance_ = true;
   double load_ = 0;  // the greatest one of a bus, planned
   DriverClock clock_;
   std::vector<Brake> brakes_;

@@ -37,7 +37,9 @@ CanFront::Bus::Bus(const CanDriveFile& file, std::string bus_address, CanSocket 
 
 CanFront::CanFront(const CanDriveFile& file, FrontSetup setup)
     : period_ns_(std::llround(1.0e9 * file.request().period())), joints_(file.request().joints) {
-  const std::vector<std::string> addresses = file.drives().buses();
+  const DriveSet drives = file.drives();
+  is_absolute_ = drives[0].drive_parameters().is_absolute;
+  const std::vector<std::string>& addresses = drives.buses();
   CanSockets ends = devices_ends(std::move(setup.line), addresses.size(), driver_ends_);
   for (std::size_t i = 0; i < addresses.size(); ++i)
     buses_.emplace_back(file, addresses[i], std::move(ends[i]), setup.seed + i);

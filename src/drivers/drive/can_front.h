@@ -48,6 +48,7 @@ class CanFront final : public DeviceFront {
   VirtualCan& bus(const std::string& address);
 
   std::size_t size() const override { return motors_.size(); }
+  bool is_absolute() const override { return is_absolute_; }
   std::int64_t now_ns() const override { return buses_.front().can.now_ns(); }
   LineEnd driver_end() override { return std::move(driver_ends_); }
   void run(std::span<const JointSample> joints) override;
@@ -81,6 +82,7 @@ class CanFront final : public DeviceFront {
   std::deque<Bus> buses_;   // A Bus does not move.
   std::int64_t period_ns_;
   std::vector<std::string> joints_;
+  bool is_absolute_ = false;
 
   std::vector<double> to_motor_;  // motor angle / joint angle
   std::vector<std::unique_ptr<DeviceMotor>> motors_;

@@ -27,6 +27,9 @@ class DeviceFront {
   /// Returns the number of joints with a device, the first ones of the robot.
   virtual std::size_t size() const = 0;
 
+  /// Returns whether a motor knows the angle of its joint, as DriveParameters::is_absolute.
+  virtual bool is_absolute() const { return false; }
+
   /// Returns the virtual time.
   virtual std::int64_t now_ns() const = 0;
 

@@ -14,8 +14,8 @@
 #include <vector>
 
 #include "drivers/drive/device_front.h"
-#include "drivers/line/virtual_datagrams.h"
 #include "drivers/unitree_legged/unitree_legged_parameters.h"
+#include "drivers/unitree_legged/virtual_datagrams.h"
 
 namespace robot_control {
 
@@ -34,6 +34,7 @@ class UnitreeLeggedFront final : public DeviceFront {
   std::size_t size() const override { return torques_.size(); }
   std::int64_t now_ns() const override { return now_ns_; }
   LineEnd driver_end() override { return virtual_line_->driver_end(); }
+  bool is_absolute() const override { return true; }
   bool reports_imu() const override { return true; }
   void sense(const ImuSample& imu) override;
   void run(std::span<const JointSample> joints) override;

@@ -58,6 +58,8 @@ class DrivenPlant final : public Simulator {
  private:
   void run_devices() noexcept;
   void pass_imu(SensorFrame& sensors) noexcept;
+  /// Lets running drives find that the joints were moved, before the start that ends their faults.
+  void find_joints(std::span<const JointCommand> brakes) noexcept;
 
   MujocoPlant plant_;
   std::unique_ptr<DeviceFront> devices_;

@@ -5,6 +5,8 @@
 
 #include "drivers/cia402/cia402_device.h"
 #include "drivers/cia402/cia402_drive.h"
+#include "drivers/damiao/damiao_device.h"
+#include "drivers/damiao/damiao_drive.h"
 #include "drivers/drive/drive_set.h"
 #include "drivers/odrive/odrive_device.h"
 #include "drivers/odrive/odrive_drive.h"
@@ -41,10 +43,12 @@ class DeviceRig {
   void add_drive(const odrive::OdriveParameters& parameters) { odrives_.push_back(parameters); }
   void add_drive(const cia402::Cia402Parameters& parameters) { cia402s_.push_back(parameters); }
   void add_drive(const vesc::VescParameters& parameters) { vescs_.push_back(parameters); }
+  void add_drive(const damiao::DamiaoParameters& parameters) { damiaos_.push_back(parameters); }
   /// Returns the drives of the one dialect that was added.
   DriveSet made_drives() const {
     if (!odrives_.empty()) return drives_of<odrive::OdriveDrive>(odrives_, period_);
     if (!vescs_.empty()) return drives_of<vesc::VescDrive>(vescs_, period_);
+    if (!damiaos_.empty()) return drives_of<damiao::DamiaoDrive>(damiaos_, period_);
     return cia402::cia402_drives(cia402s_, kHostNode, period_);
   }
   /// No drive may be added after the first call.
@@ -124,6 +128,7 @@ class DeviceRig {
   std::vector<odrive::OdriveParameters> odrives_;
   std::vector<cia402::Cia402Parameters> cia402s_;
   std::vector<vesc::VescParameters> vescs_;
+  std::vector<damiao::DamiaoParameters> damiaos_;
   std::optional<DriveSet> drives_;
   FrameBatch send_;
 };
@@ -173,6 +178,26 @@ inline VescPair vesc_pair(std::uint8_t node) {
 inline VescDevice& add(DeviceRig& rig, const VescPair& pair) {
   rig.add_drive(pair.drive);
   return rig.add_device(std::make_unique<VescDevice>(pair.device, rig.bus(), rig.add_motor()));
+}
+
+struct DamiaoPair {
+  damiao::DamiaoParameters drive;
+  DamiaoDeviceParameters device;
+};
+
+inline DamiaoPair damiao_pair(std::uint8_t node) {
+  DamiaoPair pair{.drive = {.drive = drive_parameters(node)}, .device = {}};
+  pair.drive.drive.min_voltage = 0;
+  pair.drive.drive.on_silence = SilenceReaction::kUnknown;
+  pair.drive.ranges = pair.device.ranges;
+  pair.device.node = node;
+  pair.device.answers = node + 16U;
+  return pair;
+}
+
+inline DamiaoDevice& add(DeviceRig& rig, const DamiaoPair& pair) {
+  rig.add_drive(pair.drive);
+  return rig.add_device(std::make_unique<DamiaoDevice>(pair.device, rig.bus(), rig.add_motor()));
 }
 
 struct Cia402Pair {

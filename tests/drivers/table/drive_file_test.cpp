@@ -2,6 +2,7 @@
 #include <regex>
 
 #include "drivers/cia402/cia402_parameters.h"
+#include "drivers/damiao/damiao_parameters.h"
 #include "drivers/drive/can_drive_file.h"
 #include "drivers/odrive/odrive_parameters.h"
 #include "drivers/table/drive_machine.h"
@@ -33,6 +34,13 @@ bus: {dialect: vesc}
 every_joint: {pole_pairs: 15, torque_constant: 0.5, torque_limit: 3, velocity_limit: 30, on_silence: coasts}
 left_wheel_joint: {node: 0}
 right_wheel_joint: {node: 1}
+)";
+
+constexpr const char* kDamiao = R"(
+bus: {dialect: damiao}
+every_joint: {position_range: 12.5, velocity_range: 45, torque_range: 54, torque_limit: 40, velocity_limit: 30}
+left_wheel_joint: {node: 1}
+right_wheel_joint: {node: 2}
 )";
 
 struct DriveFileTest : ::testing::Test {
@@ -190,6 +198,37 @@ TEST_F(DriveFileTest, WhatAVescCannotDoIsRefused) {
               HasSubstr("left_wheel_joint.torque_constant: is missing: with robot.wheel_command: torque the currents "
                         "follow from it"));
   EXPECT_THAT(refusal(kVesc, "node: 1", "node: 1, status_period: 0.001", 1000), HasSubstr("load the bus with"));
+}
+
+TEST_F(DriveFileTest, WhatADamiaoCannotDoIsRefused) {
+  EXPECT_EQ(refusal(kDamiao, "node: 1", "node: 15"), "");
+  for (const std::string node : {"0", "16"}) {
+    EXPECT_THAT(refusal(kDamiao, "node: 1", "node: " + node),
+                HasSubstr("left_wheel_joint.node = " + node + ": must be 1 … 15"))
+        << node;
+  }
+  EXPECT_THAT(refusal(kDamiao, "node: 2", "node: 2, answers: 2"), HasSubstr("answers = 2: must not be its node"));
+  EXPECT_THAT(refusal(kDamiao, "torque_limit: 40", "torque_limit: 55"), HasSubstr("must be at most torque_range"));
+  EXPECT_THAT(refusal(kDamiao, "velocity_limit: 30", "velocity_limit: 30, gear: 2"),
+              HasSubstr("must be at most velocity_range / gear"));
+  EXPECT_THAT(refusal(kDamiao, "node: 1", "node: 1, min_voltage: 20"), HasSubstr("does not send its voltage"));
+  EXPECT_THAT(refusal(kDamiao, "node: 1", "node: 1, on_silence: coasts"), HasSubstr("must be left out"));
+  EXPECT_THAT(refusal(kDamiao, "node: 1", "node: 1, timeout: 0.019"), HasSubstr("must be at least ten periods"));
+}
+
+/// A command and its answer have at most 135 bits each.
+TEST_F(DriveFileTest, ABusCarriesThreeDamiaosAtAKilohertzAndSixAtHalf) {
+  std::string text =
+      "bus: {dialect: damiao}\n"
+      "every_joint: {position_range: 12.5, velocity_range: 45, torque_range: 54, torque_limit: 40, velocity_limit: "
+      "30}\n";
+  joints_.clear();
+  for (int node = 1; node <= 7; ++node) {
+    joints_.push_back("joint_" + std::to_string(node));
+    text += joints_.back() + ": {node: " + std::to_string(node) + "}\n";
+    EXPECT_EQ(refusal_of(text, 1000).empty(), node <= 3) << node;
+    EXPECT_EQ(refusal_of(text, 500).empty(), node <= 6) << node;
+  }
 }
 
 TEST_F(DriveFileTest, AVescThatTakesSpeedsNeedsNoTorqueConstant) {

@@ -5,6 +5,8 @@
 
 #include <fstream>
 
+#include "drivers/damiao/damiao_parameters.h"
+#include "drivers/drive/can_drive_file.h"
 #include "drivers/table/drive_table.h"
 #include "drivers/table/read_drive_file.h"
 #include "drivers/table/simulated_front.h"
@@ -42,6 +44,7 @@ class DriveMachine final : public WheelsInAir<DeviceFront, Driver> {
     board_ = make_front(*file_, {.motors = motors_});
     driver_ = file_->make_driver(motors_, board_->driver_end(),
                                  [this] { return CanTime{.time_ns = board_->now_ns(), .utc_ns = board_->now_ns()}; });
+    turn_to_start();
   }
   /// The joints of the example.
   DriveMachine(const DriveRow& row, bool takes_speeds) : DriveMachine(example(row.name), row.driver, takes_speeds) {}
@@ -49,6 +52,13 @@ class DriveMachine final : public WheelsInAir<DeviceFront, Driver> {
   void start() override { WheelsInAir::start(static_cast<int>(5 * kRate)); }
 
   const DriveFile& file() const { return *file_; }
+
+  /// Turns the joints to the angles at which the drive file expects them at a start or a reset.
+  void turn_to_start() {
+    const auto* damiao = dynamic_cast<const CanFileOf<damiao::DamiaoParameters>*>(file_.get());
+    for (std::size_t i = 0; damiao != nullptr && i < joints.size(); ++i)
+      joints[i].position = damiao->joints()[i].start_angle.value_or(joints[i].position);
+  }
 
  private:
   DriveMotors motors_;

@@ -83,6 +83,7 @@ TEST_P(EveryDrive, IsAtRestWhileItsAnswersFailAndUntilTheReset) {
     EXPECT_EQ(run(2), DriverState::kFault);
     EXPECT_FALSE(turns());
     for (int i = 0; i < 20 && machine_.frame().driver_state == DriverState::kFault; ++i) {
+      machine_.turn_to_start();
       machine_.reset();
       run(1);
     }
