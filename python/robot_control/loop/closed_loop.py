@@ -169,7 +169,7 @@ class ClosedLoop:
         Args:
             component: left_encoder right_encoder left_motor right_motor, of one driven or held joint <joint>_encoder
                 <joint>_motor; gyro accelerometer battery e_stop_button controller estimator monitor; with `drives`
-                also bus, and the joints by name
+                also bus or the address of one, and the joints by name
             kind: ok (ends the fault) off stuck garbage wrong slow delayed intermittent; bus: ok off lossy disturbed; a
                 joint's drive: ok off reset other_zero slipped encoder released hot under_voltage not_finite
 

@@ -7,11 +7,11 @@
 /// an order. Before `running` it is released, whatever an earlier program ordered.
 ///
 /// The registers are compared with the drive file: a wrong range would scale every number. The timeout is written where
-/// it differs, and read back: a motor that receives no order for that time releases itself. What it reports of an
-/// earlier such time (kCommunicationLost) is cleared at the start.
+/// it differs, and read back: a motor that receives no order for that time releases itself. The start clears the error
+/// of an earlier such time (kCommunicationLost).
 ///
-/// An angle counts from the zero of the motor. A motor that finds it within one turn of its rotor alone is off by whole
-/// turns, 2π/(gear of the motor · gear), where it was moved while it was off: start_angle catches that.
+/// An angle counts from the zero of the motor. Some motors know it within one turn of the rotor only. Their angle is
+/// off by 2π/(gear of the motor · gear) where they were turned while they were off, which start_angle finds.
 ///
 /// In a fault it is ordered a damping, which needs no measurement of this program.
 

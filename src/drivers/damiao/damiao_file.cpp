@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include "drivers/damiao/damiao_drive.h"
 #include "drivers/drive/can_drive_file.h"
 
@@ -7,7 +9,9 @@ namespace {
 
 class DamiaoFile final : public CanFileOf<DamiaoParameters> {
  public:
-  using CanFileOf::CanFileOf;
+  explicit DamiaoFile(DriveFileRequest given) : CanFileOf(std::move(given)) {
+    every_.timeout = std::max(every_.timeout, kMinTimeoutPeriods * request().period());
+  }
   DriveSet drives() const override { return drives_of<DamiaoDrive>(joints(), request().period()); }
 
   /// All frames are orders and their answers. Three motors at 1 kHz have 6 of at most 135 bits in 1 ms: one of them may
@@ -15,6 +19,7 @@ class DamiaoFile final : public CanFileOf<DamiaoParameters> {
   double max_load() const override { return 0.85; }
 
  private:
+  static constexpr double kMinTimeoutPeriods = 10;  ///< of the loop
   void check(const DamiaoParameters& joint, JointValues& values) const override;
 };
 
@@ -32,7 +37,7 @@ void DamiaoFile::check(const DamiaoParameters& joint, JointValues& values) const
                   "remove it; the motor reports under-voltage by itself (register UV_Value)");
   if (drive.on_silence != SilenceReaction::kUnknown)
     values.refuse("on_silence", "must be left out: the timeout is written to the motor, which then coasts");
-  if (joint.timeout < 10 * request().period() * (1 - 1.0e-9))
+  if (joint.timeout < kMinTimeoutPeriods * request().period() * (1 - 1.0e-9))
     values.refuse("timeout", "must be at least ten periods of the loop (robot.rate)",
                   "set a longer one: a host that is late for a few cycles would release the motor");
 }

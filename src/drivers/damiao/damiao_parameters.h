@@ -14,7 +14,10 @@ struct DamiaoParameters {
   DriveParameters drive{};
   MitRanges ranges{};
   std::uint64_t answers = 0;  ///< identifier of its answers (MST_ID); 0: node + 16
-  double timeout = 0.1;       ///< s without an order until the motor releases itself; written to the motor
+
+  /// s without an order until the motor releases itself; written to the motor. It is short, because a leg that keeps its
+  /// last order while the others fold may turn a robot over (docs/drivers.md).
+  double timeout = 0.03;
 
   /// rad, of the joint, wherever a start or a reset may happen. The first angle must be nearer than half a turn of the
   /// rotor: else the zero of the motor is off by whole turns. None: not compared.

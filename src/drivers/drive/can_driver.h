@@ -17,8 +17,8 @@
 /// A drive that closes an impedance (DriveParameters::max_stiffness) is given stiffness, damping and their targets. The
 /// torque beside them is what is missing from the law's torque at the time of the call. So the sum is within the
 /// joint's limit, and gains beyond those of the drive act with the delay of the sample. A torque at its limit is given
-/// alone. It brakes with the damping of its Brake. In a fault of another drive it obeys further: the gate orders the
-/// stop action, with which a robot on legs folds, and braked legs would tip it over.
+/// alone. It brakes with the damping of its Brake. In a fault of another drive it obeys further, because the gate then
+/// orders the stop action. A robot on legs folds with it, and would tip over on braked legs.
 
 #include <array>
 #include <deque>
