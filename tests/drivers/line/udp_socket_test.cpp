@@ -1,12 +1,11 @@
 #include "drivers/line/udp_socket.h"
 
-#include <arpa/inet.h>
 #include <gtest/gtest.h>
-#include <sys/socket.h>
 
 #include <array>
 
 #include "drivers/driver.h"
+#include "drivers/line/free_port.h"
 #include "support/allocation_guard.h"
 #include "support/matchers.h"
 #include "support/message_of.h"
@@ -14,19 +13,6 @@
 namespace robot_control::tests {
 
 using Bytes = std::array<std::uint8_t, 4>;
-
-/// A port of the loopback that was free a moment ago.
-std::uint16_t free_port() {
-  const Descriptor probe(socket(AF_INET, SOCK_DGRAM, 0));
-  sockaddr_in address{};
-  address.sin_family = AF_INET;
-  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-  socklen_t size = sizeof address;
-  auto* const generic = static_cast<sockaddr*>(static_cast<void*>(&address));
-  EXPECT_EQ(bind(probe.number(), generic, size), 0);
-  EXPECT_EQ(getsockname(probe.number(), generic, &size), 0);
-  return ntohs(address.sin_port);
-}
 
 struct UdpSocketTest : testing::Test {
   const std::string device_ = "127.0.0.1:" + std::to_string(free_port());

@@ -6,6 +6,8 @@
 
 #include <cmath>
 
+#include "drivers/line/free_port.h"
+#include "drivers/line/udp_socket.h"
 #include "drivers/unitree_legged/random_messages.h"
 #include "drivers/unitree_legged/unitree_legged_front.h"
 #include "drivers/wheels_in_air.h"
@@ -305,6 +307,26 @@ TEST_P(UnitreeLegged, ReadAndWriteDoNotAllocate) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Rates, UnitreeLegged, testing::Values(500.0, 1000.0));
+
+TEST(UnitreeLeggedUdp, TheRobotOfAnotherProgramIsFoundOnTheLoopback) {
+  constexpr double kPeriod = 0.002;
+  const std::string address = "127.0.0.1:" + std::to_string(free_port());
+  UnitreeLeggedFront robot(Go1InAir::parameters(), kPeriod, 1, UdpSocket::device_end(address));
+  UnitreeLeggedDriver driver(Go1InAir::parameters(), Go1InAir::motors(), kPeriod,
+                             UdpSocket::host_end(address, free_port()), [&] { return robot.now_ns(); });
+  const std::vector<JointSample> joints(2, {.position = 0.5});
+  SensorFrame frame;
+  driver.start();
+  for (int i = 0; i < 100; ++i) {
+    driver.read(frame);
+    driver.write(std::vector<JointCommand>(2, {.mode = JointMode::kEffort, .effort = 2}));
+    robot.run(joints);
+  }
+  EXPECT_EQ(frame.driver_state, DriverState::kRunning) << driver.warning();
+  EXPECT_NEAR(frame.joints[1].position, 0.5, 1e-6);
+  EXPECT_EQ(robot.torque(1), 2);
+  EXPECT_LE(frame.links[0].lost, 1U);
+}
 
 /// Mutated states pass into the driver.
 void expect_no_motion_of_the_go1(int datagrams) {
