@@ -6,7 +6,7 @@
 ///   to 7FFh                   number (2 bytes), operation, register, value (4 bytes), little-endian
 ///   to MST_ID, from it        Feedback, or the answer to a register, which repeats the request with the value
 ///
-/// An answer to a register is told from Feedback by its number, operation and register alone. So it counts only while
+/// An answer to a register differs from Feedback by its number, operation and register alone. So it counts only while
 /// this register is awaited. Sources: PyPI damiao-motor 1.0.6, core/motor.py; cmjang/DM_Control_Python, DM_CAN.py.
 
 #include <bit>
