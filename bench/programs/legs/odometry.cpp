@@ -167,7 +167,7 @@ std::string ramp(const TemporaryFolder& folder, double slope) {
                           number(-slope) + "0\"/><site name=\"start\"/></worldbody></mujoco>");
 }
 
-/// Climbs 1 m: on a ramp, or on a slope on which it stood up, after one turn on the spot that shows the bias of the
+/// Climbs 1 m, on a ramp or on a slope on which it stood up. One turn on the spot before it shows the bias of the
 /// accelerometer.
 void climb(const LegModel& model, double degrees, bool on_ramp, std::uint64_t seed, const Zeros& zeros,
            WorstValues& worst) {

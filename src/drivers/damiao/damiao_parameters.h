@@ -15,8 +15,8 @@ struct DamiaoParameters {
   MitRanges ranges{};
   std::uint64_t answers = 0;  ///< identifier of its answers (MST_ID); 0: node + 16
 
-  /// s without an order until the motor releases itself; written to the motor. It is short, because a leg that keeps its
-  /// last order while the others fold may turn a robot over (docs/drivers.md).
+  /// s without an order until the motor releases itself; written to the motor. It is short, because a leg that keeps
+  /// its last order while the others fold may turn a robot over (docs/drivers.md).
   double timeout = 0.03;
 
   /// rad, of the joint, wherever a start or a reset may happen. The first angle must be nearer than half a turn of the

@@ -4,9 +4,9 @@
 ///   τ = torque + stiffness · (position − q) + damping · (velocity − q̇)
 ///
 /// Its five numbers are unsigned integers over a range, in 8 bytes, the highest bit first: position 16 bits, velocity,
-/// stiffness, damping and torque 12 bits each. The raw value of x within its range is ⌊(x − min) · (2ⁿ − 1)/(max − min)⌋.
-/// The clients of the makers round down, too, so that 0 becomes half a step below 0. Source: PyPI damiao-motor 1.0.6,
-/// core/motor.py.
+/// stiffness, damping and torque 12 bits each. The raw value of x within its range is ⌊(x − min) · (2ⁿ − 1)/(max −
+/// min)⌋. The clients of the makers round down, too, so that 0 becomes half a step below 0. Source: PyPI
+/// damiao-motor 1.0.6, core/motor.py.
 
 #include <algorithm>
 #include <cstdint>
