@@ -43,7 +43,7 @@ constexpr CauseWords kCauseWords[] = {
      "check the connector of its encoder, then for a blockage; then reset"},
     {"sends messages with a wrong check sum", "check the cable and the network, then reset"},
     {"repeats its last", "restart the drive, then reset"},
-    {"is another one than before, by its", "connect only one, then reset"},
+    {"is another one than before, by its", "remove the other one, then reset"},
 };
 static_assert(std::size(kCauseWords) == static_cast<std::size_t>(DriveCause::kOtherDevice) + 1);
 
