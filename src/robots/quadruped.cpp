@@ -10,6 +10,7 @@
 #include "control/legged/stand/nominal_stance.h"
 #include "control/legged/walk/gait.h"
 #include "control/legged/walk/walking_speed.h"
+#include "drivers/table/drive_table.h"
 #include "drivers/table/read_drive_file.h"
 #include "estimation/legged/legged_estimator.h"
 #include "parameters/problem_list.h"
@@ -93,6 +94,8 @@ SafetyParameters Quadruped::limits() const {
   if (!limits.stop_delay) limits.stop_delay = kRollOut * std::sqrt(machine_.leg_length() / kReferenceLeg);
   limits.imu_lost.reaction = limits.imu_stuck.reaction = limits.imu_jump.reaction = Reaction::kBrake;
   limits.lift.reaction = Reaction::kOff;  // a robot that lies stands on no foot
+  double& silence = limits.encoders_lost.persistence;
+  silence = std::max(silence, tolerated_silence(parameters_));
   return limits;
 }
 

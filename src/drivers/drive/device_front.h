@@ -10,6 +10,7 @@
 
 #include "drivers/drive/drive_file.h"
 #include "signals/joint.h"
+#include "signals/sensor_frame.h"
 
 namespace robot_control {
 
@@ -34,6 +35,10 @@ class DeviceFront {
 
   /// Returns the driver's end of a line in virtual time, once.
   virtual LineEnd driver_end() = 0;
+
+  /// Returns whether the devices report the IMU of the robot. `sense` then takes its samples.
+  virtual bool reports_imu() const { return false; }
+  virtual void sense(const ImuSample& /*imu*/) {}
 
   /// Runs the devices for one period, with what the driver sent since the last call. Their own messages reach the
   /// driver at the end. `joints` hold the true position and velocity of each joint at the beginning.

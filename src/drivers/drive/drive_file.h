@@ -15,15 +15,16 @@
 #include "drivers/drive_motors.h"
 #include "drivers/driver.h"
 #include "drivers/line/can_bus.h"
+#include "drivers/line/datagram_line.h"
 #include "drivers/line/serial_line.h"
 #include "parameters/block.h"
 #include "rt/realtime_thread.h"
 
 namespace robot_control {
 
-/// The end of a line in this process: of each CAN bus, or of a serial line.
+/// The end of a line in this process: of each CAN bus, of a serial line, or of a line of datagrams.
 using CanSockets = std::vector<CanSocket>;
-using LineEnd = std::variant<CanSockets, std::unique_ptr<SerialLine>>;
+using LineEnd = std::variant<CanSockets, std::unique_ptr<SerialLine>, std::unique_ptr<DatagramLine>>;
 
 /// States the present time; it is called in each cycle.
 using DriverClock = std::function<CanTime()>;

@@ -41,8 +41,11 @@ constexpr CauseWords kCauseWords[] = {
     {"braked by itself, because it received no order in time", "check the line, then reset"},
     {"does not turn although it is driven: no counts of",
      "check the connector of its encoder, then for a blockage; then reset"},
+    {"sends messages with a wrong check sum", "check the cable and the network, then reset"},
+    {"repeats its last", "restart the drive, then reset"},
+    {"is another one than before, by its", "remove the other one, then reset"},
 };
-static_assert(std::size(kCauseWords) == static_cast<std::size_t>(DriveCause::kNoCounts) + 1);
+static_assert(std::size(kCauseWords) == static_cast<std::size_t>(DriveCause::kOtherDevice) + 1);
 
 constexpr const char* kStateWords[] = {"starting", "ready", "running", "fault"};
 
@@ -65,6 +68,8 @@ DriverFault fault_of(DriveCause cause) noexcept {
   switch (cause) {
     case DriveCause::kSilent:
     case DriveCause::kNoAnswer:
+    case DriveCause::kCheckSum:
+    case DriveCause::kStale:
       return kFaultLink;
     case DriveCause::kNotFinite:
       return kFaultNotFinite;

@@ -47,6 +47,9 @@ enum class DriveCause : std::uint8_t {
   kUnknownWatchdog,   ///< The reaction of the drive on silence is unknown, and that is not accepted.
   kOwnBrake,          ///< The drive braked by itself, because it received no order in time.
   kNoCounts,          ///< The motor was driven, and its encoder did not move; code: number of the motor.
+  kCheckSum,          ///< The check sums of its messages are wrong.
+  kStale,             ///< It sends its last message again and again.
+  kOtherDevice,       ///< Another device answers: its `subject` is not that of before.
 };
 
 /// How the reaction on silence is known.

@@ -38,6 +38,10 @@ DeviceSimulator::DeviceSimulator(const MachineModel& robot, const MujocoPlantPar
 }
 
 void DeviceSimulator::step() noexcept {
+  if (devices_->reports_imu()) {
+    plant_.read(sensors_);
+    devices_->sense(sensors_.imu);
+  }
   devices_->run(truth_.joints);
   for (std::size_t i = 0; i < devices_->size(); ++i)
     torques_[i] = {.mode = JointMode::kEffort, .effort = devices_->torque(i)};
@@ -86,6 +90,10 @@ void DrivenPlant::start() {
     for (std::size_t i = 0; i < turned_.size(); ++i) turned_[i] = seen_[i].position - truth_.joints[i].position;
   }
   driver_->start();
+  if (devices_->reports_imu()) {
+    plant_.read(wheels_);
+    devices_->sense(wheels_.imu);
+  }
   const std::int64_t end_ns = devices_->now_ns() + kMaxStart;
   do {
     driver_->read(wheels_);
@@ -94,9 +102,17 @@ void DrivenPlant::start() {
   } while (wheels_.driver_state != DriverState::kRunning && devices_->now_ns() < end_ns);
 }
 
+void DrivenPlant::pass_imu(SensorFrame& sensors) noexcept {
+  constexpr std::uint64_t kImu = kValidGyro | kValidAccelerometer | kValidOrientation;
+  devices_->sense(sensors.imu);
+  sensors.imu = wheels_.imu;
+  sensors.valid &= wheels_.valid | ~kImu;
+}
+
 void DrivenPlant::read(SensorFrame& sensors) noexcept {
   plant_.read(sensors);
   driver_->read(wheels_);
+  if (devices_->reports_imu()) pass_imu(sensors);
   if (sensors.driver_state == DriverState::kRunning) sensors.driver_state = wheels_.driver_state;
   sensors.faults |= wheels_.faults;
   std::copy_n(wheels_.joints.begin(), devices_->size(), sensors.joints.begin());

@@ -21,8 +21,8 @@ namespace robot_control {
 /// they are simulated.
 ///
 /// In each period the devices see the wheels move on with the velocity of its beginning. The plant applies the mean
-/// torque of a device over the period. IMU, contacts, battery and the other joints are those of the plant. Digital
-/// inputs are those of both.
+/// torque of a device over the period. IMU, contacts, battery and the other joints are those of the plant. Devices that
+/// report the IMU get its samples, and what arrives from them counts. Digital inputs are those of both.
 ///
 /// `start` runs the drives until they are ready, at most kMaxStart, while the robot stands.
 class DrivenPlant final : public Simulator {
@@ -57,6 +57,7 @@ class DrivenPlant final : public Simulator {
 
  private:
   void run_devices() noexcept;
+  void pass_imu(SensorFrame& sensors) noexcept;
   /// Lets running drives find that the joints were moved, before the start that ends their faults.
   void find_joints(std::span<const JointCommand> brakes) noexcept;
 
@@ -93,6 +94,7 @@ class DeviceSimulator {
   MujocoPlant plant_;
   std::unique_ptr<DeviceFront> devices_;
   TruthFrame truth_;
+  SensorFrame sensors_;
   LatestValue<TruthFrame> published_truth_;
   std::vector<JointCommand> torques_;
 };
