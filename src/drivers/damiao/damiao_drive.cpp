@@ -76,6 +76,7 @@ void DamiaoDrive::receive(const can_frame& frame, std::int64_t now_ns) noexcept 
       answer.number == kRead[asked_]) {
     return receive_register(answer);
   }
+  if (answer.node == node() && is_access(answer.operation)) return;
   const Feedback feedback = decode_feedback(frame, parameters_.ranges);
   if (feedback.node != node()) return;
   state_ = feedback.state;

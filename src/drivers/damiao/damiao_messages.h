@@ -7,7 +7,8 @@
 ///   to MST_ID, from it        Feedback, or the answer to a register, which repeats the request with the value
 ///
 /// An answer to a register differs from Feedback by its number, operation and register alone. So it counts only while
-/// this register is awaited. Sources: PyPI damiao-motor 1.0.6, core/motor.py; cmjang/DM_Control_Python, DM_CAN.py.
+/// this register is awaited, and is no Feedback otherwise. Sources: PyPI damiao-motor 1.0.6, core/motor.py;
+/// cmjang/DM_Control_Python, DM_CAN.py.
 
 #include <bit>
 #include <cstdint>
@@ -24,6 +25,11 @@ inline constexpr double kTimeoutUnit = 50.0e-6;  ///< s, of the register kTimeou
 enum class Request : std::uint8_t { kClear = 0xFB, kEnable = 0xFC, kRelease = 0xFD, kSetZero = 0xFE };
 
 enum class Operation : std::uint8_t { kRead = 0x33, kWrite = 0x55, kStore = 0xAA, kRefresh = 0xCC };
+
+/// Returns whether a motor answers this with its register.
+inline bool is_access(Operation operation) noexcept {
+  return operation == Operation::kRead || operation == Operation::kWrite || operation == Operation::kStore;
+}
 
 enum class Register : std::uint8_t {
   kTimeout = 9,         ///< units of kTimeoutUnit without an order until the motor is released; 0: never

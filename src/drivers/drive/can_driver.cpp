@@ -61,8 +61,11 @@ bool CanDriver::measures(MachineInput input) const noexcept {
 
 void CanDriver::stop() noexcept {
   stopped_ = true;
-  if (state_ != DriverState::kRunning) return;
-  for (std::size_t i = 0; i < drives_.size(); ++i) commands_[i] = {.enabled = true, .damping = brakes_[i].damping};
+  if (!follows()) return;
+  for (std::size_t i = 0; i < drives_.size(); ++i) {
+    const double damping = brakes_[i].damping;
+    commands_[i] = {.enabled = true, .brake_damping = damping, .damping = damping};
+  }
   send_commands(clock_().time_ns);
 }
 
@@ -74,6 +77,7 @@ void CanDriver::send_commands(std::int64_t now_ns) noexcept {
 
 void CanDriver::start() {
   stopped_ = false;
+  ran_ = false;
   begin();
 }
 
@@ -102,7 +106,12 @@ void CanDriver::judge_faults() noexcept {
     state_ = DriverState::kFault;
   } else if (all_are(DrivePhase::kRunning)) {
     state_ = DriverState::kRunning;
+    ran_ = true;
   }
+}
+
+bool CanDriver::follows() const noexcept {
+  return state_ == DriverState::kRunning || (state_ == DriverState::kFault && ran_ && closes_impedance_);
 }
 
 void CanDriver::receive(std::size_t line, const CanTime& now) noexcept {
@@ -247,8 +256,7 @@ void CanDriver::add_impedance(std::size_t joint, const JointCommand& command, co
 }
 
 void CanDriver::write(std::span<const JointCommand> commands) noexcept {
-  const bool follows = state_ == DriverState::kRunning || (state_ == DriverState::kFault && closes_impedance_);
-  const bool obeys = !stopped_ && follows && commands.size() == joint_count_;
+  const bool obeys = !stopped_ && follows() && commands.size() == joint_count_;
   for (std::size_t i = 0; i < drives_.size(); ++i) commands_[i] = wanted(i, obeys ? commands[i] : JointCommand{});
   reset_ = false;
   send_commands(now_ns_);

@@ -17,8 +17,9 @@
 /// A drive that closes an impedance (DriveParameters::max_stiffness) is given stiffness, damping and their targets. The
 /// torque beside them is what is missing from the law's torque at the time of the call. So the sum is within the
 /// joint's limit, and gains beyond those of the drive act with the delay of the sample. A torque at its limit is given
-/// alone. It brakes with the damping of its Brake. In a fault of another drive it obeys further, because the gate then
-/// orders the stop action. A robot on legs folds with it, and would tip over on braked legs.
+/// alone. It brakes with the damping of its Brake. In a fault of another drive that came after kRunning it obeys
+/// further, because the gate then orders the stop action. A robot on legs folds with it, and would tip over on braked
+/// legs.
 
 #include <array>
 #include <deque>
@@ -84,6 +85,7 @@ class CanDriver final : public Driver {
   void begin() noexcept;
   void send_commands(std::int64_t now_ns) noexcept;
   bool all_are(DrivePhase state) const noexcept;
+  bool follows() const noexcept;
   void receive(std::size_t line, const CanTime& now) noexcept;
   void publish_statuses() noexcept;
   void judge_faults() noexcept;
@@ -97,7 +99,8 @@ class CanDriver final : public Driver {
   DriveSet drives_;
   bool takes_speeds_;
   bool closes_impedance_ = true;
-  double load_ = 0;  // the greatest one of a bus, planned
+  bool ran_ = false;  // since the last start
+  double load_ = 0;   // the greatest one of a bus, planned
   DriverClock clock_;
   std::vector<Brake> brakes_;
   std::vector<JointLaw> laws_;

@@ -48,7 +48,9 @@ std::unique_ptr<UdpSocket> UdpSocket::device_end(const std::string& device) {
 
 /// `port` 0: the device's end.
 UdpSocket::UdpSocket(const std::string& device, std::uint16_t port)
-    : name_("UDP " + printable(device)), socket_(socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0)) {
+    : name_("UDP " + printable(device)),
+      answers_(port == 0),
+      socket_(socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0)) {
   const auto refuse = [&](const std::string& problem, const std::string& remedy) {
     throw DriverError(name_ + ": " + problem + "; " + remedy);
   };
@@ -74,12 +76,17 @@ UdpSocket::UdpSocket(const std::string& device, std::uint16_t port)
 }
 
 std::size_t UdpSocket::receive(std::span<std::uint8_t> bytes) noexcept {
-  sockaddr_in from{};
-  socklen_t size = sizeof from;
-  const ssize_t got = recvfrom(socket_.number(), bytes.data(), bytes.size(), MSG_TRUNC, generic(from), &size);
-  if (got <= 0) return 0;
-  peer_ = from;
-  return static_cast<std::size_t>(got);
+  for (int i = 0; i <= kMaxDropped; ++i) {
+    sockaddr_in from{};
+    socklen_t size = sizeof from;
+    const ssize_t got = recvfrom(socket_.number(), bytes.data(), bytes.size(), MSG_TRUNC, generic(from), &size);
+    if (got < 0 && errno != ECONNREFUSED) return 0;  // that error is of an earlier datagram of ours
+    const bool of_peer = from.sin_port == peer_.sin_port && from.sin_addr.s_addr == peer_.sin_addr.s_addr;
+    if (got <= 0 || !(answers_ || of_peer)) continue;
+    peer_ = from;
+    return static_cast<std::size_t>(got);
+  }
+  return 0;
 }
 
 bool UdpSocket::send(std::span<const std::uint8_t> bytes) noexcept {

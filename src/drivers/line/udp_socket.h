@@ -2,7 +2,8 @@
 /// A UdpSocket is a DatagramLine over UDP of IPv4. All system calls of `receive` and `send` are non-blocking.
 ///
 /// The host's end takes datagrams of the device's address alone. With a device on the loopback it is bound to the
-/// loopback. The device's end, of a simulated device, is bound to the device's address and answers the last sender.
+/// loopback. The device's end, of a simulated device, is bound to the device's address and answers the last sender. One
+/// call of `receive` drops up to kMaxDropped others and empty ones.
 
 #include <netinet/in.h>
 
@@ -19,6 +20,8 @@ std::optional<sockaddr_in> udp_address(const std::string& text);
 
 class UdpSocket final : public DatagramLine {
  public:
+  static constexpr int kMaxDropped = 16;
+
   /// `device` is its address (udp_address), `port` that of the host. Throws DriverError.
   static std::unique_ptr<UdpSocket> host_end(const std::string& device, std::uint16_t port);
   static std::unique_ptr<UdpSocket> device_end(const std::string& device);
@@ -31,8 +34,9 @@ class UdpSocket final : public DatagramLine {
   UdpSocket(const std::string& device, std::uint16_t port);
 
   std::string name_;
+  bool answers_;  // the device's end
   Descriptor socket_;
-  sockaddr_in peer_{};  // of the last datagram; port 0: none yet
+  sockaddr_in peer_{};  // port 0: none yet
 };
 
 }  // namespace robot_control

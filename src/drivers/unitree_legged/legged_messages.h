@@ -93,7 +93,7 @@ struct LegBattery {
   std::array<std::uint8_t, 10> cells{};                            ///< units of kCellVoltage; 0: no cell
 };
 
-inline constexpr double kCellVoltage = 0.032;  ///< V
+inline constexpr double kCellVoltage = 0.032;  ///< V, measured with the maker's library
 
 struct LowState {
   LegHead head;

@@ -36,6 +36,7 @@ void UnitreeLeggedDriver::restart() noexcept {
   forget();
   has_state_ = false;
   rejected_ = {};
+  rejections_ = 0;
 }
 
 void UnitreeLeggedDriver::receive() noexcept {
@@ -69,6 +70,8 @@ void UnitreeLeggedDriver::receive() noexcept {
 void UnitreeLeggedDriver::reject(const Rejected& rejected) noexcept {
   if (!has_state_ && rejected_.cause == DriveCause::kNone) state_ns_ = now_ns_;
   rejected_ = rejected;
+  rejected_ns_ = now_ns_;
+  ++rejections_;
   const bool in_order = rejected.cause != DriveCause::kRestarted && rejected.cause != DriveCause::kStale;
   ++(in_order ? link_.errors : link_.late);
 }
@@ -85,6 +88,7 @@ void UnitreeLeggedDriver::accept(const LowState& state) noexcept {
   state_ns_ = now_ns_;
   has_state_ = true;
   rejected_ = {};
+  rejections_ = 0;
   set(DrivePhase::kRunning, DriveCause::kNone);
   for (std::size_t i = 0; i < parameters_.joints.size(); ++i) {
     const UnitreeLeggedJoint& joint = parameters_.joints[i];
@@ -114,17 +118,18 @@ bool UnitreeLeggedDriver::is_possible(const LowState& state) noexcept {
 }
 
 void UnitreeLeggedDriver::judge_silence() noexcept {
-  const bool nothing_came = rejected_.cause == DriveCause::kNone;
-  if ((!has_state_ && nothing_came) || now_ns_ - state_ns_ <= max_silence_ns_) return;
-  if (nothing_came) return fail(DriveCause::kSilent, "state");
+  if ((!has_state_ && rejections_ < kFewest) || now_ns_ - state_ns_ <= max_silence_ns_) return;
+  if (rejected_.cause == DriveCause::kNone || now_ns_ - rejected_ns_ > max_silence_ns_ / 2)
+    return fail(DriveCause::kSilent, "state");
   fail(rejected_.cause, rejected_.subject, 0, rejected_.found, rejected_.expected);
 }
 
 void UnitreeLeggedDriver::read(SensorFrame& sensors) noexcept {
   now_ns_ = clock_();
-  const std::int64_t last_ns = has_state_ ? state_ns_ : now_ns_;
+  const bool waits = has_state_;
+  const std::int64_t last_ns = state_ns_;
   receive();
-  if (has_state_ && state_ns_ == last_ns) ++link_.lost;
+  if (waits && state_ns_ == last_ns) ++link_.lost;
   judge_silence();
   const bool running = this->running();
   const bool faulty = status().state == DrivePhase::kFault;

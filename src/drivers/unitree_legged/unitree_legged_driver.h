@@ -17,8 +17,8 @@
 /// has the emergency stop while L2 and B of the remote are pressed. The raw numbers of the feet's sensors are not
 /// newton, so the frame has no contacts.
 ///
-/// kStarting lasts until the first state. Faults stay until the operator's reset. After max_silence without a new state
-/// the cause is what came instead:
+/// kStarting lasts until the first state, or kFewest datagrams that are none. Faults stay until the operator's reset.
+/// After max_silence without a new state the cause is what came instead, in the second half of that time:
 ///
 ///   silence         nothing
 ///   checksum        wrong check sums; if none was ever right, the firmware encrypts them, which is refused
@@ -47,6 +47,7 @@ namespace robot_control {
 class UnitreeLeggedDriver final : public Driver, private DriveStateMachine {
  public:
   static constexpr double kSpeedMargin = 1.5;  ///< of the velocity limit, above which a position jumped
+  static constexpr std::uint64_t kFewest = 5;
 
   /// The motors move the first joints of the robot. `clock` states the present time in ns and is called in each cycle.
   UnitreeLeggedDriver(UnitreeLeggedParameters parameters, const DriveMotors& motors, double period,
@@ -97,8 +98,10 @@ class UnitreeLeggedDriver final : public Driver, private DriveStateMachine {
   const std::int64_t max_silence_ns_;
   const std::unique_ptr<DatagramLine> line_;
   const std::function<std::int64_t()> clock_;
-  unitree::LowState state_;    // the newest one
-  Rejected rejected_;          // the last datagram since then that was not used
+  unitree::LowState state_;  // the newest one
+  Rejected rejected_;        // the last datagram since then that was not used
+  std::int64_t rejected_ns_ = 0;
+  std::uint64_t rejections_ = 0;
   bool has_state_ = false;     // since the start or the reset
   std::int64_t state_ns_ = 0;  // when it came; without one, when the first datagram came that was not used
   std::int64_t now_ns_ = 0;

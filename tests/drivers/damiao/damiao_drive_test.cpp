@@ -98,6 +98,19 @@ TEST_F(DamiaoDriveTest, AJointThatIsOffByATurnOfTheRotorIsRefusedBeforeAnyTorque
   }
 }
 
+TEST_F(DamiaoDriveTest, TheAnswerToAnotherProgramThatReadsARegisterIsNoSample) {
+  add_motor();
+  ASSERT_TRUE(rig_.runs());
+  const double position = rig_.drive().sample().joint.position;
+  rig_.drive().receive(
+      damiao::encode(static_cast<canid_t>(1 + damiao::kMaxNode + 1),
+                     {.node = 1, .operation = damiao::Operation::kRead, .number = damiao::Register::kGear}),
+      rig_.now_ns());
+  rig_.run(0.02);
+  EXPECT_EQ(rig_.drive().status().state, DrivePhase::kRunning) << rig_.drive().words();
+  EXPECT_NEAR(rig_.drive().sample().joint.position, position, 0.1);
+}
+
 TEST_F(DamiaoDriveTest, AJointNearItsStartAngleRuns) {
   pair_.drive.drive.offset = 0.5;
   pair_.drive.start_angle = 0.4;

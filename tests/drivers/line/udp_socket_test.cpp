@@ -32,7 +32,7 @@ TEST_F(UdpSocketTest, ADatagramEachWayArrivesWholeAndNothingBlocks) {
   const auto host = UdpSocket::host_end(device_, port_);
   Bytes bytes{};
   EXPECT_EQ(robot->receive(bytes), 0U);
-  EXPECT_FALSE(robot->send(bytes)) << "nobody has sent yet";
+  EXPECT_FALSE(robot->send(bytes)) << "there is no sender yet";
   const AllocationGuard guard;
   ASSERT_TRUE(host->send(Bytes{1, 2, 3, 4}));
   ASSERT_EQ(robot->receive(bytes), 4U);
@@ -42,6 +42,18 @@ TEST_F(UdpSocketTest, ADatagramEachWayArrivesWholeAndNothingBlocks) {
   EXPECT_EQ(bytes, (Bytes{5, 6, 7, 8}));
   EXPECT_EQ(host->receive(bytes), 0U);
   EXPECT_EQ(guard.count(), 0U);
+}
+
+TEST_F(UdpSocketTest, EmptyDatagramsDelayNothing) {
+  const auto robot = UdpSocket::device_end(device_);
+  const auto host = UdpSocket::host_end(device_, port_);
+  Bytes bytes{};
+  ASSERT_TRUE(host->send(Bytes{1}));
+  ASSERT_EQ(robot->receive(bytes), 4U);
+  for (int i = 0; i < 5; ++i) ASSERT_TRUE(robot->send({}));
+  ASSERT_TRUE(robot->send(Bytes{2}));
+  ASSERT_EQ(host->receive(bytes), 4U);
+  EXPECT_EQ(bytes[0], 2);
 }
 
 TEST_F(UdpSocketTest, TheSizeOfALongerDatagramIsKnown) {

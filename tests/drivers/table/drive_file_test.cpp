@@ -207,7 +207,10 @@ TEST_F(DriveFileTest, WhatADamiaoCannotDoIsRefused) {
                 HasSubstr("left_wheel_joint.node = " + node + ": must be 1 … 15"))
         << node;
   }
-  EXPECT_THAT(refusal(kDamiao, "node: 2", "node: 2, answers: 2"), HasSubstr("answers = 2: must not be its node"));
+  for (const char* answers : {"2", "5", "257", "2047"}) {
+    EXPECT_THAT(refusal(kDamiao, "node: 2", std::string("node: 2, answers: ") + answers),
+                HasSubstr(std::string("answers = ") + answers + ": must not be an identifier that motors obey"));
+  }
   EXPECT_THAT(refusal(kDamiao, "torque_limit: 40", "torque_limit: 55"), HasSubstr("must be at most torque_range"));
   EXPECT_THAT(refusal(kDamiao, "velocity_limit: 30", "velocity_limit: 30, gear: 2"),
               HasSubstr("must be at most velocity_range / gear"));

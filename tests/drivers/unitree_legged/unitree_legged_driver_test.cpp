@@ -212,10 +212,10 @@ TEST_P(UnitreeLegged, ATickThatGoesBackIsARestart) {
       std::ranges::copy(all, bytes.begin());
       return all.size();
     }
-    bool send(std::span<const std::uint8_t>) noexcept override { return pending = true; }
+    bool send(std::span<const std::uint8_t>) noexcept override { return pending = answers; }
     std::string name() const override { return "a line"; }
     unitree::LowState state;
-    bool pending = false;
+    bool pending = false, answers = true;
   };
   auto line = std::make_unique<Robot>();
   Robot& robot = *line;
@@ -246,6 +246,11 @@ TEST_P(UnitreeLegged, ATickThatGoesBackIsARestart) {
   cycle(0x80000201);
   EXPECT_EQ(frame.driver_state, DriverState::kFault);
   EXPECT_THAT(driver.warning(), AllOf(HasSubstr("reports a jump of its position"), HasSubstr("thigh")));
+  driver.reset();
+  for (const std::uint32_t tick : {0x80000300U, 0x80000300U}) cycle(tick);  // the second one is a copy
+  robot.answers = false;
+  for (int i = 0; i < 11; ++i) cycle(0);
+  EXPECT_THAT(driver.warning(), HasSubstr("is silent: no state")) << "the copy came long before";
 }
 
 TEST_P(UnitreeLegged, AHotMotorAndALowBatteryAreNamedAndTheMotorsObey) {
