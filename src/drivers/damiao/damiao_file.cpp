@@ -28,9 +28,8 @@ void DamiaoFile::check(const DamiaoParameters& joint, JointValues& values) const
   if (drive.node == 0 || drive.node > kMaxNode)
     values.refuse("node", "must be 1 … 15: the answers of a Damiao motor hold four bits of it", "set another ESC_ID");
   const std::uint64_t to_motor = joint.answers % 0x100, mode = joint.answers / 0x100;
-  if (joint.answers == kRegisterId || (mode <= 3 && 1 <= to_motor && to_motor <= kMaxNode))
-    values.refuse("answers",
-                  "must not be an identifier that motors obey: 1 … 15, 257 … 271, 513 … 527, 769 … 783, 2047",
+  if (mode <= 3 && 1 <= to_motor && to_motor <= kMaxNode)
+    values.refuse("answers", "must not be an identifier that motors obey: 1 … 15, 257 … 271, 513 … 527, 769 … 783",
                   "set another MST_ID");
   if (drive.torque_limit > joint.ranges.torque * drive.gear)
     values.refuse("torque_limit", "must be at most torque_range · gear, which the motor can be ordered");

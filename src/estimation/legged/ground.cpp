@@ -20,8 +20,8 @@ bool Ground::level(std::size_t foot, double deviation, const LegFilter& filter, 
   Eigen::Map<Vector3d> normal(state.normal.data());
   normal += (now - normal) / kFootfalls;
   const double slope = deviation / (2 * length_);
-  const double most = kLevelGate * kLevelGate * (slope * slope + filter.tilt_variance());
-  bool level = now.head<2>().squaredNorm() <= most && normal.head<2>().squaredNorm() <= most;
+  const double limit = kLevelGate * kLevelGate * (slope * slope + filter.tilt_variance());
+  bool level = now.head<2>().squaredNorm() <= limit && normal.head<2>().squaredNorm() <= limit;
   for (std::size_t other = 0; other < kLegs; ++other)
     level = level && (other == foot || filter.as_high(foot, other, deviation, kLevelGate));
   return level;

@@ -200,7 +200,7 @@ TEST_P(UnitreeLegged, ARobotThatWasSwitchedOnAgainIsNamed) {
   EXPECT_EQ(run(1).driver_state, DriverState::kRunning);
 }
 
-/// Only the tick tells a restart that is shorter than the silence that is allowed.
+/// Only the tick shows a restart that is shorter than the allowed silence.
 TEST_P(UnitreeLegged, ATickThatGoesBackIsARestart) {
   struct Robot final : DatagramLine {
     std::size_t receive(std::span<std::uint8_t> bytes) noexcept override {
