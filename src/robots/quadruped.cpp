@@ -37,8 +37,9 @@ void require_drives(const Parameters& parameters, const LegModel& machine) {
   std::vector<std::string> joints;
   for (const JointModel& joint : machine.joints) joints.push_back(joint.name);
   const std::unique_ptr<DriveFile> file = read_drive_file(parameters, joints);
-  if (!file->closes_impedance()) {
-    throw ParameterError("robot.drives = " + parameters.drives + ": " + std::string(file->request().drive) +
+  const std::string_view drive = file->request().drive;
+  if (std::ranges::find(kDriveRows, drive, &DriveRow::name)->command != "impedance") {
+    throw ParameterError("robot.drives = " + parameters.drives + ": " + std::string(drive) +
                          " drives do not close the impedance of a joint by themselves, and a robot on legs needs it. "
                          "Use drives that do (docs/drivers.md)");
   }
@@ -50,9 +51,9 @@ void require_drives(const Parameters& parameters, const LegModel& machine) {
                 ", with which the robot plans; set a lower limit in the URDF, or use a stronger drive";
   };
   for (std::size_t i = 0; i < machine.joints.size(); ++i) {
-    const DriveCapability drive = file->capability(i);
-    add(machine.joints[i], "torque_limit", drive.torque, machine.joints[i].effort_limit);
-    add(machine.joints[i], "velocity_limit", drive.velocity, machine.joints[i].velocity_limit);
+    const DriveCapability able = file->capability(i);
+    add(machine.joints[i], "torque_limit", able.torque, machine.joints[i].effort_limit);
+    add(machine.joints[i], "velocity_limit", able.velocity, machine.joints[i].velocity_limit);
   }
   if (!problems.empty()) throw ParameterError(problems);
 }

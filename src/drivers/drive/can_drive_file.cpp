@@ -25,14 +25,6 @@ std::optional<DriveFile::Overload> CanDriveFile::overload() {
   return {};
 }
 
-bool CanDriveFile::closes_impedance() const {
-  const DriveSet all = drives();
-  for (std::size_t i = 0; i < all.size(); ++i) {
-    if (all[i].drive_parameters().max_stiffness == 0) return false;
-  }
-  return true;
-}
-
 CanSockets CanDriveFile::open_buses() const {
   CanSockets sockets;
   const std::vector<std::string> buses = drives().buses();

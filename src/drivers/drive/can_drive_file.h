@@ -52,7 +52,6 @@ class CanDriveFile : public DriveFile {
   std::optional<Overload> overload() override;
   const std::string& address() const override { return bus.address; }
   LineEnd open_line(RealtimePolicy /*policy*/, const DriverClock& /*clock*/) const override { return open_buses(); }
-  bool closes_impedance() const override;
   std::unique_ptr<Driver> make_driver(const DriveMotors& motors, LineEnd line, DriverClock clock) const override;
 
   /// Returns the drives of all joints.

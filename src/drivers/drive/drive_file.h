@@ -87,9 +87,6 @@ class DriveFile {
 
   virtual DriveCapability capability(std::size_t joint) const = 0;
 
-  /// Returns whether each drive closes the impedance of its joint (JointMode::kImpedance) by itself.
-  virtual bool closes_impedance() const { return false; }
-
   /// Returns how old in s the samples may become without a fault of the robot, by the nature of the line.
   virtual double tolerated_silence() const { return 0; }
 

@@ -37,6 +37,7 @@ struct Writer {
     exact = exact && std::isfinite(value);
     plain(std::isfinite(value) ? value : 0.0F);
   }
+  void percent(std::uint8_t value) noexcept { plain(value); }
   void fixed(double value, double steps) noexcept {
     const double scaled = std::isnan(value) ? 0 : std::round(value * steps);
     const double clamped = std::fmax(-32768, std::fmin(32767, scaled));
@@ -58,6 +59,10 @@ struct Reader {
   void real(float& value, float maximum) noexcept {
     plain(value);
     exact = exact && std::abs(value) <= maximum;  // false for NaN
+  }
+  void percent(std::uint8_t& value) noexcept {
+    plain(value);
+    exact = exact && value <= 100;
   }
   void fixed(double& value, double steps) noexcept {
     std::int16_t raw = 0;
@@ -123,7 +128,7 @@ void layout(Wire& wire, State& state) noexcept {
   wire.plain(battery.version_high);
   wire.plain(battery.version_low);
   wire.plain(battery.status);
-  wire.plain(battery.charge);
+  wire.percent(battery.charge);
   wire.plain(battery.current);
   wire.plain(battery.cycles);
   wire.plain(battery.bq_temperature);
@@ -184,12 +189,7 @@ Flaw decode(std::span<const std::uint8_t> bytes, LowCmd& command) noexcept {
 }
 
 Flaw decode(std::span<const std::uint8_t> bytes, LowState& state) noexcept {
-  LowState read;
-  const Flaw flaw = decode_message(bytes, kStateBytes, read);
-  if (flaw != Flaw::kNone) return flaw;
-  if (read.battery.charge > 100) return Flaw::kValue;
-  state = read;
-  return Flaw::kNone;
+  return decode_message(bytes, kStateBytes, state);
 }
 
 }  // namespace robot_control::unitree

@@ -13,7 +13,6 @@ class UnitreeLeggedFile final : public FileOfJoints<DatagramDriveFile, UnitreeLe
   std::string_view line_block() const override { return "unitree_legged"; }
   Keys line_keys() override { return keys(line_); }
   void check_line(GivenValues& given) const override;
-  bool closes_impedance() const override { return true; }
   double tolerated_silence() const override { return kLeggedSilence; }
   const std::string& address() const override { return line_.address; }
   std::uint16_t host_port() const override { return static_cast<std::uint16_t>(line_.port); }

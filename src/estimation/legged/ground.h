@@ -4,8 +4,7 @@
 /// normal   n of the diagonals between the last footfalls of all legs, with the mean over kFootfalls of them. A ball
 ///          foot rolls along the ground, not along the horizon
 /// level    the ground is level where n and its mean are vertical, and where a footfall is as high as those of the
-/// other
-///          legs, all within kLevelGate deviations. The mean is still vertical where a slope begins
+///          other legs, all within kLevelGate deviations. The mean is still vertical where a slope begins
 /// plane    a footfall on level ground shows the height of the body if it is within kPlaneGate deviations of the plane.
 ///          With it, it shows roll and pitch, and so the bias of the accelerometer. Another height is a new plane; the
 ///          body's height stays
