@@ -180,7 +180,7 @@ def opened(sealed: Any, not_finite: Collection[str] = (), longest: int = 0) -> A
         message.deserialize_numpy(data, np) if sealed.kind._type == GRID else message.deserialize(data)
     except (genpy.DeserializationError, UnicodeError, ValueError, TypeError, MemoryError, OverflowError) as error:
         raise UnfitError(f"is no {sealed.kind._type}: {str(error)[:100]}") from None
-    require_fit(message, MAY_BE_INFINITE.union(not_finite))
+    require_fit(message, MAY_BE_INFINITE.union(not_finite) if not_finite else MAY_BE_INFINITE)
     with contextlib.suppress(AttributeError):
         message._connection_header = sealed._connection_header
     return message
@@ -210,17 +210,29 @@ def guard_action(name: str, **kinds: type) -> None:
         rospy.Subscriber(f"{rospy.remap_name(name)}/{topic}", kind, None)
 
 
+@cache
+def _checked(names: tuple[str, ...], kinds: tuple[str, ...]) -> tuple[tuple[str, str, bool], ...]:
+    """Those of these fields that may be unfit: name, type of its elements, whether it is an array."""
+    fields = ((name, *of.partition("[")) for name, of in zip(names, kinds, strict=True))
+    return tuple(
+        (name, element, bool(bracket))
+        for name, element, bracket, _ in fields
+        if element in (*FLOATS, "string") or "/" in element
+    )
+
+
 def require_fit(message: Any, may_be_infinite: Collection[str] = (), path: str = "") -> None:
     """Raises UnfitError, with the field, where a number of a message is NaN or infinite, or a text has a zero byte."""
-    for name, kind in zip(message.__slots__, message._slot_types, strict=True):
-        value, where = getattr(message, name), f"{path}{name}"
-        element, is_array = kind.partition("[")[0], "[" in kind
-        if element in FLOATS and name not in may_be_infinite:
-            if not (all(map(math.isfinite, value)) if is_array else math.isfinite(value)):
-                raise UnfitError(f"{where} must be finite")
-        elif element == "string":
+    for name, element, is_array in _checked(tuple(message.__slots__), tuple(message._slot_types)):
+        value = getattr(message, name)
+        if element == "string":
             if "\0" in ("".join(value) if is_array else value):
-                raise UnfitError(f"{where} must not contain a zero byte")
-        elif "/" in element and name not in may_be_infinite:
+                raise UnfitError(f"{path}{name} must not contain a zero byte")
+        elif name in may_be_infinite:
+            continue
+        elif element in FLOATS:
+            if not (all(map(math.isfinite, value)) if is_array else math.isfinite(value)):
+                raise UnfitError(f"{path}{name} must be finite")
+        else:
             for each in value if is_array else (value,):
-                require_fit(each, may_be_infinite, f"{where}.")
+                require_fit(each, may_be_infinite, f"{path}{name}.")

@@ -18,13 +18,28 @@ def kind_of(message: RobotKind) -> Kind:
     return Kind(name=message.kind, **nodes, fault_components=fault_components, fault_kinds=tuple(message.fault_kinds))
 
 
+class _Running:
+    """The kind of the running robot, converted once per message."""
+
+    def __init__(self) -> None:
+        self._topic = Latest("robot_kind", RobotKind)
+        self._message: RobotKind | None = None
+        self._kind = Kind()
+
+    def kind(self) -> Kind:
+        message = self._topic.message
+        if message is not self._message:
+            self._message, self._kind = message, kind_of(message)
+        return self._kind
+
+
 @cache
-def _topic() -> Latest:
+def _running() -> _Running:
     """One subscription for all parts of a process."""
-    return Latest("robot_kind", RobotKind)
+    return _Running()
 
 
-forget = _topic.cache_clear
+forget = _running.cache_clear
 """Makes the next call of `running_kind` subscribe again."""
 
 
@@ -43,5 +58,4 @@ def refuse_running_legs(tool: str) -> None:
 
 def running_kind() -> Kind:
     """The kind that was received last; before, one without a name."""
-    message = _topic().message
-    return Kind() if message is None else kind_of(message)
+    return _running().kind()

@@ -1,4 +1,6 @@
-"""Half an hour of one page that shows a robot which drives: neither browser nor server grow. CONSOLE_SOAK_MINUTES=N."""
+"""Half an hour of one page in a browser, and ten minutes of three pages without one, of a robot that drives: neither
+browser nor server grow. CONSOLE_SOAK_MINUTES=N, CONSOLE_SERVER_MINUTES=N.
+"""
 
 import os
 import time
@@ -6,9 +8,11 @@ import time
 from system.console.console_support import SPEED, ConsoleTestCase
 from system.system_support import wait_for
 
+from bench.console.page import Page
 from bench.console.process import cost_of
 
 MINUTES = float(os.environ.get("CONSOLE_SOAK_MINUTES", "30"))
+SERVER_MINUTES = float(os.environ.get("CONSOLE_SERVER_MINUTES", "10"))
 SETTLED = 1.5
 """min, after which the plots are full and the server has loaded all that it needs"""
 GROWTH, SERVER_GROWTH = 1.0, 5.0
@@ -45,3 +49,23 @@ class ConsoleSoakTest(ConsoleTestCase):
         self.assertLessEqual(server_now - server, SERVER_GROWTH)
         self.assertLessEqual(redraw, REDRAW)
         self.assertEqual(browser.problems(), [])
+
+    def test_the_server_does_not_grow_with_three_pages(self) -> None:
+        _, cookie = self.console.log_in()
+        pages = [Page(self.console.origin, self.console.origin, cookie) for _ in range(3)]
+        pages[0].send({"type": "take", "force": True})
+        pages[0].await_link()
+        pages[0].linear = SPEED
+        began, used = time.monotonic(), cost_of(self.console.process.pid)[0]
+        figures: list[float] = []  # MiB
+        while time.monotonic() - began < 60 * SERVER_MINUTES:
+            pages[0].held = not pages[0].held
+            time.sleep(30.0)
+            figures.append(self.memory())
+        elapsed, cost = time.monotonic() - began, cost_of(self.console.process.pid)[0] - used
+        settled = figures[len(figures) // 8]
+        print(f"after {SERVER_MINUTES:g} min with three pages: {figures[-1]:.1f} MiB, grown by", end=" ")
+        print(f"{figures[-1] - settled:.1f} since an eighth of it; {100 * cost / elapsed:.1f} % of a core")
+        for page in pages:
+            page.end()
+        self.assertLessEqual(figures[-1] - settled, SERVER_GROWTH)

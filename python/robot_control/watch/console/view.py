@@ -75,13 +75,14 @@ class View:
     def fast(self) -> Values:
         """The values of a frame; what a silent topic said last is not among them."""
         now = time.monotonic()
-        fresh = {name: topic.fresh(now, SILENCE) for name, topic in self._topics.items()}
+        newest = {name: topic.newest for name, topic in self._topics.items()}
+        fresh: Values = {name: message if now - at < SILENCE else None for name, (message, at) in newest.items()}
         odometry, truth, joints, drive, legs = (fresh[name] for name in ("odom", "truth", "joints", "drive", "legs"))
         listed = drive is not None and bool(drive.sources)
         self._asked = self._requests.in_force(drive.commander if listed else None)
         values: Values = {
             "type": "fast",
-            "ages": {name: topic.age(now) for name, topic in self._topics.items()},
+            "ages": {name: None if message is None else round(now - at, 2) for name, (message, at) in newest.items()},
             "asked": None if self._asked is None else self._asked[0],
             "limited": None if fresh["limited"] is None else speeds_of(fresh["limited"].twist),
             "joints": {} if joints is None else dict(zip(joints.name, joints.position, strict=False)),
