@@ -20,6 +20,7 @@ DriveParameters with_impedance(const MitJoint& joint) {
 MitDrive::MitDrive(const MitJoint& joint, double period)
     : Drive(with_impedance(joint), period),
       ranges_(joint.ranges),
+      scale_(joint.ranges),
       start_angle_(joint.start_angle),
       motor_gear_(joint.motor_gear) {}
 
@@ -27,11 +28,18 @@ void MitDrive::restart(bool reset, std::int64_t /*now_ns*/) noexcept {
   phase_ = Phase::kSetup;
   reset_ = reset;
   accept_answer();
+  scale_.clear();
   forget_motor();
 }
 
 void MitDrive::compare(const char* name, double found, double expected) noexcept {
   if (!(std::abs(found - expected) <= kTolerance * expected)) fail(DriveCause::kDiffers, name, 0, found, expected);
+}
+
+void MitDrive::check_scale(double position, double velocity, std::int64_t now_ns) noexcept {
+  if (!scale_.step(position, velocity, now_ns)) return;
+  fail(DriveCause::kDiffers, "velocity_range by its positions, or position_range", 0, ranges_.velocity / scale_.ratio(),
+       ranges_.velocity);
 }
 
 can_frame MitDrive::request_set_up(std::int64_t now_ns) noexcept {
@@ -80,7 +88,7 @@ can_frame MitDrive::next_frame(const DriveCommand& command, std::int64_t now_ns)
   if (phase_ == Phase::kSetup) return request_set_up(now_ns);
   if (in_error()) return clear_error(now_ns);
   if (phase_ == Phase::kPosition) {
-    set(DrivePhase::kStarting, DriveCause::kFirstSample);
+    set(DrivePhase::kStarting, DriveCause::kFirstFrame);
     if (!sample().valid) return release();
     check_start_angle();
     phase_ = Phase::kReady;

@@ -17,6 +17,7 @@
 
 #include "drivers/drive/drive.h"
 #include "drivers/drive/mit_joint.h"
+#include "drivers/drive/motion_scale.h"
 
 namespace robot_control {
 
@@ -55,6 +56,8 @@ class MitDrive : public Drive {
   bool setting_up() const noexcept { return phase_ == Phase::kSetup; }
   /// Fails if the motor's own number is another one than that of the drive file.
   void compare(const char* name, double found, double expected) noexcept;
+  /// Takes a sample of a motor whose ranges cannot be read, before it is accepted. Fails if its scale is wrong.
+  void check_scale(double position, double velocity, std::int64_t now_ns) noexcept;
   /// The motor states its gear; numbers below 1 and NaN count as 1.
   void set_motor_gear(double gear) noexcept { motor_gear_ = gear > 1 ? gear : 1; }
 
@@ -76,6 +79,7 @@ class MitDrive : public Drive {
   void check_start_angle() noexcept;
 
   MitRanges ranges_;
+  MotionScale scale_;
   std::optional<double> start_angle_;
   double motor_gear_;
   Phase phase_ = Phase::kSetup;
