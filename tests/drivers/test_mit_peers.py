@@ -14,6 +14,8 @@ from support.pypi_package import imported
 
 PROGRAM = Path(__file__).parents[2] / "build/robot_control/tests/drivers/mit_codec_lines"
 FRAMES = 100_000
+PACKED = 1_000
+"""frames of an AK that the peer packs or unpacks itself, in some ms each; its raw numbers of all others are compared"""
 
 
 @pytest.fixture(scope="module")
@@ -165,35 +167,53 @@ def test_parameters_of_a_cybergear_are_equal(cybergear):
 def ak_motors(peer, chance):
     """A random type of motor each time, with its ranges and its direction."""
     kinds = [value for name, value in sorted(vars(peer).items()) if name.lower().endswith("_params")]
+    lengths = {"p_des": 16, "v_des": 12, "kp": 12, "kd": 12, "tau": 12}
+    arrays = {f"_{name}_BitArray": peer.BitArray(uint=0, length=bits) for name, bits in lengths.items()}
+    arrays |= {"_cmd_bytes": peer.BitArray(uint=0, length=64), "_recv_bytes": peer.BitArray(uint=0, length=48)}
     while True:
         motor = object.__new__(peer.CanMotorController)
         motor.motorParams = limits = chance.choice(kinds)
-        for name, bits in (("p_des", 16), ("v_des", 12), ("kp", 12), ("kd", 12), ("tau", 12)):
-            setattr(motor, f"_{name}_BitArray", peer.BitArray(uint=0, length=bits))
-        motor._cmd_bytes, motor._recv_bytes = peer.BitArray(uint=0, length=64), peer.BitArray(uint=0, length=48)
+        vars(motor).update(arrays)
         yield motor, (limits["P_MAX"], limits["V_MAX"], limits["T_MAX"]), limits["AXIS_DIRECTION"]
+
+
+def packed(raw):
+    """The data of an order, of its raw numbers."""
+    word = 0
+    for value, bits in zip(raw, (16, 12, 12, 12, 12), strict=True):
+        word = word << bits | value
+    return word.to_bytes(8, "big")
 
 
 def test_orders_of_an_ak_are_equal(mini_cheetah, capsys):
     chance = random.Random(5)
     lines, expected = [], []
-    reply = bytes(6)
-    for _, (motor, ranges, direction) in zip(range(FRAMES), ak_motors(mini_cheetah, chance), strict=False):
+    for number, (motor, ranges, direction) in zip(range(FRAMES), ak_motors(mini_cheetah, chance), strict=False):
         position, velocity, stiffness, damping, torque = order = drawn_order(chance, ranges)
         lines.append(order_line("ak", ranges, order))
+        if number >= PACKED:
+            motor._send_raw_command = lambda *raw: expected.append((1, packed(raw))) or bytes(6)
+            motor.decode_motor_status = lambda _: (0, 0, 0)
         motor._send_can_frame = lambda data: expected.append((1, data))
-        motor._recv_can_frame = lambda: (0, 6, reply)
+        motor._recv_can_frame = lambda: (0, 6, bytes(6))
         motor.send_rad_command(direction * position, direction * velocity, stiffness, damping, direction * torque)
     capsys.readouterr()  # It prints what it clips.
     assert frames(lines) == expected
 
 
+def unpacked(data):
+    """The raw position, velocity and torque of a reply."""
+    word = int.from_bytes(data, "big")
+    return word >> 24 & 0xFFFF, word >> 12 & 0xFFF, word & 0xFFF
+
+
 def test_replies_of_an_ak_are_equal(mini_cheetah):
     chance = random.Random(6)
     lines, expected = [], []
-    for _, (motor, ranges, direction) in zip(range(FRAMES), ak_motors(mini_cheetah, chance), strict=False):
+    for number, (motor, ranges, direction) in zip(range(FRAMES), ak_motors(mini_cheetah, chance), strict=False):
         data = chance.randbytes(6)
         lines.append(feedback_line("ak", ranges, 0, data))
-        read = motor.convert_raw_to_physical_rad(*motor.decode_motor_status(data))
+        raw = motor.decode_motor_status(data) if number < PACKED else unpacked(data)
+        read = motor.convert_raw_to_physical_rad(*raw)
         expected.append((data[0], *(direction * value for value in read)))
     assert numbers(lines) == expected
