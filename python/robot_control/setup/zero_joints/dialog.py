@@ -92,6 +92,7 @@ def find_zeros(joints: Sequence[Zeroed], robot: Robot, ask: Asker) -> dict[str, 
 
 def _turn(joint: Zeroed, robot: Robot, ask: Asker) -> tuple[int, float]:
     while True:
+        ask.line("Let go of all joints, and press Enter.")
         before = robot.angles()
         ask.line(f"Turn only {joint.name} by hand, {joint.positive}, by 10° or more; hold it, and press Enter.")
         found = turned(before, robot.angles())

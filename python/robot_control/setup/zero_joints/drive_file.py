@@ -103,5 +103,5 @@ def _set(lines: list[str], name: str, key: str, value: str) -> None:
         return
     _, at, match = found[0]
     start = f"{match[1]}{key}: {value}"
-    width = match.start(4) if match[4] else 0
-    lines[at] = f"{start:{width}}{'' if len(start) < width or not match[4] else ' '}{match[4]}\n"
+    comment = f" {match[4]}" if match[4] else ""
+    lines[at] = f"{start.ljust(match.start(4) - 1 if comment else 0)}{comment}\n"
