@@ -15,18 +15,21 @@ enum class SilenceReaction : std::uint8_t {
   kCoasts,   ///< The motor is released; on a slope the joint moves.
   kBrakes,   ///< The drive slows the joint down, and then releases the motor.
   kHolds,    ///< The drive slows the joint down, and then holds it.
+  kKeeps,    ///< The drive keeps its last order for ever.
 };
 
 inline std::vector<Word> words_of(SilenceReaction) {
   return {{"unknown", SilenceReaction::kUnknown},
           {"coasts", SilenceReaction::kCoasts},
           {"brakes", SilenceReaction::kBrakes},
-          {"holds", SilenceReaction::kHolds}};
+          {"holds", SilenceReaction::kHolds},
+          {"keeps", SilenceReaction::kKeeps}};
 }
 
 /// Returns what the drive does on silence, in words.
 inline std::string described(SilenceReaction reaction) {
-  return reaction == SilenceReaction::kUnknown ? "does what is unknown" : word_of(reaction);
+  if (reaction == SilenceReaction::kUnknown) return "does what is unknown";
+  return word_of(reaction) + (reaction == SilenceReaction::kKeeps ? " its last order for ever" : "");
 }
 
 struct DriveParameters {

@@ -102,9 +102,7 @@ void DamiaoDevice::run(std::int64_t now_ns, double /*seconds*/) {
   const double silence = 1.0e-9 * static_cast<double>(now_ns - ordered_ns_);
   if (state_ == State::kOn && timeout_ != 0 && silence > damiao::kTimeoutUnit * timeout_)
     state_ = State::kCommunicationLost;
-  const double torque = command_.torque +
-                        command_.stiffness * (command_.position - (motor_.position - parameters_.zero)) +
-                        command_.damping * (command_.velocity - motor_.velocity);
+  const double torque = mit_torque(command_, motor_.position - parameters_.zero, motor_.velocity);
   motor_.torque = state_ == State::kOn ? std::clamp(torque, -parameters_.torque_limit, parameters_.torque_limit) : 0;
 }
 

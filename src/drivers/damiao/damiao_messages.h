@@ -1,7 +1,7 @@
 #pragma once
 /// The frames of one Damiao motor (DM-J series) on CAN, with identifiers of 11 bits and 8 bytes of data.
 ///
-///   to the motor's number     an order of drive/mit_codec.h, or FF × 7 and the byte of a Request. Each is answered
+///   to the motor's number     an order of drive/mit_codec.h, or a Request. Each is answered
 ///   to 100h, 200h, 300h + it  orders of the other modes
 ///   to 7FFh                   number (2 bytes), operation, register, value (4 bytes), little-endian
 ///   to MST_ID, from it        Feedback, or the answer to a register, which repeats the request with the value
@@ -12,7 +12,6 @@
 
 #include <bit>
 #include <cstdint>
-#include <optional>
 
 #include "drivers/drive/mit_codec.h"
 
@@ -22,7 +21,7 @@ inline constexpr std::uint64_t kMaxNode = 15;  ///< Feedback holds four bits of 
 inline constexpr canid_t kRegisterId = 0x7FF;
 inline constexpr double kTimeoutUnit = 50.0e-6;  ///< s, of the register kTimeout
 
-enum class Request : std::uint8_t { kClear = 0xFB, kEnable = 0xFC, kRelease = 0xFD, kSetZero = 0xFE };
+using Request = MitRequest;
 
 enum class Operation : std::uint8_t { kRead = 0x33, kWrite = 0x55, kStore = 0xAA, kRefresh = 0xCC };
 
@@ -73,17 +72,10 @@ struct RegisterAccess {
 };
 
 inline can_frame encode(std::uint64_t node, Request request) noexcept {
-  const std::uint64_t word = ~std::uint64_t{0} << 8U | static_cast<std::uint64_t>(request);
-  return word_frame(static_cast<canid_t>(node), __builtin_bswap64(word), 8);
+  return encode_request(node, request);
 }
 
-/// Returns nothing if the frame is another order.
-inline std::optional<Request> decode_request(const can_frame& frame) noexcept {
-  const std::uint64_t word = __builtin_bswap64(data_word(frame));
-  const std::uint64_t last = word & 0xFFU;
-  if (word >> 8U != low_bits(56) || last < 0xFB || last > 0xFE) return std::nullopt;
-  return static_cast<Request>(last);
-}
+using robot_control::decode_request;
 
 inline can_frame encode(canid_t id, const MitRanges& ranges, const Feedback& feedback) noexcept {
   const std::uint64_t word = static_cast<std::uint64_t>(feedback.state) << 60U |

@@ -87,6 +87,9 @@ class DriveFile {
 
   virtual DriveCapability capability(std::size_t joint) const = 0;
 
+  /// Returns the angle of the joint in rad at each start and each reset, if it is stated.
+  virtual std::optional<double> start_angle(std::size_t /*joint*/) const { return {}; }
+
   /// Returns how old in s the samples may become without a fault of the robot, by the nature of the line.
   virtual double tolerated_silence() const { return 0; }
 
@@ -144,6 +147,11 @@ class FileOfJoints : public Base {
     DriveCapability capability{.velocity = common.velocity_limit};
     if constexpr (requires { common.torque_limit; }) capability.torque = common.torque_limit;
     return capability;
+  }
+
+  std::optional<double> start_angle(std::size_t joint) const override {
+    if constexpr (requires { joints_[joint].start_angle; }) return joints_[joint].start_angle;
+    return {};
   }
 
   const std::vector<Joint>& joints() const noexcept { return joints_; }

@@ -18,7 +18,7 @@ class OdriveFile final : public CanFileOf<OdriveParameters> {
 void OdriveFile::check(const OdriveParameters& joint, JointValues& values) const {
   const DriveParameters& drive = joint.drive;
   if (drive.node > kMaxNode) values.refuse("node", "must be 0 … 63 on an ODrive");
-  if (drive.on_silence == SilenceReaction::kBrakes || drive.on_silence == SilenceReaction::kHolds)
+  if (drive.on_silence != SilenceReaction::kUnknown && drive.on_silence != SilenceReaction::kCoasts)
     values.refuse("on_silence", "must be coasts or unknown: an ODrive releases the motor");
   if ((joint.enable_watchdog_endpoint == 0) != (joint.watchdog_timeout_endpoint == 0)) {
     const bool first = joint.enable_watchdog_endpoint == 0;

@@ -15,7 +15,7 @@ class VescFile final : public CanFileOf<VescParameters> {
 };
 
 void VescFile::check(const VescParameters& joint, JointValues& values) const {
-  if (joint.drive.on_silence == SilenceReaction::kHolds) {
+  if (joint.drive.on_silence == SilenceReaction::kHolds || joint.drive.on_silence == SilenceReaction::kKeeps) {
     values.refuse("on_silence", "must be coasts, brakes or unknown: the timeout of a VESC holds nothing at rest");
   }
   if (!request().takes_speeds && joint.torque_constant == 0) {

@@ -3,8 +3,12 @@
 
 #include <gtest/gtest.h>
 
+#include "drivers/ak/ak_device.h"
+#include "drivers/ak/ak_drive.h"
 #include "drivers/cia402/cia402_device.h"
 #include "drivers/cia402/cia402_drive.h"
+#include "drivers/cybergear/cybergear_device.h"
+#include "drivers/cybergear/cybergear_drive.h"
 #include "drivers/damiao/damiao_device.h"
 #include "drivers/damiao/damiao_drive.h"
 #include "drivers/drive/drive_set.h"
@@ -44,11 +48,15 @@ class DeviceRig {
   void add_drive(const cia402::Cia402Parameters& parameters) { cia402s_.push_back(parameters); }
   void add_drive(const vesc::VescParameters& parameters) { vescs_.push_back(parameters); }
   void add_drive(const damiao::DamiaoParameters& parameters) { damiaos_.push_back(parameters); }
+  void add_drive(const cybergear::CybergearParameters& parameters) { cybergears_.push_back(parameters); }
+  void add_drive(const ak::AkParameters& parameters) { aks_.push_back(parameters); }
   /// Returns the drives of the one dialect that was added.
   DriveSet made_drives() const {
     if (!odrives_.empty()) return drives_of<odrive::OdriveDrive>(odrives_, period_);
     if (!vescs_.empty()) return drives_of<vesc::VescDrive>(vescs_, period_);
     if (!damiaos_.empty()) return drives_of<damiao::DamiaoDrive>(damiaos_, period_);
+    if (!cybergears_.empty()) return drives_of<cybergear::CybergearDrive>(cybergears_, period_);
+    if (!aks_.empty()) return drives_of<ak::AkDrive>(aks_, period_);
     return cia402::cia402_drives(cia402s_, kHostNode, period_);
   }
   /// No drive may be added after the first call.
@@ -129,6 +137,8 @@ class DeviceRig {
   std::vector<cia402::Cia402Parameters> cia402s_;
   std::vector<vesc::VescParameters> vescs_;
   std::vector<damiao::DamiaoParameters> damiaos_;
+  std::vector<cybergear::CybergearParameters> cybergears_;
+  std::vector<ak::AkParameters> aks_;
   std::optional<DriveSet> drives_;
   FrameBatch send_;
 };
@@ -198,6 +208,48 @@ inline DamiaoPair damiao_pair(std::uint8_t node) {
 inline DamiaoDevice& add(DeviceRig& rig, const DamiaoPair& pair) {
   rig.add_drive(pair.drive);
   return rig.add_device(std::make_unique<DamiaoDevice>(pair.device, rig.bus(), rig.add_motor()));
+}
+
+struct CybergearPair {
+  cybergear::CybergearParameters drive;
+  CybergearDeviceParameters device;
+};
+
+inline CybergearPair cybergear_pair(std::uint8_t node) {
+  CybergearPair pair;
+  pair.drive.drive = drive_parameters(node);
+  pair.drive.drive.min_voltage = 0;
+  pair.drive.drive.on_silence = SilenceReaction::kUnknown;
+  pair.drive.motor_gear = 7.75;
+  pair.drive.ranges = pair.device.ranges = {.position = 12.566, .velocity = 50, .torque = 12};
+  pair.device.node = node;
+  return pair;
+}
+
+inline CybergearDevice& add(DeviceRig& rig, const CybergearPair& pair) {
+  rig.add_drive(pair.drive);
+  return rig.add_device(std::make_unique<CybergearDevice>(pair.device, rig.bus(), rig.add_motor()));
+}
+
+struct AkPair {
+  ak::AkParameters drive;
+  AkDeviceParameters device;
+};
+
+inline AkPair ak_pair(std::uint8_t node) {
+  AkPair pair;
+  pair.drive.drive = drive_parameters(node);
+  pair.drive.drive.min_voltage = 0;
+  pair.drive.drive.on_silence = SilenceReaction::kKeeps;
+  pair.drive.motor_gear = 9;
+  pair.drive.ranges = pair.device.ranges;
+  pair.device.node = node;
+  return pair;
+}
+
+inline AkDevice& add(DeviceRig& rig, const AkPair& pair) {
+  rig.add_drive(pair.drive);
+  return rig.add_device(std::make_unique<AkDevice>(pair.device, rig.bus(), rig.add_motor()));
 }
 
 struct Cia402Pair {

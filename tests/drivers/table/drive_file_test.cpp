@@ -43,6 +43,20 @@ left_wheel_joint: {node: 1}
 right_wheel_joint: {node: 2}
 )";
 
+constexpr const char* kCybergear = R"(
+bus: {dialect: cybergear}
+every_joint: {position_range: 12.5, velocity_range: 30, torque_range: 12, motor_gear: 7.75, torque_limit: 10, velocity_limit: 20}
+left_wheel_joint: {node: 1}
+right_wheel_joint: {node: 2}
+)";
+
+constexpr const char* kAk = R"(
+bus: {dialect: ak}
+every_joint: {position_range: 12.5, velocity_range: 50, torque_range: 18, motor_gear: 9, torque_limit: 18, velocity_limit: 30, on_silence: keeps}
+left_wheel_joint: {node: 1}
+right_wheel_joint: {node: 2}
+)";
+
 struct DriveFileTest : ::testing::Test {
   template <class File = DriveFile>
   const File& read(const std::string& text, double rate = 500, bool takes_speeds = false,
@@ -219,18 +233,43 @@ TEST_F(DriveFileTest, WhatADamiaoCannotDoIsRefused) {
   EXPECT_THAT(refusal(kDamiao, "node: 1", "node: 1, timeout: 0.019"), HasSubstr("must be at least ten periods"));
 }
 
-/// A command and its answer have at most 135 bits each.
-TEST_F(DriveFileTest, ABusCarriesThreeDamiaosAtAKilohertzAndSixAtHalf) {
-  std::string text =
-      "bus: {dialect: damiao}\n"
-      "every_joint: {position_range: 12.5, velocity_range: 45, torque_range: 54, torque_limit: 40, velocity_limit: "
-      "30}\n";
-  joints_.clear();
-  for (int node = 1; node <= 7; ++node) {
-    joints_.push_back("joint_" + std::to_string(node));
-    text += joints_.back() + ": {node: " + std::to_string(node) + "}\n";
-    EXPECT_EQ(refusal_of(text, 1000).empty(), node <= 3) << node;
-    EXPECT_EQ(refusal_of(text, 500).empty(), node <= 6) << node;
+TEST_F(DriveFileTest, WhatACybergearCannotDoIsRefused) {
+  EXPECT_EQ(refusal(kCybergear, "node: 1", "node: 127"), "");
+  EXPECT_EQ(refusal(kCybergear, "node: 1", "node: 1, on_silence: keeps"), "");
+  EXPECT_THAT(refusal(kCybergear, "node: 1", "node: 128"), HasSubstr("left_wheel_joint.node = 128: must be 1 … 127"));
+  EXPECT_THAT(refusal(kCybergear, "node: 1", "node: 1, on_silence: holds"),
+              HasSubstr("on_silence = holds: must be left out, or keeps"));
+  EXPECT_THAT(refusal(kCybergear, "node: 1", "node: 1, timeout: 0.019"), HasSubstr("must be at least ten periods"));
+  EXPECT_THAT(refusal(kCybergear, "motor_gear: 7.75, ", ""), HasSubstr("left_wheel_joint.motor_gear: missing"));
+  EXPECT_THAT(refusal(kCybergear, "torque_limit: 10", "torque_limit: 13"), HasSubstr("must be at most torque_range"));
+}
+
+TEST_F(DriveFileTest, WhatAnAkCannotDoIsRefused) {
+  EXPECT_EQ(refusal(kAk, "node: 1", "node: 254"), "");
+  EXPECT_THAT(refusal(kAk, "node: 1", "node: 0"), HasSubstr("left_wheel_joint.node = 0: must be 1 … 254"));
+  for (const char* given : {"", ", on_silence: coasts"}) {
+    EXPECT_THAT(refusal(kAk, ", on_silence: keeps", given), HasSubstr("must be keeps: an AK motor has no timeout"));
+  }
+  EXPECT_THAT(refusal(kAk, "velocity_limit: 30", "velocity_limit: 30, timeout: 0.1"), HasSubstr("timeout"));
+}
+
+TEST_F(DriveFileTest, NoOtherDriveKeepsItsLastOrder) {
+  EXPECT_THAT(refusal(kOdrive, "coasts", "keeps"), HasSubstr("must be coasts or unknown"));
+  EXPECT_THAT(refusal(kVesc, "coasts", "keeps"), HasSubstr("must be coasts, brakes or unknown"));
+  EXPECT_THAT(refusal(kDamiao, "node: 1", "node: 1, on_silence: keeps"), HasSubstr("must be left out"));
+}
+
+/// A command and its answer have at most 135 bits each, and 160 with identifiers of 29 bits.
+TEST_F(DriveFileTest, ABusCarriesThreeMotorsInMitModeAtAKilohertzAndSixAtHalf) {
+  for (const char* dialect : {kDamiao, kCybergear, kAk}) {
+    std::string text = std::string(dialect).substr(0, std::string(dialect).find("left_wheel_joint"));
+    joints_.clear();
+    for (int node = 1; node <= 7; ++node) {
+      joints_.push_back("joint_" + std::to_string(node));
+      text += joints_.back() + ": {node: " + std::to_string(node) + "}\n";
+      EXPECT_EQ(refusal_of(text, 1000).empty(), node <= 3) << text;
+      EXPECT_EQ(refusal_of(text, 500).empty(), node <= 6) << text;
+    }
   }
 }
 

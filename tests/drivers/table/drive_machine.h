@@ -5,7 +5,6 @@
 
 #include <fstream>
 
-#include "drivers/damiao/damiao_parameters.h"
 #include "drivers/drive/can_drive_file.h"
 #include "drivers/table/drive_table.h"
 #include "drivers/table/read_drive_file.h"
@@ -55,9 +54,8 @@ class DriveMachine final : public WheelsInAir<DeviceFront, Driver> {
 
   /// Turns the joints to the angles at which the drive file expects them at a start or a reset.
   void turn_to_start() {
-    const auto* damiao = dynamic_cast<const CanFileOf<damiao::DamiaoParameters>*>(file_.get());
-    for (std::size_t i = 0; damiao != nullptr && i < joints.size(); ++i)
-      joints[i].position = damiao->joints()[i].start_angle.value_or(joints[i].position);
+    for (std::size_t i = 0; i < joints.size(); ++i)
+      joints[i].position = file_->start_angle(i).value_or(joints[i].position);
   }
 
  private:

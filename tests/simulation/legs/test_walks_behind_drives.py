@@ -12,9 +12,9 @@ TIMING = ("driver_woke_ns", "command_published_ns", "permit_published_ns", "slip
 """columns that virtual time does not have"""
 
 
-def walked(bus):
+def walked(drives, bus):
     """The log of a robot that rests, stands up, walks, stops and lies down, with a fault of its buses meanwhile."""
-    loop = ClosedLoop(urdf=share_file("urdf/quadbot.urdf"), drives=share_file("config/drives/damiao.yaml"))
+    loop = ClosedLoop(urdf=share_file("urdf/quadbot.urdf"), drives=share_file(f"config/drives/{drives}.yaml"))
     parts = [loop.run(1.0)]
     loop.inject_fault("bus", bus)
     parts += [loop.run(2.0 + WALK, (LINEAR, ANGULAR)), loop.run(2.0, (0.0, 0.0))]
@@ -25,9 +25,12 @@ def walked(bus):
     return {**joined, "stamp_ns": 1e9 * joined["time"], **dict.fromkeys(TIMING, zero)}
 
 
-@pytest.mark.parametrize("bus", ["ok", "lossy", "disturbed"])
-def test_the_walk_is_tracked(bus):
-    summary = summarize(walked(bus), LINEAR, ANGULAR, WALK, legged=True)
+@pytest.mark.parametrize(
+    ("drives", "bus"),
+    [(drives, bus) for drives in ("damiao", "cybergear", "ak") for bus in ("ok", "lossy", "disturbed")],
+)
+def test_the_walk_is_tracked(drives, bus):
+    summary = summarize(walked(drives, bus), LINEAR, ANGULAR, WALK, legged=True)
     print(to_table(summary))
     assert summary.passed
     assert " ".join(summary.postures) == "lying gathering rising standing walking standing lowering lying"
