@@ -1,6 +1,6 @@
 #pragma once
 /// A legged robot of Unitree at its low level as a Driver. Each `write` sends one LowCmd, and each `read` takes what
-/// the robot sent. Robot states what differs between the robots: Go1 (unitree_legged/go1.h).
+/// the robot sent. Robot states what differs between the robots: Go1 (unitree_legged/go1.h), Go2 (unitree_go/go2.h).
 ///
 /// The motors close the loop of an impedance themselves. With s the direction and o the offset of the drive file, the
 /// joint is at q = s q_motor + o, and a command is
@@ -29,7 +29,8 @@
 ///
 /// Other causes need no time: a state with another serial number, or a position that the joint cannot reach within its
 /// velocity limit. With a motor above max_temperature and with a charge below min_charge the motors obey further, so
-/// that the robot can lie down. With all other causes they get the brake.
+/// that the robot can lie down. With all other causes they get the brake. `Robot::obstacle` may name further causes,
+/// for which a driver that starts waits.
 
 #include <algorithm>
 #include <cmath>
@@ -80,12 +81,14 @@ class UnitreeDriver final : public Driver, private DriveStateMachine {
   /// The status for other threads.
   struct Published {
     DriveStatus drive{};
+    typename Robot::Notice notice{};
     std::array<std::uint32_t, 2> serial_number{};
     bool operator==(const Published&) const = default;
   };
 
   void restart() noexcept;
   void receive() noexcept;
+  void hold(const LegObstacle& obstacle) noexcept;
   void reject(const Rejected& rejected) noexcept;
   void accept(const State& state) noexcept;
   bool is_possible(const State& state) noexcept;
@@ -98,6 +101,7 @@ class UnitreeDriver final : public Driver, private DriveStateMachine {
   bool fresh() const noexcept { return has_state_ && now_ns_ - state_ns_ <= max_silence_ns_; }
 
   UnitreeParameters<Robot> parameters_;
+  Robot robot_{parameters_.line};
   std::vector<Brake> brakes_;
   const std::size_t joint_count_;
   const std::int64_t period_ns_;
@@ -153,13 +157,16 @@ void UnitreeDriver<Robot>::receive() noexcept {
   for (int i = 0; i < kDatagramsPerCycle; ++i) {
     const std::size_t size = line_->receive(bytes);
     if (size == 0) return;
+    const std::span<const std::uint8_t> message =
+        robot_.opened(std::span(bytes).first(std::min(size, bytes.size())), now_ns_);
+    if (message.empty()) continue;
     State state;
-    switch (Robot::decode(std::span(bytes).first(std::min(size, bytes.size())), state)) {
+    switch (Robot::decode(message, state)) {
       case unitree::Flaw::kNone:
         accept(state);
         break;
       case unitree::Flaw::kLength:
-        reject({DriveCause::kDiffers, Robot::kOtherLength, static_cast<double>(size), Robot::kStateBytes});
+        reject({DriveCause::kDiffers, Robot::kOtherLength, static_cast<double>(message.size()), Robot::kStateBytes});
         break;
       case unitree::Flaw::kHead:
         reject({DriveCause::kDiffers, "beginning of its states"});
@@ -172,6 +179,14 @@ void UnitreeDriver<Robot>::receive() noexcept {
         break;
     }
   }
+}
+
+template <class Robot>
+void UnitreeDriver<Robot>::hold(const LegObstacle& obstacle) noexcept {
+  if (obstacle.cause == DriveCause::kNone) return;
+  if (obstacle.is_fault || running())
+    return fail(obstacle.cause, obstacle.subject, 0, obstacle.found, obstacle.expected);
+  set(DrivePhase::kStarting, obstacle.cause, obstacle.subject);
 }
 
 template <class Robot>
@@ -198,7 +213,7 @@ void UnitreeDriver<Robot>::accept(const State& state) noexcept {
   has_state_ = true;
   rejected_ = {};
   rejections_ = 0;
-  set(DrivePhase::kRunning, DriveCause::kNone);
+  if (robot_.obstacle(now_ns_).cause == DriveCause::kNone) set(DrivePhase::kRunning, DriveCause::kNone);
   for (std::size_t i = 0; i < parameters_.joints.size(); ++i) {
     const UnitreeJoint<Robot>& joint = parameters_.joints[i];
     const double temperature = state.motors[joint.motor].temperature;
@@ -242,7 +257,8 @@ void UnitreeDriver<Robot>::read(SensorFrame& sensors) noexcept {
   const bool waits = has_state_;
   const std::int64_t last_ns = state_ns_;
   receive();
-  if (waits && state_ns_ == last_ns) ++link_.lost;
+  if (waits && state_ns_ == last_ns && now_ns_ - state_ns_ >= Robot::kPublishNs) ++link_.lost;
+  hold(robot_.obstacle(now_ns_));
   judge_silence();
   const bool running = this->running();
   const bool faulty = status().state == DrivePhase::kFault;
@@ -258,7 +274,7 @@ void UnitreeDriver<Robot>::read(SensorFrame& sensors) noexcept {
   sensors.link_count = 1;
   sensors.links[0] = link_;
   Published last;
-  const Published now{.drive = status(), .serial_number = state_.head.serial_number};
+  const Published now{.drive = status(), .notice = robot_.notice(), .serial_number = state_.head.serial_number};
   if (!published_.load(last) || !(last == now)) published_.store(now);
 }
 
@@ -317,7 +333,7 @@ void UnitreeDriver<Robot>::send(std::span<const JointCommand> commands) noexcept
     message.motors[parameters_.joints[i].motor] = motor_command(i, i < commands.size() ? commands[i] : JointCommand{});
   }
   std::array<std::uint8_t, Robot::kCommandBytes> bytes;
-  const bool exact = Robot::encode(message, bytes);
+  const bool exact = Robot::encode(message, std::span(bytes));
   ++link_.sent;
   if (!line_->send(bytes) || !exact) ++link_.errors;
 }
@@ -348,10 +364,9 @@ std::string UnitreeDriver<Robot>::warning() const {
   if (!published_.load(now) || now.drive.cause == DriveCause::kNone) return "";
   const DriveCause cause = now.drive.cause;
   const bool names_joint = cause == DriveCause::kHot || cause == DriveCause::kPositionJump;
-  const std::string words = status_words(std::string(Robot::kName) + " on " + line_->name(), now.drive,
-                                         names_joint ? "of " + parameters_.joints.at(now.drive.code).joint : "");
-  if (cause != DriveCause::kFirstFrame) return words;
-  return words + Robot::kFirstRemedy;
+  const std::string detail =
+      names_joint ? "of " + parameters_.joints.at(now.drive.code).joint : Robot::detail(cause, now.notice);
+  return status_words(std::string(Robot::kName) + " on " + line_->name(), now.drive, detail) + Robot::remedy(cause);
 }
 
 }  // namespace robot_control

@@ -1,8 +1,8 @@
 #pragma once
 /// A UnitreeFront is a simulated Robot at its low level, before the motors of a simulated machine. It answers each
-/// LowCmd with a LowState kAnswerNs later. A motor gives torque = tau + kp (q − q_motor) + kd (dq − q̇_motor), within
-/// the torque_limit of the drive file. After kSilenceNs without a command it damps: an assumption, because what the
-/// robot does is not documented.
+/// LowCmd with a LowState kAnswerNs later, or sends one every kPublishNs. A program between both is the Device of
+/// Robot. A motor gives torque = tau + kp (q − q_motor) + kd (dq − q̇_motor), within the torque_limit of the drive file.
+/// After kSilenceNs without a command it damps: an assumption, because what the robot does is not documented.
 ///
 /// `inject` takes `robot`, `motor` or `line` as the component; the line has faults in virtual time alone.
 ///
@@ -10,6 +10,8 @@
 ///          | encrypted (wrong check sums) | other_robot (another serial number) | low_battery | e_stop (L2 and B)
 ///   motor  ok | hot | not_finite; of the first joint
 ///   line   kDatagramFaultWords, kAnswerFaultWords
+///
+/// Robot::Device may take a further component.
 
 #include <algorithm>
 #include <array>
@@ -60,8 +62,10 @@ class UnitreeFront final : public DeviceFront {
   VirtualDatagrams& line() { return *virtual_line_; }
 
  private:
+  using Device = typename Robot::Device;
   enum class Fault { kNone, kOff, kFrozen, kEncrypted };
 
+  bool has_power() const noexcept { return fault_ != Fault::kOff && now_ns_ >= boots_ns_; }
   DatagramLine& robot_line() { return virtual_line_ ? virtual_line_->device_end() : *true_line_; }
   void take_commands();
   void answer();
@@ -73,12 +77,13 @@ class UnitreeFront final : public DeviceFront {
   std::int64_t period_ns_;
   std::unique_ptr<DatagramLine> true_line_;
   std::unique_ptr<VirtualDatagrams> virtual_line_;  // null: the true one
+  Device device_;
   Command command_;
   State state_;
   std::vector<double> torques_;  // N·m, of the joints, means of the period
   std::int64_t now_ns_ = 0;
-  std::int64_t command_ns_ = -kSilenceNs;  // when the last command came
-  std::int64_t answer_ns_ = -1;            // when the next answer is due; -1: none
+  std::int64_t command_ns_ = -kSilenceNs;                    // when the last command came
+  std::int64_t answer_ns_ = Robot::kPublishNs > 0 ? 0 : -1;  // when the next state is due; -1: after a command
   std::int64_t boots_ns_ = 0;
   Fault fault_ = Fault::kNone;
   bool not_finite_ = false;
@@ -112,7 +117,7 @@ template <class Robot>
 void UnitreeFront<Robot>::take_commands() {
   std::array<std::uint8_t, kMaxDatagram> bytes;
   for (std::size_t size = robot_line().receive(bytes); size > 0; size = robot_line().receive(bytes)) {
-    if (fault_ == Fault::kOff || now_ns_ < boots_ns_) continue;
+    if (!has_power() || !device_.forwards) continue;
     if (Robot::decode(std::span(bytes).first(std::min(size, bytes.size())), command_) != unitree::Flaw::kNone) continue;
     command_ns_ = now_ns_;
     if (answer_ns_ < 0) answer_ns_ = now_ns_ + kAnswerNs;
@@ -121,10 +126,16 @@ void UnitreeFront<Robot>::take_commands() {
 
 template <class Robot>
 void UnitreeFront<Robot>::answer() {
-  answer_ns_ = -1;
-  if (fault_ == Fault::kOff || now_ns_ < boots_ns_) return;
+  answer_ns_ = Robot::kPublishNs > 0 ? answer_ns_ + Robot::kPublishNs : -1;
+  std::array<std::uint8_t, Device::kHeadBytes + Robot::kStateBytes> datagram;
+  const std::span<std::uint8_t> head = std::span(datagram).first(Device::kHeadBytes);
+  if (!device_.write_head(head)) return;
+  if (!has_power()) {
+    if (!head.empty()) robot_line().send(head);
+    return;
+  }
   if (fault_ != Fault::kFrozen) state_.tick = static_cast<std::uint32_t>((now_ns_ - boots_ns_) / Robot::kTickNs);
-  std::array<std::uint8_t, Robot::kStateBytes> bytes;
+  const auto bytes = std::span(datagram).template subspan<Device::kHeadBytes>();
   Robot::encode(state_, bytes);
   if (not_finite_) {
     std::fill_n(bytes.begin() + Robot::kFirstPosition, 4, std::uint8_t{0xFF});
@@ -132,12 +143,12 @@ void UnitreeFront<Robot>::answer() {
     for (std::size_t i = 0; i < 4; ++i) bytes[bytes.size() - 4 + i] = static_cast<std::uint8_t>(sum >> (8 * i));
   }
   if (fault_ == Fault::kEncrypted) bytes.back() ^= 0x5A;
-  robot_line().send(bytes);
+  robot_line().send(datagram);
 }
 
 template <class Robot>
 double UnitreeFront<Robot>::motor_torque(std::size_t joint) const {
-  if (fault_ == Fault::kOff || now_ns_ < boots_ns_) return 0;
+  if (!has_power()) return 0;
   const auto& motor = state_.motors[parameters_.joints[joint].motor];
   const unitree::MotorCommand& command = command_.motors[parameters_.joints[joint].motor];
   double torque = -kSilentDamping * double{motor.dq};
@@ -182,9 +193,9 @@ void UnitreeFront<Robot>::run(std::span<const JointSample> joints) {
 
 template <class Robot>
 bool UnitreeFront<Robot>::inject_robot(std::string_view kind) {
-  constexpr std::array<std::string_view, 8> kKinds{"ok",        "off",         "reset",       "frozen",
-                                                   "encrypted", "other_robot", "low_battery", "e_stop"};
-  if (std::ranges::find(kKinds, kind) == kKinds.end()) return false;
+  constexpr std::array<std::string_view, 8> kKnownKinds{"ok",        "off",         "reset",       "frozen",
+                                                        "encrypted", "other_robot", "low_battery", "e_stop"};
+  if (std::ranges::find(kKnownKinds, kind) == kKnownKinds.end()) return false;
   if (kind == "reset" || (fault_ == Fault::kOff && kind != "off")) boots_ns_ = now_ns_ + kBootNs;
   fault_ = kind == "off"         ? Fault::kOff
            : kind == "frozen"    ? Fault::kFrozen
@@ -212,6 +223,7 @@ template <class Robot>
 std::string UnitreeFront<Robot>::inject(std::string_view component, std::string_view kind) {
   if (component == "robot" && inject_robot(kind)) return "";
   if (component == "motor" && inject_motor(kind)) return "";
+  if (device_.inject(component, kind)) return "";
   if (component == "line" && virtual_line_) {
     if (const std::optional<DatagramFaults> faults = datagram_faults(kind)) {
       virtual_line_->faults() = *faults;
@@ -220,9 +232,8 @@ std::string UnitreeFront<Robot>::inject(std::string_view component, std::string_
   }
   return std::string(
              "component must be robot (with ok, off, reset, frozen, encrypted, other_robot, low_battery, e_stop), "
-             "motor "
-             "(with ok, hot, not_finite) or line (with ") +
-         kDatagramFaultWords + ", " + kAnswerFaultWords + ")";
+             "motor (with ok, hot, not_finite)") +
+         Device::kWords + " or line (with " + kDatagramFaultWords + ", " + kAnswerFaultWords + ")";
 }
 
 }  // namespace robot_control

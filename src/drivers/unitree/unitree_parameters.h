@@ -7,10 +7,20 @@
 #include <vector>
 
 #include "drivers/drive/drive_file.h"
+#include "drivers/drive/drive_status.h"
 #include "drivers/drive_parameters.h"
 #include "drivers/unitree/low_level.h"
 
 namespace robot_control {
+
+/// Why a driver must not run although states come; kNone: it may.
+struct LegObstacle {
+  DriveCause cause = DriveCause::kNone;
+  const char* subject = "";
+  double found = 0;
+  double expected = 0;
+  bool is_fault = false;  ///< false: a driver that starts waits until the obstacle is gone
+};
 
 /// s without a new state, after which the driver stops: 20 ms from the last one on, in cycles of 2 ms. A line that
 /// loses 5 % of the datagrams each way is silent for so long once in 1000 times 30 minutes.

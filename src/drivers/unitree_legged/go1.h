@@ -18,16 +18,39 @@ struct Go1 {
   static constexpr std::uint8_t kServo = unitree::kServo;
   static constexpr double kMaxTorque = unitree::kMaxTorque;
   static constexpr std::int64_t kTickNs = 1000;  ///< of the simulated robot
+  static constexpr std::int64_t kPublishNs = 0;  ///< It answers each command, and sends nothing by itself.
 
   static constexpr const char *kName = "Go1", *kOtherLength = "length of its states, like an A1 or Aliengo";
   static constexpr const char* kNeverRight = "without exception: its firmware encrypts them, which is not supported";
-  static constexpr const char* kFirstRemedy =
-      "; put the robot into its low level with the remote: L2 and A, L2 and B, then L1, L2 and Start";
+
+  // The line ends in the robot: there is nothing between it and the driver.
+  struct Notice {
+    bool operator==(const Notice&) const = default;
+  };
+  struct Device {
+    static constexpr std::size_t kHeadBytes = 0;
+    static constexpr const char* kWords = "";
+    static constexpr bool forwards = true;
+    static bool write_head(std::span<std::uint8_t> /*head*/) noexcept { return true; }
+    static bool inject(std::string_view /*component*/, std::string_view /*kind*/) { return false; }
+  };
+  explicit Go1(const Line& /*line*/) {}
+  static std::span<const std::uint8_t> opened(std::span<const std::uint8_t> datagram,
+                                              std::int64_t /*now_ns*/) noexcept {
+    return datagram;
+  }
+  static LegObstacle obstacle(std::int64_t /*now_ns*/) noexcept { return {}; }
+  static Notice notice() noexcept { return {}; }
+  static std::string detail(DriveCause /*cause*/, const Notice& /*notice*/) { return ""; }
+  static const char* remedy(DriveCause cause) {
+    if (cause != DriveCause::kFirstFrame) return "";
+    return "; put the robot into its low level with the remote: L2 and A, L2 and B, then L1, L2 and Start";
+  }
 
   static auto decode(std::span<const std::uint8_t> bytes, auto& message) noexcept {
     return unitree::decode(bytes, message);
   }
-  static auto encode(const auto& message, auto& bytes) noexcept { return unitree::encode(message, bytes); }
+  static auto encode(const auto& message, auto bytes) noexcept { return unitree::encode(message, bytes); }
 
   static double voltage(const State& state) noexcept {
     const auto& cells = state.battery.cells;
