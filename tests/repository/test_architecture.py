@@ -73,6 +73,8 @@ MAY_INCLUDE = {
     # The common part of all drives of drive_table.def.
     "drivers/drive": {"signals", "bus", "gate", "drivers", "drivers/line", "parameters", "rt"},
     **{f"drivers/{name}": DRIVE | ({"drivers/unitree"} if "unitree" in name else set()) for name in DRIVES},
+    # The program unitree_bridge, which that driver does not link.
+    "drivers/unitree_go/bridge": {"drivers/drive", "drivers/line", "drivers/unitree_go", "files", "rt"},
     # The common part of the drives unitree_*.
     "drivers/unitree": DRIVE,
     # The table, the drive file and the drivers of real machines; simulated devices for all of them.
@@ -173,6 +175,7 @@ MAY_INCLUDE = {
         "robots",
         "rt",
         "drivers/table",
+        "drivers/unitree_go/bridge",
         "simulation/machines",
     },
 }
