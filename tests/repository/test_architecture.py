@@ -27,6 +27,7 @@ LAWS = {
     "gate",
     "gate/wheeled",
 }
+DRIVE = {"signals", "bus", "gate", "drivers", "drivers/line", "drivers/drive", "parameters"}
 LOOP = LAWS | {"rt", "bus", "timing", "drivers", "parameters", "configuration", "robots", "loop", "log"}
 ALL = LOOP | {"files", "machine/description", "log/bag", "simulation", "simulation/faults", "drivers/mujoco"}
 MAY_IMPORT = {  # rooms of the Python package
@@ -71,10 +72,11 @@ MAY_INCLUDE = {
     "drivers/line": {"signals", "bus", "drivers", "files", "parameters", "rt"},
     # The common part of all drives of drive_table.def.
     "drivers/drive": {"signals", "bus", "gate", "drivers", "drivers/line", "parameters", "rt"},
-    **{
-        f"drivers/{name}": {"signals", "bus", "gate", "drivers", "drivers/line", "drivers/drive", "parameters"}
-        for name in DRIVES
-    },
+    **{f"drivers/{name}": DRIVE | ({"drivers/unitree"} if "unitree" in name else set()) for name in DRIVES},
+    # The program unitree_bridge, which that driver does not link.
+    "drivers/unitree_go/bridge": {"drivers/drive", "drivers/line", "drivers/unitree_go", "files", "rt"},
+    # The common part of the drives unitree_*.
+    "drivers/unitree": DRIVE,
     # The table, the drive file and the drivers of real machines; simulated devices for all of them.
     "drivers/table": {
         "configuration",
@@ -173,6 +175,7 @@ MAY_INCLUDE = {
         "robots",
         "rt",
         "drivers/table",
+        "drivers/unitree_go/bridge",
         "simulation/machines",
     },
 }

@@ -14,8 +14,8 @@ ROOT = Path(__file__).parents[2]
 ONLY_LISTED = ROOT / ".ci/only_listed.py"
 OPTIONAL = {"aiohttp", "evdev", "gymnasium", "jsonschema", "mcap", "bokeh", "paho", "xacro"}
 """modules of a section of the list, or of PyPI, without which the programs offer less"""
-OF_NAVIGATION = {"slam", "localization"}
-"""programs that load libraries of the section navigation, without which they are not built"""
+OF_SECTIONS = {"navigation": {"slam", "localization"}, "unitree": {"unitree_bridge"}}
+"""programs that load libraries of a section of the list, without which they are not built"""
 
 
 @pytest.fixture(scope="module")
@@ -110,8 +110,12 @@ def test_the_programs_import_and_load_what_the_list_names():
 
     installed = Path(roslib.packages.find_node("robot_control", "telemetry")[0]).parent
     programs = {path for path in installed.iterdir() if path.suffix != ".py"}
-    optional = {path for path in programs if path.name in OF_NAVIGATION}
-    for given, chosen in (([], programs - optional), (["--section=navigation"], optional)):
+    optional = {
+        f"--section={section}": {path for path in programs if path.name in names}
+        for section, names in OF_SECTIONS.items()
+    }
+    plain = programs - set().union(*optional.values())
+    for given, chosen in (([], plain), *(([section], chosen) for section, chosen in optional.items())):
         if chosen:
             loaded = hidden(*given, "/usr/bin/ldd", *sorted(map(str, chosen))).stdout
             assert loaded.count("libc.so.6") >= len(chosen)

@@ -44,8 +44,11 @@ constexpr CauseWords kCauseWords[] = {
     {"sends messages with a wrong check sum", "check the cable and the network, then reset"},
     {"repeats its last", "restart the drive, then reset"},
     {"is another one than before, by its", "remove the other one, then reset"},
+    {"has lost its bridge", "start unitree_bridge or read its output, then reset"},
+    {"waits for the motion service of its maker",
+     "release it with the app of the maker, or set release_service: true in the drive file"},
 };
-static_assert(std::size(kCauseWords) == static_cast<std::size_t>(DriveCause::kOtherDevice) + 1);
+static_assert(std::size(kCauseWords) == static_cast<std::size_t>(DriveCause::kMotionService) + 1);
 
 constexpr const char* kStateWords[] = {"starting", "ready", "running", "fault"};
 
@@ -70,6 +73,7 @@ DriverFault fault_of(DriveCause cause) noexcept {
     case DriveCause::kNoAnswer:
     case DriveCause::kCheckSum:
     case DriveCause::kStale:
+    case DriveCause::kBridge:
       return kFaultLink;
     case DriveCause::kNotFinite:
       return kFaultNotFinite;

@@ -50,6 +50,8 @@ enum class DriveCause : std::uint8_t {
   kCheckSum,          ///< The check sums of its messages are wrong.
   kStale,             ///< It sends its last message again and again.
   kOtherDevice,       ///< Another device answers: its `subject` is not that of before.
+  kBridge,            ///< The program between the driver and the drive sends nothing.
+  kMotionService,     ///< A controller of the maker commands the same motors.
 };
 
 /// How the reaction on silence is known.

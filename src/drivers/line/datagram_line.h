@@ -13,7 +13,7 @@ namespace robot_control {
 inline constexpr int kDatagramsPerCycle = 32;
 
 /// Bytes of the longest datagram.
-inline constexpr std::size_t kMaxDatagram = 1024;
+inline constexpr std::size_t kMaxDatagram = 1536;
 
 class DatagramLine {
  public:

@@ -1,6 +1,7 @@
 #include "drivers/line/udp_socket.h"
 
 #include <arpa/inet.h>
+#include <poll.h>
 #include <sys/socket.h>
 
 #include <cerrno>
@@ -87,6 +88,11 @@ std::size_t UdpSocket::receive(std::span<std::uint8_t> bytes) noexcept {
     return static_cast<std::size_t>(got);
   }
   return 0;
+}
+
+void UdpSocket::wait(int timeout_ms) const noexcept {
+  pollfd socket{.fd = socket_.number(), .events = POLLIN, .revents = 0};
+  poll(&socket, 1, timeout_ms);
 }
 
 bool UdpSocket::send(std::span<const std::uint8_t> bytes) noexcept {

@@ -30,6 +30,9 @@ class UdpSocket final : public DatagramLine {
   bool send(std::span<const std::uint8_t> bytes) noexcept override;
   std::string name() const override { return name_; }
 
+  /// Waits until a datagram is there, for a thread outside of the loop.
+  void wait(int timeout_ms) const noexcept;
+
  private:
   UdpSocket(const std::string& device, std::uint16_t port);
 

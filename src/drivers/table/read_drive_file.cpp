@@ -109,9 +109,9 @@ class DriveFileReader {
   ParameterTree tree_;
 };
 
-}  // namespace
-
-std::unique_ptr<DriveFile> read_drive_file(const std::string& path, std::string_view driver, DriveFileRequest request) {
+/// With `joints` their blocks are read, too.
+std::unique_ptr<DriveFile> read_file(const std::string& path, std::string_view driver, DriveFileRequest request,
+                                     bool joints) {
   const std::string subject = "drive file refused (" + path + ")";
   ProblemList problems;
   ParameterTree tree = read_tree(path, {}, problems, &peer_problem);
@@ -125,13 +125,24 @@ std::unique_ptr<DriveFile> read_drive_file(const std::string& path, std::string_
   std::unique_ptr<DriveFile> file = row.make_file(std::move(request));
   DriveFileReader reader(path, *file, std::move(tree), problems);
   reader.read_line();
-  if (!known) problems.throw_if_any(subject);
+  if (!known || !joints) problems.throw_if_any(subject);
+  if (!joints) return file;
   reader.read_joints();
   problems.throw_if_any(subject);
   if (const auto overload = file->overload())
     problems.add({std::string(file->line_block()) + "." + overload->key, overload->value, overload->rule, path, ""});
   problems.throw_if_any(subject);
   return file;
+}
+
+}  // namespace
+
+std::unique_ptr<DriveFile> read_drive_file(const std::string& path, std::string_view driver, DriveFileRequest request) {
+  return read_file(path, driver, std::move(request), true);
+}
+
+std::unique_ptr<DriveFile> read_drive_line(const std::string& path, std::string_view driver) {
+  return read_file(path, driver, {.joints = {}}, false);
 }
 
 std::unique_ptr<DriveFile> read_drive_file(const Parameters& parameters, std::vector<std::string> joints) {

@@ -21,6 +21,9 @@ namespace robot_control {
 /// all problems of the file, also if its line cannot carry the messages.
 std::unique_ptr<DriveFile> read_drive_file(const std::string& path, std::string_view driver, DriveFileRequest request);
 
+/// The block of the line alone; the blocks of the joints are not read.
+std::unique_ptr<DriveFile> read_drive_line(const std::string& path, std::string_view driver);
+
 /// The same of the drive file, the driver, the rate and the wheel command of these parameters.
 std::unique_ptr<DriveFile> read_drive_file(const Parameters& parameters, std::vector<std::string> joints);
 

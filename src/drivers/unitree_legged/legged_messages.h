@@ -4,55 +4,21 @@
 /// this:
 ///
 ///   layout   little-endian, packed, without gaps: the order of the members here
-///   motor    kMotors places, of which a Go1 has the first kRobotMotors: front right, front left, rear right, rear left;
-///            each with hip, thigh, calf
 ///   torques  i16 of 1/256 N·m: the maker's library wraps beyond ±127.99 N·m, `encode` clamps and reports it
 ///   gains    i16 of 1/32 N·m/rad and of 1/16 N·m·s/rad; `encode` clamps and reports them
-///   check    over all 32-bit words before the last `reserve`, which is not covered as a whole: polynomial 04C11DB7,
-///            start FFFFFFFF, highest bit of a word first, no final inversion
+///   check    over all 32-bit words before the last `reserve`, which is not covered as a whole
 ///
 /// A1 and Aliengo (SDK 3.3 and before) pack their messages differently. Their datagrams have another length, which
 /// `decode` refuses.
 
-#include <array>
-#include <cstddef>
-#include <cstdint>
-#include <span>
+#include "drivers/unitree/low_level.h"
 
 namespace robot_control::unitree {
 
 inline constexpr std::size_t kCommandBytes = 614;
 inline constexpr std::size_t kStateBytes = 807;
-inline constexpr std::size_t kMotors = 20;
-inline constexpr std::size_t kRobotMotors = 12;
-inline constexpr std::uint8_t kLowLevel = 0xFF;
-inline constexpr float kNoPosition = 2.146e9F;  ///< rad: the motor holds no position
-inline constexpr float kNoVelocity = 16000;     ///< rad/s: the motor holds no velocity
 inline constexpr double kMaxTorque = 32767 / 256.0;
-
-enum MotorMode : std::uint8_t {
-  kDamping = 0x00,
-  kServo = 0x0A,  ///< τ = tau + kp (q − q_motor) + kd (dq − q̇_motor)
-};
-
-struct MotorCommand {
-  std::uint8_t mode = kDamping;
-  float q = kNoPosition;   ///< rad
-  float dq = kNoVelocity;  ///< rad/s
-  double tau = 0;          ///< N·m
-  double kp = 0;           ///< N·m/rad
-  double kd = 0;           ///< N·m·s/rad
-  std::array<std::uint32_t, 3> reserve{};
-};
-
-/// Beginning of both messages, after the two bytes FE EF.
-struct LegHead {
-  std::uint8_t level = kLowLevel;
-  std::uint8_t reserve = 0;
-  std::array<std::uint32_t, 2> serial_number{};
-  std::array<std::uint32_t, 2> version{};
-  std::uint16_t band_width = 0;
-};
+inline constexpr std::uint8_t kServo = 0x0A;  ///< mode of a motor with a command
 
 struct LowCmd {
   LegHead head;
@@ -107,26 +73,6 @@ struct LowState {
   std::uint32_t reserve = 0;
 };
 
-/// Returns whether the keys L2 and B of the remote are pressed together, with which the maker's controllers go to
-/// their passive state. The two bytes of the keys are those of xKeySwitchUnion (unitree_legged_sdk, joystick.h): R1,
-/// L1, start, select, R2, L2, F1, F2, A, B, X, Y, up, right, down, left, from the lowest bit on.
-inline bool requests_stop(const std::array<std::uint8_t, 40>& remote) noexcept {
-  constexpr std::uint8_t kL2 = 1U << 5U, kB = 1U << 1U;
-  return (remote[2] & kL2) != 0 && (remote[3] & kB) != 0;
-}
-
-/// Why a datagram is no message.
-enum class Flaw : std::uint8_t {
-  kNone,
-  kLength,
-  kHead,   ///< It does not begin with FE EF FF.
-  kCheck,  ///< The check sum is wrong.
-  kValue,  ///< A number is not finite. In a state also: an angle, velocity or acceleration beyond kMaxNumber, a charge
-           ///< above 100 %.
-};
-
-inline constexpr float kMaxNumber = 10'000;
-
 /// Returns false if a number had to be clamped, or was NaN, which becomes 0.
 bool encode(const LowCmd& command, std::span<std::uint8_t, kCommandBytes> bytes) noexcept;
 bool encode(const LowState& state, std::span<std::uint8_t, kStateBytes> bytes) noexcept;
@@ -134,8 +80,5 @@ bool encode(const LowState& state, std::span<std::uint8_t, kStateBytes> bytes) n
 /// Changes the message only if the result is kNone.
 Flaw decode(std::span<const std::uint8_t> bytes, LowCmd& command) noexcept;
 Flaw decode(std::span<const std::uint8_t> bytes, LowState& state) noexcept;
-
-/// Returns the check sum of the whole words at the beginning of `bytes`.
-std::uint32_t check_sum(std::span<const std::uint8_t> bytes) noexcept;
 
 }  // namespace robot_control::unitree

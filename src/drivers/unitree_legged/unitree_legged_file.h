@@ -2,7 +2,7 @@
 /// The drive file of a Unitree Go1: a block of the robot's low level, and one block per joint.
 
 #include "drivers/drive/datagram_drive_file.h"
-#include "drivers/unitree_legged/unitree_legged_parameters.h"
+#include "drivers/unitree_legged/go1.h"
 
 namespace robot_control {
 

@@ -1,4 +1,4 @@
-#include "drivers/unitree_legged/virtual_datagrams.h"
+#include "drivers/unitree/virtual_datagrams.h"
 
 #include <algorithm>
 #include <utility>

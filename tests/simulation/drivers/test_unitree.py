@@ -1,4 +1,7 @@
-"""A robot on legs behind the simulated low level of a Go1: it stands up, walks as requested, and folds at each loss."""
+"""A robot on legs behind the simulated low level of a Go1 or Go2.
+
+It stands up, walks as requested, and folds at each loss.
+"""
 
 import os
 from pathlib import Path
@@ -27,11 +30,15 @@ LATEST = {
 """s, from the loss until the driver reports it"""
 
 
-def loop_of(robot, rate, seed=1):
-    """The robot behind the drives of the Go1."""
-    values = {"robot": {"driver": "unitree_legged", "rate": rate}}
+BRIDGE = [("off", 0.024), ("other_commands", 0.01), ("second_writer", 0.01), ("asked", 0.01)]
+"""faults of the bridge before a Go2, and s until the driver reports them"""
+
+
+def loop_of(robot, rate, driver="unitree_legged", seed=1):
+    """The robot behind the drives of a Go1 or Go2."""
+    values = {"robot": {"driver": driver, "rate": rate}}
     if robot == "quadbot":
-        drives = share_file("config/drives/unitree_legged.yaml")
+        drives = share_file(f"config/drives/{driver}.yaml")
         return ClosedLoop(values, seed=seed, urdf=share_file("urdf/quadbot.urdf"), drives=drives)
     urdf = QUADRUPEDS / robot / "robot.urdf"
     if not urdf.exists():
@@ -44,10 +51,13 @@ def distance(log, source):
     return np.hypot(*(log[f"{source}_{axis}"][-1] - log[f"{source}_{axis}"][0] for axis in "xy"))
 
 
-@pytest.mark.parametrize("robot", ["quadbot", "go1"])
+@pytest.mark.parametrize(
+    ("robot", "driver"),
+    [("quadbot", "unitree_legged"), ("go1", "unitree_legged"), ("quadbot", "unitree_go"), ("go2", "unitree_go")],
+)
 @pytest.mark.parametrize("rate", [500, 1000])
-def test_it_stands_up_and_walks_as_requested(robot, rate):
-    loop = loop_of(robot, rate)
+def test_it_stands_up_and_walks_as_requested(robot, driver, rate):
+    loop = loop_of(robot, rate, driver)
     loop.run(1.0)
     loop.run(RISE, (SPEED, 0.0))
     walk = loop.run(WALK, (SPEED, 0.0))
@@ -56,18 +66,27 @@ def test_it_stands_up_and_walks_as_requested(robot, rate):
     assert distance(walk, "estimate") == pytest.approx(distance(walk, "truth"), rel=0.01)
 
 
-@pytest.mark.parametrize(("component", "kind"), LATEST)
-def test_each_loss_stops_it_upright(component, kind):
-    loop = loop_of("quadbot", 500)
+def expect_a_stop_upright(driver, component, kind, latest):
+    loop = loop_of("quadbot", 500, driver)
     loop.run(1.0)
     loop.run(RISE, (SPEED, 0.0))
     loop.inject_fault(component, kind)
     stop = loop.run(4.0, (SPEED, 0.0))
     fault = (stop["permit_causes"].astype(np.uint64) & np.uint64(mask_of("StopCause", "driver_fault"))) != 0
     assert fault.any()
-    assert np.argmax(fault) <= LATEST[component, kind] * 500
+    assert np.argmax(fault) <= latest * 500
     assert np.abs(stop["truth_linear"][-500:]).max() < STANDING
     assert stop["truth_tilt"].max() < TILT
+
+
+@pytest.mark.parametrize(("component", "kind"), LATEST)
+def test_each_loss_stops_it_upright(component, kind):
+    expect_a_stop_upright("unitree_legged", component, kind, LATEST[component, kind])
+
+
+@pytest.mark.parametrize(("kind", "latest"), BRIDGE)
+def test_each_loss_of_the_bridge_stops_it_upright(kind, latest):
+    expect_a_stop_upright("unitree_go", "bridge", kind, latest)
 
 
 @pytest.mark.parametrize("kind", ["lossy", "late", "disturbed"])
