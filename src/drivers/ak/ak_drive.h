@@ -1,5 +1,5 @@
 #pragma once
-/// One AK motor (drivers/drive/mit_drive.h).
+/// One AK motor (drivers/drive/mit/mit_drive.h).
 ///
 /// It has no timeout: when this program is silent it keeps its last order for ever. `stop` of the driver therefore ends
 /// with a damping. It also keeps an order while it is released, and carries it out when it is enabled. So the request
@@ -10,13 +10,14 @@
 /// range, and it reports less than kNoTorque of it for kReleasedNs. An order that needs no torque shows nothing.
 ///
 /// Its ranges depend on type and firmware, public lists contradict each other, and the motor has no registers. So its
-/// velocities are compared with its positions (drivers/drive/motion_scale.h). The range of the torque is not checked.
+/// velocities are compared with its positions (drivers/drive/mit/motion_scale.h). The range of the torque is not
+/// checked.
 
 #include <cstdint>
 
 #include "drivers/ak/ak_messages.h"
 #include "drivers/ak/ak_parameters.h"
-#include "drivers/drive/mit_drive.h"
+#include "drivers/drive/mit/mit_drive.h"
 
 namespace robot_control::ak {
 

@@ -1,7 +1,7 @@
 #pragma once
 /// The frames of one AK motor of T-Motor (CubeMars) on CAN, in the protocol of the mini-cheetah.
 ///
-///   to the motor's number  an order or a request of drive/mit_codec.h. Each is answered
+///   to the motor's number  an order or a request of drive/mit/mit_codec.h. Each is answered
 ///   to 0, from it          its number (1 byte), position (16 bits), velocity and torque (12 bits each), the highest
 ///                          byte first; of newer firmware also a temperature and an Error
 ///
@@ -12,7 +12,7 @@
 #include <cstdint>
 #include <optional>
 
-#include "drivers/drive/mit_codec.h"
+#include "drivers/drive/mit/mit_codec.h"
 
 namespace robot_control::ak {
 

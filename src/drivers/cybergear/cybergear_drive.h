@@ -1,19 +1,20 @@
 #pragma once
-/// One CyberGear or RobStride motor in its operation control mode, which is the MIT mode (drivers/drive/mit_drive.h).
+/// One CyberGear or RobStride motor in its operation control mode, which is the MIT mode
+/// (drivers/drive/mit/mit_drive.h).
 ///
 /// The set-up reads the mode, and the limit of the torque: one above torque_range shows that the motor is of another
 /// type. It writes the timeout, and reads it back. Older firmware has none, and keeps its last order for ever. Such a
 /// motor is refused, unless the drive file accepts that with `on_silence: keeps`.
 ///
 /// The ranges follow from the type, and cannot be read. So its velocities are compared with its positions
-/// (drivers/drive/motion_scale.h).
+/// (drivers/drive/mit/motion_scale.h).
 
 #include <array>
 #include <cstdint>
 
 #include "drivers/cybergear/cybergear_messages.h"
 #include "drivers/cybergear/cybergear_parameters.h"
-#include "drivers/drive/mit_drive.h"
+#include "drivers/drive/mit/mit_drive.h"
 
 namespace robot_control::cybergear {
 

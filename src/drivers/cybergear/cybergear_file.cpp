@@ -1,5 +1,5 @@
 #include "drivers/cybergear/cybergear_drive.h"
-#include "drivers/drive/mit_drive_file.h"
+#include "drivers/drive/mit/mit_drive_file.h"
 
 namespace robot_control {
 namespace cybergear {
@@ -10,8 +10,8 @@ class CybergearFile final : public MitFile<CybergearParameters> {
   using MitFile::MitFile;
   DriveSet drives() const override { return drives_of<CybergearDrive>(joints(), request().period()); }
 
-  /// All frames are orders and their answers. Three motors at 1 kHz have 6 of at most 160 bits in 1 ms: 0.96, where a
-  /// frame is repeated in the room of those that are shorter than at worst.
+  /// All frames are orders and their answers. Three motors at 1 kHz have 6 of at most 160 bits in 1 ms: 0.96. A frame
+  /// is repeated only where others have fewer stuffed bits than at worst.
   double max_load() const override { return 0.97; }
 
  private:

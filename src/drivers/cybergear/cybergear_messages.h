@@ -3,7 +3,7 @@
 /// identifier is type << 24 | 16 bits of data << 8 | number of the party that the frame is for.
 ///
 ///   1   to the motor   an order: torque in the identifier; position, velocity, stiffness and damping, 16 bits each,
-///                      the highest byte first. Raw values as in drive/mit_codec.h
+///                      the highest byte first. Raw values as in drive/mit/mit_codec.h
 ///   2   from it        Feedback: in the identifier its number (bits 8–15), faults (16–21) and Mode (22–23); position,
 ///                      velocity, torque and tenths of °C. It answers types 1, 3, 4, 6 and 18
 ///   3, 4, 6  to it     enable; release, and with the first byte 1 clear its faults; set its zero
@@ -20,7 +20,7 @@
 #include <cstdint>
 #include <optional>
 
-#include "drivers/drive/mit_codec.h"
+#include "drivers/drive/mit/mit_codec.h"
 
 namespace robot_control::cybergear {
 

@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-#include "drivers/drive/mit_joint.h"
+#include "drivers/drive/mit/mit_joint.h"
 
 namespace robot_control::cybergear {
 

@@ -1,5 +1,5 @@
 #pragma once
-/// One Damiao motor in MIT mode (drivers/drive/mit_drive.h).
+/// One Damiao motor in MIT mode (drivers/drive/mit/mit_drive.h).
 ///
 /// The set-up reads registers and compares them with the drive file: a wrong range would scale every number. The
 /// timeout is written where it differs, and read back: a motor that receives no order for that time releases itself.
@@ -10,7 +10,7 @@
 
 #include "drivers/damiao/damiao_messages.h"
 #include "drivers/damiao/damiao_parameters.h"
-#include "drivers/drive/mit_drive.h"
+#include "drivers/drive/mit/mit_drive.h"
 
 namespace robot_control::damiao {
 

@@ -1,5 +1,5 @@
 #include "drivers/damiao/damiao_drive.h"
-#include "drivers/drive/mit_drive_file.h"
+#include "drivers/drive/mit/mit_drive_file.h"
 
 namespace robot_control {
 namespace damiao {

@@ -1,7 +1,7 @@
 #pragma once
 /// The frames of one Damiao motor (DM-J series) on CAN, with identifiers of 11 bits and 8 bytes of data.
 ///
-///   to the motor's number     an order of drive/mit_codec.h, or a Request. Each is answered
+///   to the motor's number     an order of drive/mit/mit_codec.h, or a Request. Each is answered
 ///   to 100h, 200h, 300h + it  orders of the other modes
 ///   to 7FFh                   number (2 bytes), operation, register, value (4 bytes), little-endian
 ///   to MST_ID, from it        Feedback, or the answer to a register, which repeats the request with the value
@@ -13,7 +13,7 @@
 #include <bit>
 #include <cstdint>
 
-#include "drivers/drive/mit_codec.h"
+#include "drivers/drive/mit/mit_codec.h"
 
 namespace robot_control::damiao {
 

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <optional>
 
-#include "drivers/drive/mit_joint.h"
+#include "drivers/drive/mit/mit_joint.h"
 
 namespace robot_control::damiao {
 

@@ -1,4 +1,4 @@
-#include "drivers/drive/motion_scale.h"
+#include "drivers/drive/mit/motion_scale.h"
 
 #include <gtest/gtest.h>
 

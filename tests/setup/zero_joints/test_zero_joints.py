@@ -117,7 +117,7 @@ def test_a_wrong_sign_is_found(drives, index, found_by_angle):
 @pytest.mark.parametrize("index", range(12))
 @pytest.mark.parametrize("drives", GEARS)
 def test_motors_of_exchanged_legs_are_found(drives, index):
-    """Left and right hips differ in the angle; all other joints lie alike, which only the hand tells apart."""
+    """Left and right hips differ in the angle; all other joints lie alike, which only the hand distinguishes."""
     robot = robot_of_kind(drives)
     other = (index + 3) % 12
     robot.motors[index], robot.motors[other] = other, index

@@ -22,8 +22,8 @@ from robot_control.settings.block import Settings
 from robot_control.setup.calibrate import evaluation, law
 from robot_control.setup.calibrate.moves import Move, Pilot, square, straight
 from robot_control.setup.calibrate.robot import CalibratedRobot
-from robot_control.setup.calibrate.terminal_dialog import Answer, NoAnswerError, Questions
 from robot_control.setup.excitation_watch import hindrance, ignored, moves, unattended
+from robot_control.setup.terminal_dialog import Answer, NoAnswerError, Questions
 
 PERIOD = 0.05
 """s between two commands: 25 are lost before the default cmd_vel_timeout"""

@@ -31,7 +31,7 @@ class Robot(Protocol):
 
 
 class Asker(Protocol):
-    """Questions of setup/calibrate/terminal_dialog.py."""
+    """Questions of setup/terminal_dialog.py."""
 
     def line(self, question: str) -> str:
         """One line, as it was typed."""

@@ -7,21 +7,23 @@ import time
 from collections.abc import Sequence
 from pathlib import Path
 
+import numpy as np
 import rosgraph
 import rospy
 import yaml  # type: ignore[import-untyped]
 from sensor_msgs.msg import JointState
 
+from robot_control import _robot_control
 from robot_control.files.files import given_path, one_message, write_text
 from robot_control.files.output_files import check_outputs
-from robot_control.legs import jacobian
 from robot_control.robot.boundary import Latest
 from robot_control.robot.ros_node import begin_node
 from robot_control.robot.running_robot import RefusedError, await_all
 from robot_control.robot.safety_watch import SafetyWatch
 from robot_control.robot.server_values import described_robot, server_text
 from robot_control.robot.topic_sender import Signals, ended_by_signals
-from robot_control.setup.calibrate.terminal_dialog import NoAnswerError, Questions
+from robot_control.settings.parameter_layers import layered
+from robot_control.setup.terminal_dialog import NoAnswerError, Questions
 from robot_control.setup.zero_joints.dialog import NotFoundError, Zeroed, find_zeros
 from robot_control.setup.zero_joints.drive_file import FileJoint, read_joints, robot_of, with_values
 
@@ -106,7 +108,7 @@ def _is_angle(value: object) -> bool:
 def positive_turns(urdf: str, angles: Sequence[float], names: Sequence[str]) -> list[str]:
     """The motion of the foot when each joint turns in its positive direction, in words."""
     try:
-        slopes = jacobian(urdf, angles)
+        slopes = np.asarray(_robot_control.legs(*layered(None, urdf)).jacobian(np.asarray(angles)))
     except Exception:
         return ["towards greater angles (about its axis in the URDF)"] * len(names)
     words = []

@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "drivers/drive/can_drive_file.h"
-#include "drivers/drive/mit_joint.h"
+#include "drivers/drive/mit/mit_joint.h"
 
 namespace robot_control {
 

@@ -1,4 +1,4 @@
-#include "drivers/drive/mit_drive.h"
+#include "drivers/drive/mit/mit_drive.h"
 
 #include <cmath>
 #include <numbers>

@@ -2,22 +2,23 @@
 /// MotionScale compares the velocity that a motor reports with its positions. Both are scaled by a range of the drive
 /// file, and a wrong range gives them different scales.
 ///
-/// A step ends when the motor turned by kStep. With the change D of the position in it, and the integral I of the
-/// velocity by the trapezoidal rule, the ratio over the steps of a window is
+/// A step ends when the motor turned by kStep. D is the change of the position in it, and I the integral of the
+/// velocity by the trapezoidal rule. The ratio over the steps of a window is
 ///
 ///   r = Σ I D / Σ D² = (V of the file / V of the motor) / (P of the file / P of the motor)
 ///
 /// A window lasts until its steps have turned by kTravel together. The scale is wrong if r is outside of 1/kMaxRatio …
 /// kMaxRatio in kWindows windows in a row. A filter of 5 ms of the velocity lowers r by 3 % at 8 Hz; frames that are
-/// late by a period disturb I at random. Ranges that are wrong by the same factor are not found. A step begins again
-/// after kMaxSpan, so that an offset of the velocity is not integrated at rest, after a gap between two samples, and
-/// near the end of a range.
+/// late by a period disturb I at random. Ranges that are wrong by the same factor are not found.
+///
+/// A step begins again after kMaxSpan, so that an offset of the velocity is not integrated at rest. It also begins
+/// again after a gap between two samples, and near the end of a range.
 
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
 
-#include "drivers/drive/mit_codec.h"
+#include "drivers/drive/mit/mit_codec.h"
 
 namespace robot_control {
 

@@ -3,7 +3,7 @@
 import os
 
 import pytest
-from robot_control.setup.calibrate.terminal_dialog import NoAnswerError, Questions
+from robot_control.setup.terminal_dialog import NoAnswerError, Questions
 
 
 @pytest.fixture

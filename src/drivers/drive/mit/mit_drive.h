@@ -16,8 +16,8 @@
 #include <optional>
 
 #include "drivers/drive/drive.h"
-#include "drivers/drive/mit_joint.h"
-#include "drivers/drive/motion_scale.h"
+#include "drivers/drive/mit/mit_joint.h"
+#include "drivers/drive/mit/motion_scale.h"
 
 namespace robot_control {
 

@@ -4,7 +4,7 @@
 
 #include <optional>
 
-#include "drivers/drive/mit_codec.h"
+#include "drivers/drive/mit/mit_codec.h"
 #include "drivers/drive_parameters.h"
 
 namespace robot_control {
