@@ -20,17 +20,23 @@ def require_master() -> None:
         sys.exit(f"{what}: start the robot first, for instance with roslaunch robot_control sim.launch")
 
 
-def living(node: str) -> bool:
-    """True if a node of this name (absolute) is known to the master and answers."""
+def process_of(node: str) -> int | None:
+    """The process, on its computer, of a node of this name (absolute) that is known to the master and answers."""
     try:
         master: Any = timed_proxy(rosgraph.get_master_uri(), TIMEOUT)
         known, _, uri = master.lookupNode(node, node)
         if known != 1:
-            return False
+            return None
         itself: Any = timed_proxy(uri, TIMEOUT)
-        return bool(itself.getPid(node)[0] == 1)
+        code, _, process = itself.getPid(node)
+        return int(process) if code == 1 else None
     except NO_ANSWER:
-        return False
+        return None
+
+
+def living(node: str) -> bool:
+    """True if a node of this name (absolute) is known to the master and answers."""
+    return process_of(node) is not None
 
 
 class Master:

@@ -67,6 +67,9 @@ void CanDriver::stop() noexcept {
     commands_[i] = {.enabled = true, .brake_damping = damping, .damping = damping};
   }
   send_commands(clock_().time_ns);
+  if (!closes_impedance_) return;
+  for (int repeated = 1; repeated < kLastCommands; ++repeated)
+    for (std::size_t i = 0; i < lines_.size(); ++i) lines_[i].bus.send(send_[i].frames());
 }
 
 void CanDriver::send_commands(std::int64_t now_ns) noexcept {

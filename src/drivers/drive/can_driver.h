@@ -68,7 +68,8 @@ class CanDriver final : public Driver {
   const CanBus& bus(std::size_t i = 0) const noexcept { return lines_[i].bus; }
 
  private:
-  static constexpr int kMaxBatches = 8;  // of frames in one cycle, so that a flooded bus does not stop the loop
+  static constexpr int kLastCommands = 3;  // one may be lost, and some motors of legs keep their last order for ever
+  static constexpr int kMaxBatches = 8;    // of frames in one cycle, so that a flooded bus does not stop the loop
 
   struct Statuses {
     std::array<DriveStatus, kMaxJoints> drives{};

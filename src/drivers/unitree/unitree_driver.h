@@ -232,7 +232,8 @@ double UnitreeDriver<Robot>::position_of(std::size_t i, const State& state) cons
 
 template <class Robot>
 bool UnitreeDriver<Robot>::is_possible(const State& state) noexcept {
-  const double elapsed = 1.0e-9 * static_cast<double>(now_ns_ - state_ns_ + period_ns_);
+  const std::int64_t late_ns = std::max(period_ns_, Robot::kPublishNs);  // both states may arrive together
+  const double elapsed = 1.0e-9 * static_cast<double>(now_ns_ - state_ns_ + late_ns);
   for (std::size_t i = 0; i < parameters_.joints.size(); ++i) {
     const double moved = position_of(i, state) - position_of(i, state_);
     const double maximum = kSpeedMargin * parameters_.joints[i].velocity_limit * elapsed;

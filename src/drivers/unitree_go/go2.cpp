@@ -16,7 +16,7 @@ Go2::Go2(const Line& line)
 
 std::span<const std::uint8_t> Go2::opened(std::span<const std::uint8_t> datagram, std::int64_t now_ns) noexcept {
   report_ns_ = now_ns;
-  if (!read_report(datagram, report_)) return datagram;
+  if (!read_report(datagram, report_)) return datagram.size() == kStateBytes ? datagram.first(1) : datagram;
   has_report_ = true;
   return datagram.subspan(kReportBytes);
 }
@@ -75,6 +75,8 @@ const char* Go2::remedy(DriveCause cause) {
   switch (cause) {
     case DriveCause::kFirstFrame:
       return "; check the key interface of the drive file";
+    case DriveCause::kBridge:
+      return "; without the program unitree_bridge: scripts/setup --unitree, then build";
     case DriveCause::kNoAnswer:
       return "; set has_service: false for a robot without it, as most simulators";
     case DriveCause::kForeignCommander:

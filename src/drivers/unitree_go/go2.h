@@ -51,7 +51,7 @@ class Go2 {
 
   explicit Go2(const Line& line);
 
-  /// Returns the state in a datagram of the bridge; nothing if it has none.
+  /// Returns the state in a datagram of the bridge; nothing if it has none. A state without a report is none.
   std::span<const std::uint8_t> opened(std::span<const std::uint8_t> datagram, std::int64_t now_ns) noexcept;
   LegObstacle obstacle(std::int64_t now_ns) const noexcept;
   Notice notice() const noexcept { return {.process = report_.process, .mode = report_.mode}; }

@@ -70,6 +70,14 @@ TEST(MotionScale, FindsNoneAtRestWithAnOffsetOfTheVelocity) {
   for (std::int64_t i = 0; i < 1'000'000; ++i) ASSERT_FALSE(scale.step(0.3, 0.1, i * kSampleNs));
 }
 
+TEST(MotionScale, FindsAPositionThatStaysWithARatioOfZero) {
+  MotionScale scale(kRanges);
+  bool found = false;
+  for (std::int64_t i = 0; i < 2'000 && !found; ++i) found = scale.step(0.3, 5, i * kSampleNs);
+  EXPECT_TRUE(found);
+  EXPECT_EQ(scale.ratio(), 0);
+}
+
 TEST(MotionScale, FindsNoneAtTheEndsOfTheRanges) {
   MotionScale scale(kRanges);
   for (std::int64_t i = 0; i < 10'000; ++i) ASSERT_FALSE(scale.step(12.5, 10, i * kSampleNs));

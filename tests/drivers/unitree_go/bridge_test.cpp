@@ -77,7 +77,23 @@ TEST_F(Switcher, AnEmptyNameIsFree) {
   ASSERT_TRUE(request);
   EXPECT_EQ(request->api, 1001);
   EXPECT_EQ(switcher.state(), MotionService::kFree);
-  EXPECT_FALSE(switcher.due(10'000 * kMs)) << "it is not asked again";
+}
+
+TEST_F(Switcher, AModeThatBeginsLaterIsNamedAndNotReleased) {
+  MotionSwitcher releasing(true, true);
+  answered(releasing, kMs, R"({"name": ""})");
+  EXPECT_TRUE(releasing.is_free());
+  ASSERT_TRUE(answered(releasing, 10'000 * kMs, R"({"name": "mcf"})"));
+  EXPECT_EQ(releasing.state(), MotionService::kActive);
+  const auto next = releasing.due(11'000 * kMs);
+  ASSERT_TRUE(next);
+  EXPECT_EQ(next->api, MotionSwitcher::kCheckMode);
+}
+
+TEST_F(Switcher, ASilentServiceThatWasFreeStaysFree) {
+  answered(switcher, kMs, R"({"name": ""})");
+  EXPECT_TRUE(switcher.due(10'000 * kMs));
+  EXPECT_TRUE(switcher.is_free());
 }
 
 TEST_F(Switcher, AnActiveModeIsAskedAgainUntilItsReleaseByTheUser) {

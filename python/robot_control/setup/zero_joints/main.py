@@ -17,6 +17,9 @@ from robot_control import _robot_control
 from robot_control.files.files import given_path, one_message, write_text
 from robot_control.files.output_files import check_outputs
 from robot_control.robot.boundary import Latest
+from robot_control.robot.process_start import process_began
+from robot_control.robot.robot_kind import running_kind
+from robot_control.robot.ros_master import process_of
 from robot_control.robot.ros_node import begin_node
 from robot_control.robot.running_robot import RefusedError, await_all
 from robot_control.robot.safety_watch import SafetyWatch
@@ -34,6 +37,8 @@ STILL = 0.02
 PATIENCE = 20.0
 """s until the joints have to rest"""
 PERIOD = 0.02
+LOST = ("driver_lost", "driver_fault", "encoders_lost", "machine_not_ready")
+"""causes of a stop after which the angle of a joint may be its last one"""
 WAYS = (("forward", "backward"), ("to the left", "to the right"), ("up", "down"))
 
 
@@ -65,6 +70,12 @@ class RestingRobot:
         if self._watch.drivable() is not False:
             why = "safety_status is silent" if self._watch.drivable() is None else "the robot is released"
             raise RefusedError(f"{why}: stop it (rosservice call e_stop_trigger), and begin again. Nothing was written")
+        causes = [] if self._watch.message is None else self._watch.message.causes
+        if lost := [cause for cause in causes if cause in LOST]:
+            raise RefusedError(
+                f"{', '.join(lost)}: a joint may show an old angle; mend it, call e_stop_reset, "
+                "stop the robot (e_stop_trigger), and begin again. Nothing was written"
+            )
         message, received_at = self._joints.newest
         if time.monotonic() - received_at > REST:
             raise RefusedError("joint_states is silent: do driver and estimator run? Nothing was written")
@@ -105,6 +116,17 @@ def _is_angle(value: object) -> bool:
     return isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)
 
 
+def require_older(path: Path) -> None:
+    """Refuses a file that was changed after the driver of this computer read it, or whose driver does not run here."""
+    driver = rospy.resolve_name(running_kind().driver)
+    try:
+        age = time.monotonic() - process_began(process_of(driver) or "")
+    except OSError:
+        raise RefusedError(f"{driver} does not run on this computer: start the tool there") from None
+    if time.time() - path.stat().st_mtime < age:
+        raise RefusedError(f"{path} was changed after the driver started: restart the driver, and begin again")
+
+
 def positive_turns(urdf: str, angles: Sequence[float], names: Sequence[str]) -> list[str]:
     """The motion of the foot when each joint turns in its positive direction, in words."""
     try:
@@ -136,11 +158,15 @@ def main() -> None:
             raise RefusedError(f"{path} holds the offsets of {robot_of(text)}: copy it for {options.robot}")
         robot = RestingRobot(signals)
         given = read_joints(text, robot.names)
+        require_older(path)
+        with_values(text, {name: {"offset": each.offset} for name, each in zip(robot.names, given, strict=True)})
         angles = known_angles(given, robot.names, options.angles)
         with described_robot() as (_, urdf):
             words = positive_turns(urdf, angles, robot.names)
         joints = [Zeroed(*each) for each in zip(robot.names, given, angles, words, strict=True)]
         found = find_zeros(joints, robot, Questions(signals.going_on))
+    if path.read_text(encoding="utf-8") != text:
+        raise RefusedError(f"{path} was changed meanwhile: begin again. Nothing was written")
     date = datetime.date.today().isoformat()
     write_text(path, with_values(text, found, options.robot or robot_of(text), date))
     print(f"wrote {path}: restart the driver")

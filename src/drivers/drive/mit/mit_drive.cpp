@@ -38,6 +38,7 @@ void MitDrive::compare(const char* name, double found, double expected) noexcept
 
 void MitDrive::check_scale(double position, double velocity, std::int64_t now_ns) noexcept {
   if (!scale_.step(position, velocity, now_ns)) return;
+  if (scale_.ratio() <= 0) return fail(DriveCause::kDiffers, "change of its position, which its velocity contradicts");
   fail(DriveCause::kDiffers, "velocity_range by its positions, or position_range", 0, ranges_.velocity / scale_.ratio(),
        ranges_.velocity);
 }

@@ -57,13 +57,13 @@ class MotionScale {
     time_ += span_;
     begin(position);
     if (travel_ < kTravel || time_ < kMinWindow) return false;
-    ratio_ = product_ / square_;
+    ratio_ = square_ > 0 ? product_ / square_ : 0;
     product_ = square_ = travel_ = time_ = 0;
     wrong_ = 1 / kMaxRatio <= ratio_ && ratio_ <= kMaxRatio ? 0 : wrong_ + 1;
     return wrong_ >= kWindows;
   }
 
-  /// Returns r of the last window; 1 without one.
+  /// Returns r of the last window; 1 without one, 0 where the position stayed.
   double ratio() const noexcept { return ratio_; }
 
  private:

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cstring>
 #include <iostream>
 #include <memory>
@@ -81,6 +82,7 @@ class ControllerSide {
     while (ends == 0) {
       line_.wait();
       const std::int64_t now_ns = clock_();
+      relayed_ns_ = now_ns;
       const bool was_stopped = now_ns - last_ns > CommandRelay::kSilenceNs;  // what waits is old
       last_ns = now_ns;
       take_commands(now_ns, was_stopped);
@@ -94,7 +96,9 @@ class ControllerSide {
   }
 
  private:
+  /// A relay that hangs sends no commands: its driver gets no states, and says so.
   void forward(std::span<std::uint8_t> state) {
+    if (clock_() - relayed_ns_ > CommandRelay::kSilenceNs) return;
     std::array<std::uint8_t, kReportBytes + kStateBytes> datagram;
     const std::lock_guard lock(mutex_);
     write_report(report_, datagram);
@@ -177,7 +181,8 @@ class ControllerSide {
   std::mutex mutex_;  // of what follows
   BridgeReport report_;
   std::int64_t sent_ns_ = 0;
-  DdsNetwork network_;  // its thread uses what stands before it
+  std::atomic<std::int64_t> relayed_ns_ = clock_();  // when the relay began its last pass
+  DdsNetwork network_;                               // its thread uses what stands before it
 };
 
 /// Before a simulated robot.

@@ -32,8 +32,8 @@ void MotionSwitcher::begin(std::int64_t now_ns) noexcept {
 }
 
 std::optional<MotionSwitcher::Request> MotionSwitcher::due(std::int64_t now_ns) noexcept {
-  if (is_free()) return {};
-  if (now_ns - begin_ns_ > kPatienceNs) state_ = MotionService::kNoAnswer;
+  if (!exists_) return {};
+  if (state_ != MotionService::kFree && now_ns - begin_ns_ > kPatienceNs) state_ = MotionService::kNoAnswer;
   if (now_ns - asked_ns_ < kAskNs) return {};
   asked_ns_ = now_ns;
   last_ = {.id = now_ns, .api = std::exchange(releases_, false) ? kReleaseMode : kCheckMode};
@@ -49,8 +49,8 @@ void MotionSwitcher::accept(const Request& request, std::int64_t code, std::stri
   const std::optional<std::string> name = name_in(data);
   if (!name) return;
   mode_ = *name;
+  releases_ = release_ && state_ != MotionService::kFree && !name->empty();
   state_ = name->empty() ? MotionService::kFree : MotionService::kActive;
-  releases_ = release_ && !name->empty();
 }
 
 }  // namespace robot_control::unitree::go

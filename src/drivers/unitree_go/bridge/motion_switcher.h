@@ -3,7 +3,8 @@
 /// the numbers and of the answer: unitree_sdk2_python, comm/motion_switcher and rpc/client_base.py.
 ///
 /// A request has an id, which its answer repeats. CheckMode is answered with JSON that has a "name"; no mode is active
-/// if it is empty. The service is asked every kAskNs until it is free. It is kNoAnswer after kPatienceNs.
+/// if it is empty. The service is asked every kAskNs. It is kNoAnswer after kPatienceNs
+/// without an answer, unless it was free. A mode that begins afterwards is not released: the driver stops.
 
 #include <cstdint>
 #include <optional>
