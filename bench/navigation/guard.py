@@ -117,10 +117,19 @@ def eye_at(pose: tuple[float, float, float]) -> tuple[float, float, float]:
     return x + math.cos(yaw) * LASER[0], y + math.sin(yaw) * LASER[0], yaw
 
 
-def in_view(segments: Segments, eye: tuple[float, float, float], view: int) -> bool:
-    """True if the middle of the first segment, towards the robot, lies well within the field of view."""
-    bearing = math.atan2(segments[0, [1, 3]].mean() - eye[1], segments[0, [0, 2]].mean() - eye[0]) - eye[2]
-    return abs(math.remainder(bearing, 2 * math.pi)) < math.radians(view / 2 - 10) or view == VIEWS[-1]
+def in_view(segments: Segments, pose: tuple[float, float, float], view: int) -> bool:
+    """True if two points lie well within the field of view of the laser on the robot that is here: the middle of the
+    first segment, towards the robot, and the point that is nearest to the base. A robot that drives backwards does not
+    see what is behind it.
+    """
+    a, along = segments[:, :2], segments[:, 2:] - segments[:, :2]
+    shares = np.clip(((pose[:2] - a) * along).sum(axis=1) / (along**2).sum(axis=1), 0, 1)
+    points = a + shares[:, None] * along
+    nearest = points[np.hypot(*(points - pose[:2]).T).argmin()]
+    eye = eye_at(pose)
+    bearings = [math.atan2(y - eye[1], x - eye[0]) - eye[2] for x, y in (nearest, a[0] + along[0] / 2)]
+    widest = max(abs(math.remainder(bearing, 2 * math.pi)) for bearing in bearings)
+    return widest < math.radians(view / 2 - 10) or view == VIEWS[-1]
 
 
 def obstacle(pose: tuple[float, float, float], motion: Command, away: float, random: np.random.Generator) -> Segments:
@@ -184,7 +193,7 @@ def meet(task: tuple[str, int, int, bool]) -> Meeting | None:
             guard.move_joints(joints, loop.time)
         if not len(segments) and loop.time >= begins + appears:
             segments = obstacle(true, command, away + 0.28, random)
-            if air(guard, segments, true) < NEAREST or not in_view(segments, eye_at(true), view):
+            if air(guard, segments, true) < NEAREST or not in_view(segments, true, view):
                 return None
         if step % round(SCAN_PERIOD / STEP) == 0:
             guard.insert(
