@@ -2,6 +2,7 @@
 
 import argparse
 import contextlib
+import ctypes
 import itertools
 import os
 import re
@@ -11,8 +12,7 @@ import sys
 import tempfile
 import time
 import webbrowser
-import xmlrpc.client
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from types import FrameType
 
@@ -28,10 +28,12 @@ LASER_RATE = 10
 """Hz"""
 STARTED = re.compile(r"(?:ready|STOPPED): .*")
 """what a robot prints when it may be commanded, or waits for a reset: a stop outlives a restart"""
+SET_CHILD_SUBREAPER = 36
+"""PR_SET_CHILD_SUBREAPER of linux/prctl.h"""
 POLL = 0.1
 """s"""
 LAST = 10.0
-"""s for a launch that has lost its robot to end"""
+"""s for a launch that has lost its robot to end, and for programs that lost their parent"""
 LINES = 15
 """of an output that are shown when it has ended"""
 
@@ -62,7 +64,7 @@ def try_out(robot: str, scene: str, port: int, out: Path, *, browser: bool) -> i
     os.environ.pop("ROS_HOSTNAME", None)
     which = f"robot:={robot}" if robot in ROBOTS else f"urdf:={robot}"
     launch = ["roslaunch", "-p", str(master), "robot_control", "sim.launch", which, f"scene:={scene}"]
-    with contextlib.closing(_Master()), children() as started:
+    with _descendants(), children() as started:
         robot_part = Child([*launch, f"laser_rate:={LASER_RATE}"], out / "robot.log")
         started.append(robot_part)
         while robot_part.running and not rosgraph.is_master_online():
@@ -82,13 +84,24 @@ def try_out(robot: str, scene: str, port: int, out: Path, *, browser: bool) -> i
     return 1
 
 
-class _Master:
-    """The ROS master that roslaunch starts, and leaves where it is interrupted before it runs."""
+@contextlib.contextmanager
+def _descendants() -> Iterator[None]:
+    """Ends what the block has started, also programs that lost their parent, which become children of this process.
 
-    def close(self) -> None:
-        """Ends the master, if it still answers."""
-        with contextlib.suppress(OSError, xmlrpc.client.Error):
-            xmlrpc.client.ServerProxy(os.environ["ROS_MASTER_URI"]).shutdown("/try", "the end of scripts/try")
+    The ROS master of a roslaunch is one, if that is interrupted before its master runs.
+    """
+    ctypes.CDLL(None).prctl(SET_CHILD_SUBREAPER, 1)
+    try:
+        yield
+    finally:
+        kill_at = time.monotonic() + LAST
+        while left := Path(f"/proc/self/task/{os.getpid()}/children").read_text().split():
+            for process in left:
+                os.kill(int(process), signal.SIGTERM if time.monotonic() < kill_at else signal.SIGKILL)
+            time.sleep(POLL)
+            with contextlib.suppress(ChildProcessError):
+                while os.waitpid(-1, os.WNOHANG)[0]:
+                    pass
 
 
 def _address(robot_part: Child, console: Child) -> str:
