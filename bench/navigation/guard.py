@@ -118,8 +118,10 @@ def eye_at(pose: tuple[float, float, float]) -> tuple[float, float, float]:
 
 
 def in_view(segments: Segments, pose: tuple[float, float, float], view: int) -> bool:
-    """True if the laser of the robot that is here sees two points well: the middle of the first segment, towards the
-    robot, and the point that is nearest to the base. A robot that drives backwards does not see what is behind it.
+    """True if two points lie well within the view of the laser of the robot that is here.
+
+    They are the middle of the first segment, towards the robot, and the point that is nearest to the base. A robot that
+    drives backwards does not see what is behind it.
     """
     a, along = segments[:, :2], segments[:, 2:] - segments[:, :2]
     shares = np.clip(((pose[:2] - a) * along).sum(axis=1) / (along**2).sum(axis=1), 0, 1)

@@ -66,8 +66,9 @@ def begins_with(path, call):
 
 
 def test_every_program_writes_its_lines_at_once():
-    """`run` does this for Python's programs, `run_node` for nodes. unitree_bridge, which is no node, flushes each line.
-    expand_xacro and read_bag write a document for their caller.
+    """`run` does this for Python's programs, `run_node` for nodes.
+
+    unitree_bridge is no node, and flushes each line. expand_xacro and read_bag write a document for their caller.
     """
     package = SCRIPTS.parent / "python/robot_control"
     modules = [path for path in package.rglob("*.py") if "__main__" in path.read_text()]
