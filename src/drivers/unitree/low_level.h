@@ -1,6 +1,6 @@
 #pragma once
 /// The common part of the low levels of all legged robots of Unitree. It is the command of a motor, the beginning of a
-/// message, its check sum, and the keys of the remote.
+/// message, the IMU, the check sum, and the keys of the remote.
 ///
 /// A message has kMotors places for motors. The legs take the first kRobotMotors: front right, front left, rear right,
 /// rear left; each with hip, thigh, calf. The check sum covers whole 32-bit words.
@@ -39,6 +39,14 @@ struct LegHead {
   std::array<std::uint32_t, 2> serial_number{};
   std::array<std::uint32_t, 2> version{};
   std::uint16_t band_width = 0;
+};
+
+struct LegImu {
+  std::array<float, 4> quaternion{1, 0, 0, 0};  ///< w, x, y, z
+  std::array<float, 3> gyroscope{};             ///< rad/s
+  std::array<float, 3> accelerometer{};         ///< m/s², +g upwards at rest
+  std::array<float, 3> rpy{};                   ///< rad
+  std::int8_t temperature = 0;                  ///< °C
 };
 
 /// Returns whether the keys L2 and B of the remote are pressed together, with which the maker's controllers go to

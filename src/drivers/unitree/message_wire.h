@@ -100,6 +100,29 @@ void head_layout(Wire& wire, Head& head) noexcept {
   wire.plain(head.band_width);
 }
 
+template <class Wire, class Imu>
+void imu_layout(Wire& wire, Imu& imu) noexcept {
+  for (auto& value : imu.quaternion) wire.real(value, kMaxNumber);
+  for (auto& value : imu.gyroscope) wire.real(value, kMaxNumber);
+  for (auto& value : imu.accelerometer) wire.real(value, kMaxNumber);
+  for (auto& value : imu.rpy) wire.real(value, kMaxNumber);
+  wire.plain(imu.temperature);
+}
+
+/// The cells of a battery have a type of their own on each robot.
+template <class Wire, class Battery>
+void battery_layout(Wire& wire, Battery& battery) noexcept {
+  wire.plain(battery.version_high);
+  wire.plain(battery.version_low);
+  wire.plain(battery.status);
+  wire.percent(battery.charge);
+  wire.plain(battery.current);
+  wire.plain(battery.cycles);
+  wire.plain(battery.bq_temperature);
+  wire.plain(battery.mcu_temperature);
+  wire.plain(battery.cells);
+}
+
 /// Returns false if a number had to be clamped, or was NaN, which becomes 0.
 template <Packing kPacking, class Message>
 bool encode_message(const Message& message, std::span<std::uint8_t> bytes) noexcept {

@@ -38,11 +38,7 @@ requires std::is_same_v<std::remove_const_t<State>, LowState>
 void layout(Wire& wire, State& state) noexcept {
   head_layout(wire, state.head);
   wire.align(kStructBytes);
-  for (auto& value : state.imu.quaternion) wire.real(value, kMaxNumber);
-  for (auto& value : state.imu.gyroscope) wire.real(value, kMaxNumber);
-  for (auto& value : state.imu.accelerometer) wire.real(value, kMaxNumber);
-  for (auto& value : state.imu.rpy) wire.real(value, kMaxNumber);
-  wire.plain(state.imu.temperature);
+  imu_layout(wire, state.imu);
   for (auto& motor : state.motors) {
     wire.align(kStructBytes);
     wire.plain(motor.mode);
@@ -57,16 +53,7 @@ void layout(Wire& wire, State& state) noexcept {
     wire.plain(motor.lost);
     wire.plain(motor.reserve);
   }
-  auto& battery = state.battery;
-  wire.plain(battery.version_high);
-  wire.plain(battery.version_low);
-  wire.plain(battery.status);
-  wire.percent(battery.charge);
-  wire.plain(battery.current);
-  wire.plain(battery.cycles);
-  wire.plain(battery.bq_temperature);
-  wire.plain(battery.mcu_temperature);
-  wire.plain(battery.cells);
+  battery_layout(wire, state.battery);
   wire.plain(state.foot_force);
   wire.plain(state.foot_force_estimate);
   wire.plain(state.tick);

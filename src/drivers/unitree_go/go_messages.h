@@ -46,14 +46,6 @@ struct MotorState {
   std::array<std::uint32_t, 2> reserve{};
 };
 
-struct Imu {
-  std::array<float, 4> quaternion{1, 0, 0, 0};  ///< w, x, y, z
-  std::array<float, 3> gyroscope{};             ///< rad/s
-  std::array<float, 3> accelerometer{};         ///< m/s², +g upwards at rest
-  std::array<float, 3> rpy{};                   ///< rad
-  std::int8_t temperature = 0;                  ///< °C
-};
-
 struct Battery {
   std::uint8_t version_high = 0, version_low = 0;
   std::uint8_t status = 0;
@@ -66,7 +58,7 @@ struct Battery {
 
 struct LowState {
   LegHead head;
-  Imu imu;
+  LegImu imu;
   std::array<MotorState, kMotors> motors{};
   Battery battery;
   std::array<std::int16_t, 4> foot_force{};           ///< raw numbers of the sensors, not newton

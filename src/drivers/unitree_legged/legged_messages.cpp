@@ -33,11 +33,7 @@ template <class Wire, class State>
 requires std::is_same_v<std::remove_const_t<State>, LowState>
 void layout(Wire& wire, State& state) noexcept {
   head_layout(wire, state.head);
-  for (auto& value : state.imu.quaternion) wire.real(value, kMaxNumber);
-  for (auto& value : state.imu.gyroscope) wire.real(value, kMaxNumber);
-  for (auto& value : state.imu.accelerometer) wire.real(value, kMaxNumber);
-  for (auto& value : state.imu.rpy) wire.real(value, kMaxNumber);
-  wire.plain(state.imu.temperature);
+  imu_layout(wire, state.imu);
   for (auto& motor : state.motors) {
     wire.plain(motor.mode);
     wire.real(motor.q, kMaxNumber);
@@ -50,16 +46,7 @@ void layout(Wire& wire, State& state) noexcept {
     wire.plain(motor.temperature);
     wire.plain(motor.reserve);
   }
-  auto& battery = state.battery;
-  wire.plain(battery.version_high);
-  wire.plain(battery.version_low);
-  wire.plain(battery.status);
-  wire.percent(battery.charge);
-  wire.plain(battery.current);
-  wire.plain(battery.cycles);
-  wire.plain(battery.bq_temperature);
-  wire.plain(battery.mcu_temperature);
-  wire.plain(battery.cells);
+  battery_layout(wire, state.battery);
   wire.plain(state.foot_force);
   wire.plain(state.foot_force_estimate);
   wire.plain(state.tick);

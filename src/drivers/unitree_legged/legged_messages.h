@@ -41,14 +41,6 @@ struct MotorState {
   std::array<std::uint32_t, 2> reserve{};
 };
 
-struct LegImu {
-  std::array<float, 4> quaternion{1, 0, 0, 0};  ///< w, x, y, z
-  std::array<float, 3> gyroscope{};             ///< rad/s
-  std::array<float, 3> accelerometer{};         ///< m/s², +g upwards at rest
-  std::array<float, 3> rpy{};                   ///< rad
-  std::int8_t temperature = 0;                  ///< °C
-};
-
 struct LegBattery {
   std::uint8_t version_high = 0, version_low = 0;
   std::uint8_t status = 0;
