@@ -12,7 +12,6 @@ namespace {
 
 constexpr double kMinPassing = 0.1;   // m by which a ray has to pass a point
 constexpr double kMaxGap = 0.25;      // m between the ends of neighbouring rays on one surface
-constexpr double kStandstill = 0.02;  // m/s + rad/s
 constexpr double kDegrees = 180 / M_PI;
 constexpr double kJump = 0.5;  // m, rad beyond kMaxObjectSpeed
 
@@ -41,12 +40,13 @@ bool in_view(const Scan& scan, const PlanarPose& sensor, Point at) {
 
 ScanMemory::Fate ScanMemory::fate_of(const Memory& memory, const Scan& scan, const PlanarPose& sensor,
                                      double stamp) const {
-  const bool recent = stamp - memory.seen <= kRecall;
+  const bool viewed = in_view(scan, sensor, memory.at);
+  const bool recent = viewed ? stamp - memory.seen <= kRecall : way_ - memory.way <= kLookAhead;
   const Fate hidden = recent ? Fate::kKept : Fate::kForgotten;
   const Fate aged = memory.vanished && (recent || blind_) ? Fate::kVanished : hidden;
   const double ray = ray_towards(scan, sensor, memory.at), range = distance({sensor.x, sensor.y}, memory.at);
   const auto rays = static_cast<double>(scan.ranges.size());
-  if (!in_view(scan, sensor, memory.at)) return aged;
+  if (!viewed) return aged;
   int behind = 0, silent = 0;
   for (const double side : {std::floor(ray), std::ceil(ray)}) {
     const auto i = static_cast<std::size_t>(side);
@@ -104,12 +104,10 @@ void ScanMemory::update(const Scan& scan, const PlanarPose& mount, const PlanarP
   const double turned = std::abs(std::remainder(base.yaw - base_.yaw, 2 * M_PI));
   const double moved = distance({base.x, base.y}, {base_.x, base_.y});
   if (!(elapsed >= 0 && elapsed <= kRecall) || moved > allowed || turned > allowed) *this = ScanMemory();
-  const bool stands = moved + turned < kStandstill * elapsed;
-  stamp_ = stamp, base_ = base;
+  way_ += moved, stamp_ = stamp, base_ = base;
   const PlanarPose sensor = composed(base, mount);
   std::vector<bool> vanished(360);  // degrees
   std::erase_if(memories_, [&](Memory& memory) {
-    if (stands && !in_view(scan, sensor, memory.at)) memory.seen += elapsed;
     const Fate fate = fate_of(memory, scan, sensor, stamp);
     memory.vanished = fate == Fate::kVanished;
     const double direction = std::atan2(memory.at.y - sensor.y, memory.at.x - sensor.x) * kDegrees;
@@ -122,7 +120,9 @@ void ScanMemory::update(const Scan& scan, const PlanarPose& mount, const PlanarP
   for (std::size_t i = 0; i < scan.ranges.size(); ++i) {
     const bool own = echo(scan, i) && footprint.distance(end_of(scan, mount, i)) < -kLaserNoise;
     if (own) world.ranges[i] = std::numeric_limits<float>::infinity();
-    if (echo(world, i) && !blind_) memories_.push_back({end_of(scan, sensor, i), stamp});
+    const Point end = end_of(scan, sensor, i);
+    if (echo(world, i) && in_view(scan, sensor, end) && !blind_)
+      memories_.push_back({.at = end, .seen = stamp, .way = way_});
   }
   points_.clear();
   for (const Memory& memory : memories_) points_.push_back(memory.at);

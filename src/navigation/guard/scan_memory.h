@@ -6,7 +6,8 @@
 ///
 ///   at once          if the rays on both sides have echoes kMinPassing behind it, or one of them has its echo there,
 ///                    which then takes its place
-///   after kRecall    if it is out of the field of view of a laser that moves, if it is hidden, if it may have moved, or if it has vanished
+///   after kRecall    if it is hidden, if it may have moved, or if it has vanished
+///   after kLookAhead that the base has driven, if it is out of the field of view
 ///   never            if it has vanished, while the scan is blind in part
 ///
 /// A moving object leaves an echo within kMaxObjectSpeed times the time. A point vanishes if a ray beside it has no
@@ -25,7 +26,7 @@
 namespace robot_control::navigation {
 
 inline constexpr double kSureEcho = 0.95;        ///< of range_max
-inline constexpr double kRecall = 1.0;           ///< s; the robot turns by 60° or drives 0.5 m
+inline constexpr double kRecall = 1.0;           ///< s
 inline constexpr double kMaxObjectSpeed = 2.5;   ///< m/s
 inline constexpr double kFrozenRange = 0.03;     ///< m, three deviations of the noise
 inline constexpr double kDoubtfulAngle = 0.175;  ///< rad, 10°: at 0.5 m the width of a leg
@@ -33,8 +34,8 @@ inline constexpr double kDoubtfulAngle = 0.175;  ///< rad, 10°: at 0.5 m the wi
 class ScanMemory {
  public:
   /// Takes a scan whose laser was at `mount` on the base, and the base at `base` in odom. `stamp` in s. After a jump of
-  /// the pose or the stamp it is empty. A correction that odom shows slowly moves what was seen for at most kRecall;
-  /// its covariance does not tell, because it mostly shrinks without one.
+  /// the pose or the stamp it is empty. A correction that odom shows slowly moves what was seen; its covariance does
+  /// not tell, because it mostly shrinks without one.
   void update(const Scan& scan, const PlanarPose& mount, const PlanarPose& base, double stamp,
               const Footprint& footprint);
 
@@ -48,6 +49,7 @@ class ScanMemory {
   struct Memory {
     Point at;
     double seen = 0;  // s
+    double way = 0;   // m, when it was seen
     bool vanished = false;
   };
   enum class Fate { kForgotten, kKept, kVanished };
@@ -60,6 +62,7 @@ class ScanMemory {
   PlanarPose reference_sensor_;
   PlanarPose base_;
   double stamp_ = -1e9;  // s
+  double way_ = 0;       // m that the base has driven
   bool blind_ = false;
   std::string problem_;
 };

@@ -127,7 +127,7 @@ TEST_F(ScanMemoryTest, ASectorThatRepeatsItsRangesIsDoubtedOnceTheRobotHasMoved)
   EXPECT_THAT(memory.problem(), HasSubstr("scan is frozen in part"));
 }
 
-TEST_F(ScanMemoryTest, WhatHasLeftTheFieldOfViewIsRememberedForASecondOfMotion) {
+TEST_F(ScanMemoryTest, WhatHasLeftTheFieldOfViewIsForgottenAfterTheWayThatTheGuardLooksAhead) {
   const auto half = [](Scan& scan) {
     scan.ranges = std::vector<float>(scan.ranges.begin() + 90, scan.ranges.begin() + 270);
     scan.angle_min = -M_PI / 2;
@@ -137,10 +137,18 @@ TEST_F(ScanMemoryTest, WhatHasLeftTheFieldOfViewIsRememberedForASecondOfMotion) 
   EXPECT_LT(nearest(ahead), 0.1);
   drive(30, 0, 0, half);
   EXPECT_LT(nearest(ahead), 0.1);
-  drive(6, 0, 0.1, half);
+  for (int i = 0; i < 19; ++i) drive(1, i % 2 == 0 ? 2 : -2, 0, half);
   EXPECT_LT(nearest(ahead), 0.1);
-  drive(5, 0, 0.1, half);
+  drive(2, 2, 0, half);
   EXPECT_GT(nearest(ahead), 0.5);
+}
+
+TEST_F(ScanMemoryTest, ARobotThatStandsRemembersEachRayOnce) {
+  const auto far = [&](Scan& scan) {
+    for (float& range : scan.ranges) range = 0.97F * static_cast<float>(scan.range_max) + noise(random);
+  };
+  drive(100, 0, 0, far);
+  EXPECT_LE(memory.points().size(), scan().ranges.size());
 }
 
 TEST_F(ScanMemoryTest, WhatARayPassesIsForgottenAtOnce) {
