@@ -127,15 +127,16 @@ def require_older(path: Path) -> None:
         raise RefusedError(f"{path} was changed after the driver started: restart the driver, and begin again")
 
 
-def positive_turns(urdf: str, angles: Sequence[float], names: Sequence[str]) -> list[str]:
-    """The motion of the foot when each joint turns in its positive direction, in words."""
+def positive_turns(urdf: str, angles: Sequence[float], names: Sequence[str], turns: Sequence[float] = ()) -> list[str]:
+    """The motion of the foot when each joint turns in its positive direction, or as `turns` rad say, in words."""
+    turns = turns or [1.0] * len(names)
     try:
         slopes = np.asarray(_robot_control.legs(*layered(None, urdf)).jacobian(np.asarray(angles)))
     except Exception:
-        return ["towards greater angles (about its axis in the URDF)"] * len(names)
+        return [f"towards {'greater' if turn > 0 else 'smaller'} angles (about its axis in the URDF)" for turn in turns]
     words = []
-    for index in range(len(names)):
-        slope = slopes[index // 3, :, index % 3]
+    for index, turn in enumerate(turns):
+        slope = np.sign(turn) * slopes[index // 3, :, index % 3]
         axis = int(abs(slope).argmax())
         words.append(f"so that its foot goes {WAYS[axis][int(slope[axis] < 0)]}")
     return words

@@ -1,0 +1,110 @@
+"""What a step of first_steps.py measures, and the rule that it must keep; no ROS in here.
+
+Each check raises StepError with what was measured where, its rule and the remedy. `loads` are those of the feet, `share`
+is a quarter of the weight, in N.
+"""
+
+from collections.abc import Mapping, Sequence
+
+from robot_control.setup.doctor.finding import Verdict
+from robot_control.setup.doctor.report import Row
+from robot_control.setup.zero_joints.dialog import SHARE
+
+GREEN = (
+    *("package", "build", "core", "realtime_priority", "memory_lock", "can", "device_files", "master", "dead_nodes"),
+    *("simulated_time", "command_senders", "duplicate_nodes", "other_master", "log_space"),
+)
+"""Lines of doctor.py that must have no WARNING; no line at all may have a FAULT"""
+HANGS, STANDS = 0.1, 0.4
+"""of `share`: the most load of a foot in the air, the least of a foot on the ground"""
+TILT = 0.15
+"""rad, of a body that hangs, lies or stands level"""
+TURN_ERROR = 0.05
+"""rad, of a joint that moves without load"""
+REST = 0.1
+"""rad/s, of a joint that was let go of"""
+SPEED_ERROR = 0.3
+"""of the ordered speed, in the mean"""
+
+
+class StepError(RuntimeError):
+    """A step failed; the message names what, where, the value, the rule and the remedy."""
+
+
+def hung(loads: Mapping[str, float], share: float) -> None:
+    """No foot carries load."""
+    for foot, load in loads.items():
+        if abs(load) > HANGS * share:
+            rule = f"at most {HANGS * share:.1f} N while the robot hangs: lift it until all feet hang free"
+            raise StepError(f"{foot} carries {load:.1f} N, {rule}")
+
+
+def stood(loads: Mapping[str, float], share: float) -> None:
+    """Every foot carries load."""
+    for foot, load in loads.items():
+        if load < STANDS * share:
+            rule = f"at least {STANDS * share:.1f} N while the robot stands: check the zeros of its joints, and the floor"
+            raise StepError(f"{foot} carries {load:.1f} N, {rule}")
+
+
+def level(roll: float, pitch: float) -> None:
+    """The tilt of the body, rad."""
+    if max(abs(roll), abs(pitch)) > TILT:
+        remedy = "level the body; if it is level, check how the IMU is mounted (robot.imu_link)"
+        raise StepError(f"roll and pitch are {roll:+.2f} and {pitch:+.2f} rad, at most ±{TILT} rad: {remedy}")
+
+
+def green(rows: Sequence[Row]) -> None:
+    """The findings of doctor.py."""
+    for row in rows:
+        verdict, value, remedy = row.finding.verdict, row.finding.value, row.finding.remedy
+        if verdict is Verdict.FAULT or (verdict is Verdict.WARNING and row.name in GREEN):
+            raise StepError(f"doctor.py: {verdict.value} {row.name}: {value}; remedy: {remedy}")
+
+
+def charged(causes: Sequence[str], voltage: float | None) -> None:
+    """The warnings and causes of safety_status; the voltage of the battery, V, None if it is not measured."""
+    if low := [cause for cause in causes if cause.startswith("battery_")]:
+        shown = "" if voltage is None else f": {voltage:.1f} V"
+        raise StepError(f"the safety monitor reports {low[0]}{shown}: charge the battery")
+
+
+def pressed(first_cause: str) -> None:
+    """The cause of the stop that came first; empty without a stop."""
+    if not first_cause:
+        raise StepError("no stop was latched: check cable, receiver and input of the emergency stop")
+    if not first_cause.startswith("e_stop_"):
+        raise StepError(f"the stop was latched by {first_cause}, not by an e_stop_… cause: run why.py")
+
+
+def yielded(fastest: float) -> None:
+    """The speed of the fastest joint after all were let go of, rad/s."""
+    if fastest > REST:
+        remedy = "let go of the legs; if they fall by themselves, check the supply of the motors and their damping"
+        raise StepError(f"a joint moves at {fastest:.2f} rad/s, at most {REST} rad/s: {remedy}")
+
+
+def moved(names: Sequence[str], index: int, ordered: float, turns: Sequence[float]) -> None:
+    """The turns of all joints, rad, while that of `index` was ordered to turn."""
+    own, (first, second) = turns[index], sorted(range(len(turns)), key=lambda each: -abs(turns[each]))[:2]
+    least, found = SHARE * abs(ordered), f"{names[index]} moved by {own:+.3f} rad, ordered {ordered:+.3f} rad"
+    if abs(turns[first]) < least:
+        raise StepError(f"{found}: check the supply of its motor, and that nothing blocks the leg")
+    if first != index:
+        remedy = "exchange their keys in the drive file (zero_joints.py finds exchanged motors)"
+        raise StepError(f"{found}, and {names[first]} moved by {turns[first]:+.3f} rad: {remedy}")
+    if own * ordered < 0:
+        raise StepError(f"{found}, the wrong direction: change it in the drive file (zero_joints.py)")
+    if abs(turns[second]) > least:
+        raise StepError(f"{found}, and {names[second]} along with it: hold the body still, and check the linkage")
+    if abs(own - ordered) > TURN_ERROR:
+        raise StepError(f"{found}, at most {TURN_ERROR} rad off: check gear and range of its motor, and friction")
+
+
+def walked(gait: str, used: str, ordered: float, speed: float) -> None:
+    """The gait that was ordered and the one in use; the ordered speed and the mean measured one, m/s."""
+    if used != gait:
+        raise StepError(f"the gait is '{used}', ordered '{gait}': read the reasons in leg_state")
+    if not abs(speed - ordered) <= SPEED_ERROR * ordered:
+        rule = f"at most {100 * SPEED_ERROR:.0f} % off: check the signs of the IMU, the floor and why.py"
+        raise StepError(f"{gait}: {speed:.3f} m/s, ordered {ordered:.3f} m/s, {rule}")

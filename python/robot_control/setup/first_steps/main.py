@@ -1,0 +1,104 @@
+"""first_steps.py: the steps in their order, the bag and the summary."""
+
+import argparse
+import math
+import os
+import time
+from collections.abc import Sequence
+from pathlib import Path
+
+import rospy
+
+from robot_control.data.record.main import record_command
+from robot_control.files.files import given_path, one_message
+from robot_control.robot.ros_node import begin_node
+from robot_control.robot.ros_master import require_master
+from robot_control.robot.running_robot import RefusedError, master_state, other_senders
+from robot_control.robot.server_values import described_robot, server_tree
+from robot_control.robot.topic_sender import ended_by_signals
+from robot_control.setup.description import describe
+from robot_control.setup.first_steps.checks import StepError
+from robot_control.setup.first_steps.robot import WatchedRobot
+from robot_control.setup.first_steps.steps import STEPS, TURN, Context
+from robot_control.setup.terminal_dialog import NoAnswerError, Questions
+from robot_control.setup.zero_joints.main import positive_turns
+from robot_control.ui.child import Child, children
+from robot_control.ui.table import table
+
+GRAVITY = 9.81
+"""m/s²"""
+
+
+def parse_options(arguments: Sequence[str]) -> argparse.Namespace:
+    """Reads the command line (without the program's name); ends the program on a wrong one."""
+    parser = argparse.ArgumentParser(
+        prog="first_steps.py",
+        description="Leads through the first contact with a robot on legs that runs, step by step, and records a bag. "
+        "Ends at the first step that fails. At its end, also by Ctrl-C, the robot is stopped until e_stop_reset.",
+    )
+    parser.add_argument("--list", action="store_true", help="shows the steps and ends")
+    parser.add_argument("--from", dest="begin", choices=STEPS, default="hang", help="first step (default %(default)s)")
+    parser.add_argument("--out", type=given_path, default="first_steps", help="folder of the bag (default %(default)s)")
+    return parser.parse_args(arguments)
+
+
+def share_and_turns(names: Sequence[str]) -> tuple[float, list[tuple[str, float, str]]]:
+    """Of the running robot a quarter of its weight, N; and of each joint its name, a small turn towards the middle of its
+    range, rad, and the motion of its foot.
+    """
+    with described_robot() as (parameters, urdf):
+        robot = describe(urdf, parameters)
+        middle = {joint["name"]: (joint["lower"] + joint["upper"]) / 2 for joint in robot["joints"]}
+        lying = {name: angle for leg in robot["legs"] for name, angle in zip(leg["joints"], leg["lying"], strict=True)}
+        turns = [math.copysign(TURN, middle[name] - lying[name]) for name in names]
+        words = positive_turns(urdf, [lying[name] for name in names], names, turns)
+        return robot["mass"] * GRAVITY / len(robot["legs"]), list(zip(names, turns, words, strict=True))
+
+
+def _recorder(folder: Path) -> Child:
+    folder.mkdir(parents=True, exist_ok=True)
+    command = record_command([str(folder), f"__ns:={rospy.get_namespace()}"], dict(os.environ))
+    return Child(command, folder / "record.log")
+
+
+@one_message("first_steps.py", RefusedError, StepError, OSError, ValueError)
+def main() -> None:
+    """Entry point of scripts/first_steps.py: exit code 0 if all steps passed, else 1 with one message."""
+    options = parse_options(rospy.myargv()[1:])
+    if options.list:
+        print("\n".join(table([(name, shows) for name, (shows, _) in STEPS.items()])))
+        return
+    require_master()
+    begin_node("first_steps", anonymous=True)
+    steps = list(STEPS)[list(STEPS).index(options.begin) :]
+    began, results = time.time(), dict.fromkeys(steps, "not done")
+    with ended_by_signals() as signals, children() as started:
+        robot = WatchedRobot(signals)
+        if others := other_senders(master_state()):
+            raise RefusedError(f"{', '.join(others)} may also command the robot: end it first")
+        started.append(_recorder(options.out))
+        print("Ctrl-C stops the robot and ends.")
+        of_robot = share_and_turns(robot.newest("joint_states").name)
+        context = Context(robot, Questions(signals.going_on), server_tree("robot"), *of_robot)
+        try:
+            failure = take(steps, context, results)
+        finally:
+            print(f"\n{robot.stop()}")
+    print("\n".join(table([("step", "result"), *results.items()])))
+    bags = [path for path in options.out.rglob("*.bag") if path.stat().st_mtime >= began]
+    print(f"bag: {bags[0] if bags else f'none; see {options.out}/record.log'}")
+    if failure:
+        raise StepError(f"{failure}. To continue: rosrun robot_control first_steps.py --from {failure.partition(':')[0]}")
+
+
+def take(steps: Sequence[str], context: Context, results: dict[str, str]) -> str:
+    """Takes the steps and writes their results; returns the name of the one that failed, and why, or ""."""
+    for number, step in enumerate(steps, 1):
+        print(f"step {number} of {len(steps)}, {step}: {STEPS[step][0]}")
+        try:
+            STEPS[step][1](context)
+        except (StepError, NoAnswerError) as error:
+            results[step] = "failed"
+            return f"{step}: {error}"
+        results[step] = "passed"
+    return ""

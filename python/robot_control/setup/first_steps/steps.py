@@ -1,0 +1,153 @@
+"""The steps of first_steps.py, in their order: what a person does, what is measured, and what the person confirms."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from robot_control.setup.doctor.main import drive_bus, examine, robot_block
+from robot_control.setup.doctor.system import System
+from robot_control.setup.first_steps import checks
+from robot_control.setup.first_steps.checks import StepError
+from robot_control.setup.first_steps.robot import WatchedRobot
+from robot_control.setup.terminal_dialog import Questions
+
+TURN = 0.15
+"""rad, by which each joint moves"""
+TURN_TIME = 0.5
+"""s for that"""
+PATIENCE = 60.0
+"""s to press or release the emergency stop"""
+LET_GO = 1.0
+"""s after which joints rest"""
+CRAWL, TROT, WALK = 0.1, 0.2, 3.0
+"""m/s, m/s, s"""
+
+
+@dataclass(frozen=True)
+class Context:
+    """What every step uses."""
+
+    robot: WatchedRobot
+    ask: Questions
+    parameters: dict[str, Any]
+    """block `robot` of the running robot"""
+    share: float
+    """N, a quarter of the weight"""
+    joints: Sequence[tuple[str, float, str]]
+    """name; small turn from where it lies, rad; and the motion of the foot that a person sees then"""
+
+    def confirm(self, question: str) -> None:
+        """Raises StepError unless the person types y."""
+        if not self.ask.yes(f"  {question}"):
+            raise StepError(f"not confirmed: {question}")
+
+    def release(self) -> None:
+        """Ends a stop, if the person agrees."""
+        if self.robot.stopped:
+            self.confirm(f"The robot is stopped: {'; '.join(self.robot.watch.message.sentences)}. Release it now?")
+            self.robot.reset()
+        self.robot.require_release()
+
+
+def _hang(at: Context) -> None:
+    at.ask.line("  Hang the robot up, or put its trunk on a stand, level. All feet hang free. Press Enter.")
+    checks.hung(at.robot.loads, at.share)
+    checks.level(*at.robot.tilt)
+
+
+def _doctor(at: Context) -> None:
+    block = robot_block(None) | at.parameters | {"drive_bus": drive_bus(Path(at.parameters.get("drives", "")))}
+    rows = examine(System(Path("/"), block))
+    checks.green(rows)
+    print(f"  {len(rows)} lines, none is a FAULT; green: {', '.join(checks.GREEN)}")
+
+
+def _battery(at: Context) -> None:
+    safety, voltage = at.robot.watch.message, at.robot.voltage
+    checks.charged([*safety.warnings, *safety.causes], voltage)
+    measured = "The voltage of the battery is not measured" if voltage is None else f"The battery has {voltage:.1f} V"
+    at.confirm(f"{measured}. Is it at least half full?")
+
+
+def _e_stop(at: Context) -> None:
+    at.release()
+    print(f"  Take the emergency stop into your hand, and press it within {PATIENCE:g} s.")
+    at.robot.wait(lambda: at.robot.watch.message.first_cause, PATIENCE)
+    checks.pressed(at.robot.watch.message.first_cause)
+    print(f"  {at.robot.watch.message.first_cause} is latched. Release the emergency stop within {PATIENCE:g} s.")
+    if not at.robot.wait(lambda: not at.robot.watch.message.active, PATIENCE):
+        raise StepError(f"{at.robot.watch.message.active[0]} is still active after {PATIENCE:g} s: release it")
+    at.robot.reset()
+
+
+def _damping(at: Context) -> None:
+    if not at.robot.stopped:
+        at.robot.stop()
+    at.ask.line("  The robot brakes. Move each leg slowly by hand, then let go of all legs. Press Enter.")
+    before = at.robot.newest("joint_states").position
+    at.robot.wait(lambda: False, LET_GO)
+    checks.yielded(max(map(abs, _turns(at, before))) / LET_GO)
+    at.confirm("Did each joint yield, and resist more when it was moved faster?")
+
+
+def _joints(at: Context) -> None:
+    at.release()
+    at.robot.take("lying")
+    checks.hung(at.robot.loads, at.share)
+    at.confirm("All legs are folded alike, left mirrored to right. Is that so?")
+    names = [name for name, _, _ in at.joints]
+    for index, (name, ordered, words) in enumerate(at.joints):
+        before = at.robot.newest("joint_states").position
+        at.robot.turn(name, before[index] + ordered, TURN_TIME)
+        turns = _turns(at, before)
+        checks.moved(names, index, ordered, turns)
+        at.confirm(f"{name} turned by {turns[index]:+.2f} rad, {words}. Did you see that?")
+        at.robot.turn(name, before[index], TURN_TIME)
+
+
+def _turns(at: Context, before: Sequence[float]) -> list[float]:
+    return [new - old for new, old in zip(at.robot.newest("joint_states").position, before, strict=True)]
+
+
+def _lie(at: Context) -> None:
+    at.ask.line("  Lower the robot onto a level floor, 2 m free in front of it. Hold the emergency stop. Press Enter.")
+    at.release()
+    at.robot.take("lying")
+    checks.level(*at.robot.tilt)
+    at.confirm("It lies on its belly, all legs folded. Is that so?")
+
+
+def _stand(at: Context) -> None:
+    at.release()
+    at.confirm("The robot stands up now. Ready?")
+    at.robot.take("standing")
+    checks.stood(at.robot.loads, at.share)
+    checks.level(*at.robot.tilt)
+
+
+def _walk(gait: str, speed: float) -> Callable[[Context], None]:
+    def step(at: Context) -> None:
+        at.release()
+        at.confirm(f"The robot walks ahead now, {gait} at {speed:g} m/s, {speed * (WALK + 2):.1f} m. Ready?")
+        at.robot.take("standing")
+        used, mean = at.robot.walk(gait, speed, WALK)
+        checks.walked(gait, used, speed, mean)
+        print(f"  {mean:.3f} m/s")
+
+    return step
+
+
+STEPS: dict[str, tuple[str, Callable[[Context], None]]] = {
+    "hang": ("the robot hangs, no foot carries load, the body is level", _hang),
+    "doctor": ("doctor.py finds no fault on this computer", _doctor),
+    "battery": ("the battery is at least half full", _battery),
+    "e_stop": ("the emergency stop in your hand latches a stop", _e_stop),
+    "damping": ("the braked joints yield to a hand, and resist", _damping),
+    "joints": ("only the ordered joint moves, by the right angle, in the right direction", _joints),
+    "lie": ("the robot lies on the floor", _lie),
+    "stand": ("it stands on four feet, level", _stand),
+    "crawl": ("it walks slowly, one foot after the other", _walk("crawl", CRAWL)),
+    "trot": ("it trots slowly", _walk("trot", TROT)),
+}
+"""Name of each step: what it shows, and how."""
