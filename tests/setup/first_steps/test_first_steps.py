@@ -88,7 +88,7 @@ def test_the_first_step_that_fails_is_the_last_one(error, monkeypatch):
     monkeypatch.setitem(STEPS, "hang", ("", done.append))
     monkeypatch.setitem(STEPS, "doctor", ("", fails))
     results = dict.fromkeys(("hang", "doctor", "battery"), "not done")
-    assert take(list(results), None, results) == f"doctor: {error}"
+    assert take(list(results), None, results) == ("doctor", str(error))
     assert results == {"hang": "passed", "doctor": "failed", "battery": "not done"}
     assert done == [None]
 

@@ -56,8 +56,8 @@ def share_and_turns(names: Sequence[str]) -> tuple[float, list[tuple[str, float,
 
 
 def _recorder(folder: Path) -> Child:
-    folder.mkdir(parents=True, exist_ok=True)
     command = record_command([str(folder), f"__ns:={rospy.get_namespace()}"], dict(os.environ))
+    Path(command[1].partition("=")[2]).parent.mkdir(parents=True, exist_ok=True)
     return Child(command, folder / "record.log")
 
 
@@ -75,30 +75,30 @@ def main() -> None:
     with ended_by_signals() as signals, children() as started:
         robot = WatchedRobot(signals)
         if others := other_senders(master_state()):
-            raise RefusedError(f"{', '.join(others)} may also command the robot: end it first")
+            raise RefusedError(f"{', '.join(others)} may also command the robot: end it, or run rosnode cleanup")
         started.append(_recorder(options.out))
         print("Ctrl-C stops the robot and ends.")
         of_robot = share_and_turns(robot.newest("joint_states").name)
         context = Context(robot, Questions(signals.going_on), server_tree("robot"), *of_robot)
         try:
-            failure = take(steps, context, results)
+            step, why = take(steps, context, results)
         finally:
             print(f"\n{robot.stop()}")
     print("\n".join(table([("step", "result"), *results.items()])))
     bags = [path for path in options.out.rglob("*.bag") if path.stat().st_mtime >= began]
     print(f"bag: {bags[0] if bags else f'none; see {options.out}/record.log'}")
-    if failure:
-        raise StepError(f"{failure}. To continue: rosrun robot_control first_steps.py --from {failure.partition(':')[0]}")
+    if why:
+        raise StepError(f"{step}: {why}. To continue: rosrun robot_control first_steps.py --from {step}")
 
 
-def take(steps: Sequence[str], context: Context, results: dict[str, str]) -> str:
-    """Takes the steps and writes their results; returns the name of the one that failed, and why, or ""."""
+def take(steps: Sequence[str], context: Context, results: dict[str, str]) -> tuple[str, str]:
+    """Takes the steps and writes their results; returns the last one, and why it failed, or ""."""
     for number, step in enumerate(steps, 1):
         print(f"step {number} of {len(steps)}, {step}: {STEPS[step][0]}")
         try:
             STEPS[step][1](context)
         except (StepError, NoAnswerError) as error:
             results[step] = "failed"
-            return f"{step}: {error}"
+            return step, str(error)
         results[step] = "passed"
-    return ""
+    return steps[-1], ""

@@ -11,7 +11,7 @@ from nav_msgs.msg import Odometry
 from sensor_msgs.msg import BatteryState, JointState
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 
-from robot_control.msg import LegState
+from robot_control.msg import LegState, SafetyStatus
 from robot_control.robot.boundary import Latest
 from robot_control.robot.pose import pose_of, rotation, rpy
 from robot_control.robot.running_robot import RefusedError, await_all
@@ -39,14 +39,14 @@ class WatchedRobot:
     """A running robot on legs. Each method but `stop` raises StepError if a signal came, or if the robot may not move."""
 
     def __init__(self, signals: Signals) -> None:
-        self._signals, self.watch = signals, SafetyWatch()
-        self._services = Services(self.watch)
+        self._signals, self._watch = signals, SafetyWatch()
+        self._services = Services(self._watch)
         self._topics = {topic: Latest(topic, kind) for topic, kind in TOPICS.items()}
         self._path = rospy.Publisher("joint_trajectory", JointTrajectory, queue_size=1, tcp_nodelay=True)
         self._twist = Sender(rospy.Publisher("cmd_vel", Twist, queue_size=1, tcp_nodelay=True), Twist())
         needed = [self._topics[topic] for topic in ("joint_states", "leg_state", "odom")]
-        await_all(lambda: None not in (self.watch.message, *(topic.message for topic in needed)), signals)
-        if self.watch.message is None or None in [topic.message for topic in needed]:
+        await_all(lambda: None not in (self._watch.message, *(topic.message for topic in needed)), signals)
+        if self._watch.message is None or None in [topic.message for topic in needed]:
             raise RefusedError("no safety_status, joint_states, leg_state or odom: start a robot on legs first")
 
     def newest(self, topic: str) -> Any:  # noqa: ANN401 (of the topic)
@@ -55,6 +55,11 @@ class WatchedRobot:
         if message is None:
             raise StepError(f"{topic} is silent: run why.py")
         return message
+
+    @property
+    def safety(self) -> SafetyStatus:
+        """The newest safety_status."""
+        return self._watch.message
 
     @property
     def loads(self) -> dict[str, float]:
@@ -77,7 +82,7 @@ class WatchedRobot:
     @property
     def stopped(self) -> bool:
         """True while a stop is latched."""
-        return self.watch.message.state_name in STOPPED
+        return self.safety.state_name in STOPPED
 
     def wait(self, over: Callable[[], object], limit: float, act: Callable[[], None] = lambda: None) -> bool:
         """Calls `act` until it is over, at most `limit` s; returns whether it is."""
@@ -93,8 +98,8 @@ class WatchedRobot:
 
     def require_release(self) -> None:
         """Raises StepError where the robot may not move."""
-        if not self.watch.drivable():
-            status = status_of(self.watch.message)
+        if not self._watch.drivable():
+            status = status_of(self.safety)
             raise StepError(f"{status.why()}: {status.remedy or 'run why.py'}")
 
     def stop(self) -> str:
@@ -111,7 +116,7 @@ class WatchedRobot:
         answer = self._answer()
         if not (answer and answer.accepted):
             raise StepError(f"e_stop_reset is refused: {answer.text if answer else 'no answer'}")
-        self.wait(self.watch.drivable, ANSWER)
+        self.wait(self._watch.drivable, ANSWER)
         self.require_release()
         self._path.publish(JointTrajectory())
         self._twist.send(Twist())

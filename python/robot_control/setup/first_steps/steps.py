@@ -20,6 +20,7 @@ PATIENCE = 60.0
 """s to press or release the emergency stop"""
 LET_GO = 1.0
 """s after which joints rest"""
+ZEROS = "find zeros, signs and exchanged motors with zero_joints.py"
 CRAWL, TROT, WALK = 0.1, 0.2, 3.0
 """m/s, m/s, s"""
 
@@ -37,15 +38,15 @@ class Context:
     joints: Sequence[tuple[str, float, str]]
     """name; small turn from where it lies, rad; and the motion of the foot that a person sees then"""
 
-    def confirm(self, question: str) -> None:
+    def confirm(self, question: str, remedy: str = "begin again once you can type y") -> None:
         """Raises StepError unless the person types y."""
         if not self.ask.yes(f"  {question}"):
-            raise StepError(f"not confirmed: {question}")
+            raise StepError(f"you typed n to: {question} Remedy: {remedy}")
 
     def release(self) -> None:
         """Ends a stop, if the person agrees."""
         if self.robot.stopped:
-            self.confirm(f"The robot is stopped: {'; '.join(self.robot.watch.message.sentences)}. Release it now?")
+            self.confirm(f"The robot is stopped: {'; '.join(self.robot.safety.sentences)}. Release it now?")
             self.robot.reset()
         self.robot.require_release()
 
@@ -64,7 +65,7 @@ def _doctor(at: Context) -> None:
 
 
 def _battery(at: Context) -> None:
-    safety, voltage = at.robot.watch.message, at.robot.voltage
+    safety, voltage = at.robot.safety, at.robot.voltage
     checks.charged([*safety.warnings, *safety.causes], voltage)
     measured = "The voltage of the battery is not measured" if voltage is None else f"The battery has {voltage:.1f} V"
     at.confirm(f"{measured}. Is it at least half full?")
@@ -73,36 +74,37 @@ def _battery(at: Context) -> None:
 def _e_stop(at: Context) -> None:
     at.release()
     print(f"  Take the emergency stop into your hand, and press it within {PATIENCE:g} s.")
-    at.robot.wait(lambda: at.robot.watch.message.first_cause, PATIENCE)
-    checks.pressed(at.robot.watch.message.first_cause)
-    print(f"  {at.robot.watch.message.first_cause} is latched. Release the emergency stop within {PATIENCE:g} s.")
-    if not at.robot.wait(lambda: not at.robot.watch.message.active, PATIENCE):
-        raise StepError(f"{at.robot.watch.message.active[0]} is still active after {PATIENCE:g} s: release it")
+    at.robot.wait(lambda: at.robot.safety.first_cause, PATIENCE)
+    checks.pressed(at.robot.safety.first_cause)
+    print(f"  {at.robot.safety.first_cause} is latched. Release the emergency stop within {PATIENCE:g} s.")
+    if not at.robot.wait(lambda: not at.robot.safety.active, PATIENCE):
+        raise StepError(f"{at.robot.safety.active[0]} is still active after {PATIENCE:g} s: release it")
     at.robot.reset()
 
 
 def _damping(at: Context) -> None:
-    if not at.robot.stopped:
-        at.robot.stop()
+    print(f"  {at.robot.stop()}")
+    if not at.robot.wait(lambda: at.robot.stopped, PATIENCE):
+        raise StepError("the robot is not stopped after e_stop_trigger: check the safety monitor (why.py)")
     at.ask.line("  The robot brakes. Move each leg slowly by hand, then let go of all legs. Press Enter.")
     before = at.robot.newest("joint_states").position
     at.robot.wait(lambda: False, LET_GO)
     checks.yielded(max(map(abs, _turns(at, before))) / LET_GO)
-    at.confirm("Did each joint yield, and resist more when it was moved faster?")
+    at.confirm("Did each joint yield, and resist more when it was moved faster?", "check the damping of the drive file")
 
 
 def _joints(at: Context) -> None:
     at.release()
     at.robot.take("lying")
     checks.hung(at.robot.loads, at.share)
-    at.confirm("All legs are folded alike, left mirrored to right. Is that so?")
+    at.confirm("All legs are folded alike, left mirrored to right. Is that so?", ZEROS)
     names = [name for name, _, _ in at.joints]
     for index, (name, ordered, words) in enumerate(at.joints):
         before = at.robot.newest("joint_states").position
         at.robot.turn(name, before[index] + ordered, TURN_TIME)
         turns = _turns(at, before)
         checks.moved(names, index, ordered, turns)
-        at.confirm(f"{name} turned by {turns[index]:+.2f} rad, {words}. Did you see that?")
+        at.confirm(f"{name} turned by {turns[index]:+.2f} rad, {words}. Did you see that?", ZEROS)
         at.robot.turn(name, before[index], TURN_TIME)
 
 
@@ -138,6 +140,11 @@ def _walk(gait: str, speed: float) -> Callable[[Context], None]:
     return step
 
 
+def _lower(at: Context) -> None:
+    at.release()
+    at.robot.take("lying")
+
+
 STEPS: dict[str, tuple[str, Callable[[Context], None]]] = {
     "hang": ("the robot hangs, no foot carries load, the body is level", _hang),
     "doctor": ("doctor.py finds no fault on this computer", _doctor),
@@ -149,5 +156,6 @@ STEPS: dict[str, tuple[str, Callable[[Context], None]]] = {
     "stand": ("it stands on four feet, level", _stand),
     "crawl": ("it walks slowly, one foot after the other", _walk("crawl", CRAWL)),
     "trot": ("it trots slowly", _walk("trot", TROT)),
+    "lower": ("it lies down again", _lower),
 }
 """Name of each step: what it shows, and how."""
