@@ -44,7 +44,10 @@ def test_a_healthy_robot_passes_every_check():
     ("check", "words"),
     [
         (lambda: checks.hung({"front_left": 0.1, "rear_left": 5.3}, SHARE), "rear_left carries 5.3 N, at most 3.1 N"),
-        (lambda: checks.stood({"front_left": 30.0, "rear_left": 2.0}, SHARE), "rear_left carries 2.0 N, at least 12.4 N"),
+        (
+            lambda: checks.stood({"front_left": 30.0, "rear_left": 2.0}, SHARE),
+            "rear_left carries 2.0 N, at least 12.4 N",
+        ),
         (lambda: checks.level(0.02, 0.4), r"\+0.02 and \+0.40 rad, at most ±0.15 rad: level the body"),
         (lambda: checks.green([row("swap", fault("full", "free it"))]), "FAULT swap: full; remedy: free it"),
         (lambda: checks.green([row("can", warning("can0", "start it"))]), "WARNING can: can0; remedy: start it"),

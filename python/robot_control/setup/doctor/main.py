@@ -45,7 +45,7 @@ def examine(system: System) -> list[Row]:
 
 
 def robot_block(given: str | None) -> dict[str, Any]:
-    """The block `robot:` of the installed parameters with that of the given file over it, and `bus:` of its drive file."""
+    """The block `robot:` of the installed parameters with that of the given file over it, and `drive_bus`."""
     try:
         import yaml  # type: ignore[import-untyped]
     except ImportError:  # another Python; a check says so

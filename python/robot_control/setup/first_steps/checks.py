@@ -1,7 +1,7 @@
-"""What a step of first_steps.py measures, and the rule that it must keep; no ROS in here.
+"""The rules that the measurements of first_steps.py must keep; no ROS in here.
 
-Each check raises StepError with what was measured where, its rule and the remedy. `loads` are those of the feet, `share`
-is a quarter of the weight, in N.
+Each check raises StepError with the measurement, its rule and the remedy. `loads` are the loads of the feet, `share` is a
+quarter of the weight, in N.
 """
 
 from collections.abc import Mapping, Sequence
@@ -43,7 +43,9 @@ def stood(loads: Mapping[str, float], share: float) -> None:
     """Every foot carries load."""
     for foot, load in loads.items():
         if load < STANDS * share:
-            rule = f"at least {STANDS * share:.1f} N while the robot stands: check the zeros of its joints, and the floor"
+            rule = (
+                f"at least {STANDS * share:.1f} N while the robot stands: check the zeros of its joints, and the floor"
+            )
             raise StepError(f"{foot} carries {load:.1f} N, {rule}")
 
 

@@ -11,8 +11,8 @@ import rospy
 
 from robot_control.data.record.main import record_command
 from robot_control.files.files import given_path, one_message
-from robot_control.robot.ros_node import begin_node
 from robot_control.robot.ros_master import require_master
+from robot_control.robot.ros_node import begin_node
 from robot_control.robot.running_robot import RefusedError, master_state, other_senders
 from robot_control.robot.server_values import described_robot, server_tree
 from robot_control.robot.topic_sender import ended_by_signals
@@ -43,9 +43,7 @@ def parse_options(arguments: Sequence[str]) -> argparse.Namespace:
 
 
 def share_and_turns(names: Sequence[str]) -> tuple[float, list[tuple[str, float, str]]]:
-    """Of the running robot a quarter of its weight, N; and of each joint its name, a small turn towards the middle of its
-    range, rad, and the motion of its foot.
-    """
+    """A quarter of the robot's weight, N, and the small turn of each joint, towards the middle of its range."""
     with described_robot() as (parameters, urdf):
         robot = describe(urdf, parameters)
         middle = {joint["name"]: (joint["lower"] + joint["upper"]) / 2 for joint in robot["joints"]}

@@ -36,7 +36,7 @@ TOPICS = {"battery_state": BatteryState, "joint_states": JointState, "leg_state"
 
 
 class WatchedRobot:
-    """A running robot on legs. Each method but `stop` raises StepError if a signal came, or if the robot may not move."""
+    """A running robot on legs. Each method but `stop` raises StepError after a signal, or if the robot may not move."""
 
     def __init__(self, signals: Signals) -> None:
         self._signals, self._watch = signals, SafetyWatch()

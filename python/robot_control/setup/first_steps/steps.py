@@ -5,6 +5,10 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+import rospy
+
+from robot_control.loop.roles import DRIVER
+from robot_control.robot.ros_master import living
 from robot_control.setup.doctor.main import drive_bus, examine, robot_block
 from robot_control.setup.doctor.system import System
 from robot_control.setup.first_steps import checks
@@ -27,7 +31,7 @@ CRAWL, TROT, WALK = 0.1, 0.2, 3.0
 
 @dataclass(frozen=True)
 class Context:
-    """What every step uses."""
+    """The robot, the person, and values of the robot that the steps use."""
 
     robot: WatchedRobot
     ask: Questions
@@ -46,7 +50,9 @@ class Context:
     def release(self) -> None:
         """Ends a stop, if the person agrees."""
         if self.robot.stopped:
-            self.confirm(f"The robot is stopped: {'; '.join(self.robot.safety.sentences)}. Release it now?")
+            self.confirm(
+                f"The robot is stopped: {'; '.join(self.robot.safety.sentences)}. Hands off the legs. Release it now?"
+            )
             self.robot.reset()
         self.robot.require_release()
 
@@ -59,7 +65,8 @@ def _hang(at: Context) -> None:
 
 def _doctor(at: Context) -> None:
     block = robot_block(None) | at.parameters | {"drive_bus": drive_bus(Path(at.parameters.get("drives", "")))}
-    rows = examine(System(Path("/"), block))
+    simulated = {"driver": "mujoco"} if living(rospy.resolve_name(DRIVER)) else {}  # its drives are on no bus
+    rows = examine(System(Path("/"), block | simulated))
     checks.green(rows)
     print(f"  {len(rows)} lines, none is a FAULT; green: {', '.join(checks.GREEN)}")
 
@@ -83,7 +90,7 @@ def _e_stop(at: Context) -> None:
 
 
 def _damping(at: Context) -> None:
-    print(f"  {at.robot.stop()}")
+    at.robot.stop()
     if not at.robot.wait(lambda: at.robot.stopped, PATIENCE):
         raise StepError("the robot is not stopped after e_stop_trigger: check the safety monitor (why.py)")
     at.ask.line("  The robot brakes. Move each leg slowly by hand, then let go of all legs. Press Enter.")
