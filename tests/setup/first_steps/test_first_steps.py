@@ -1,8 +1,6 @@
 """first_steps.py without a robot: each step passes a healthy measurement and names one that is not."""
 
 import pytest
-from robot_control.setup.doctor.finding import fault, ok, warning
-from robot_control.setup.doctor.report import Row
 from robot_control.setup.first_steps import checks
 from robot_control.setup.first_steps.checks import StepError
 from robot_control.setup.first_steps.main import parse_options, take
@@ -21,15 +19,15 @@ def turns(**joints):
     return [joints.get(name, 0.004) for name in NAMES]
 
 
-def row(name, finding):
-    return Row("group", name, "why", finding)
+def found(name, verdict):
+    return {"name": name, "verdict": verdict, "value": "full", "remedy": "free it"}
 
 
 def test_a_healthy_robot_passes_every_check():
     checks.hung(dict.fromkeys(LEGS, -0.3), SHARE)
     checks.stood(dict.fromkeys(LEGS, 31.0), SHARE)
     checks.level(0.02, -0.05)
-    checks.green([row("can", ok("can0")), row("swap", warning("2 GB"))])
+    checks.green([found("can", "ok"), found("swap", "warning")])
     checks.charged(["foot_load"], 28.4)
     checks.charged([], None)
     for cause in ("e_stop_input", "e_stop_topic"):
@@ -49,8 +47,8 @@ def test_a_healthy_robot_passes_every_check():
             "rear_left carries 2.0 N, at least 12.4 N",
         ),
         (lambda: checks.level(0.02, 0.4), r"\+0.02 and \+0.40 rad, at most ±0.15 rad: level the body"),
-        (lambda: checks.green([row("swap", fault("full", "free it"))]), "FAULT swap: full; remedy: free it"),
-        (lambda: checks.green([row("can", warning("can0", "start it"))]), "WARNING can: can0; remedy: start it"),
+        (lambda: checks.green([found("swap", "fault")]), "fault swap: full; remedy: free it"),
+        (lambda: checks.green([found("can", "warning")]), "warning can: full; remedy: free it"),
         (lambda: checks.charged(["battery_low"], 21.04), "reports battery_low: 21.0 V: charge the battery"),
         (lambda: checks.pressed(""), "no stop was latched: check cable"),
         (lambda: checks.pressed("tilt"), "latched by tilt, not by an e_stop_… cause"),

@@ -44,8 +44,8 @@ def examine(system: System) -> list[Row]:
     return sorted(rows, key=lambda row: FILES.index(row.group))
 
 
-def robot_block(given: str | None) -> dict[str, Any]:
-    """The block `robot:` of the installed parameters with that of the given file over it, and `drive_bus`."""
+def _robot_block(given: str | None) -> dict[str, Any]:
+    """The block `robot:` of the installed parameters with that of the given file over it."""
     try:
         import yaml  # type: ignore[import-untyped]
     except ImportError:  # another Python; a check says so
@@ -59,16 +59,10 @@ def robot_block(given: str | None) -> dict[str, Any]:
         part = tree.get("robot") if isinstance(tree, dict) else None
         block |= part if isinstance(part, dict) else {}
         if isinstance(part, dict) and isinstance(drives := part.get("drives"), str) and drives:
-            block["drive_bus"] = drive_bus(Path(name).parent / drives)
+            # The driver refuses a file that cannot be read.
+            with contextlib.suppress(OSError, ValueError, RecursionError, yaml.YAMLError, AttributeError):
+                block["drive_bus"] = yaml.safe_load((Path(name).parent / drives).read_text()).get("bus")
     return block
-
-
-def drive_bus(path: Path) -> Any:  # noqa: ANN401 (of a foreign file)
-    """The block `bus:` of a drive file; None where there is none. The driver refuses a file that cannot be read."""
-    import yaml
-
-    with contextlib.suppress(OSError, ValueError, RecursionError, yaml.YAMLError, AttributeError):
-        return yaml.safe_load(path.read_text()).get("bus")
 
 
 def parse(arguments: Sequence[str]) -> argparse.Namespace:
@@ -106,7 +100,7 @@ def main() -> int:
     given = parse(sys.argv[1:])
     if not Path(given.root).is_dir():
         sys.exit(f"doctor.py: --root {given.root} is not a folder")
-    system = System(Path(given.root).absolute(), robot_block(given.params))
+    system = System(Path(given.root).absolute(), _robot_block(given.params))
     rows = examine(system) + ([] if given.measure is None else _measured(system, given.measure))
     print(as_json(rows) if given.json else "\n".join(commands(rows) if given.fix else lines(rows)))
     return exit_code(rows)

@@ -1,14 +1,10 @@
 """The rules that the measurements of first_steps.py must keep; no ROS in here.
 
-Each check raises StepError with the measurement, its rule and the remedy. `loads` are the loads of the feet, `share` is a
-quarter of the weight, in N.
+Each check raises StepError with the measurement, its rule and the remedy. `loads` are the loads of the feet in N,
+`share` is a quarter of the weight.
 """
 
 from collections.abc import Mapping, Sequence
-
-from robot_control.setup.doctor.finding import Verdict
-from robot_control.setup.doctor.report import Row
-from robot_control.setup.zero_joints.dialog import SHARE
 
 GREEN = (
     *("package", "build", "core", "realtime_priority", "memory_lock", "can", "device_files", "master", "dead_nodes"),
@@ -19,6 +15,8 @@ HANGS, STANDS = 0.1, 0.4
 """of `share`: the most load of a foot in the air, the least of a foot on the ground"""
 TILT = 0.15
 """rad, of a body that hangs, lies or stands level"""
+ALONG = 0.5
+"""of the ordered turn, which no other joint may reach"""
 TURN_ERROR = 0.05
 """rad, of a joint that moves without load"""
 REST = 0.1
@@ -56,12 +54,11 @@ def level(roll: float, pitch: float) -> None:
         raise StepError(f"roll and pitch are {roll:+.2f} and {pitch:+.2f} rad, at most ±{TILT} rad: {remedy}")
 
 
-def green(rows: Sequence[Row]) -> None:
-    """The findings of doctor.py."""
-    for row in rows:
-        verdict, value, remedy = row.finding.verdict, row.finding.value, row.finding.remedy
-        if verdict is Verdict.FAULT or (verdict is Verdict.WARNING and row.name in GREEN):
-            raise StepError(f"doctor.py: {verdict.value} {row.name}: {value}; remedy: {remedy}")
+def green(findings: Sequence[Mapping[str, str]]) -> None:
+    """The findings of doctor.py --json."""
+    for each in findings:
+        if each["verdict"] == "fault" or (each["verdict"] == "warning" and each["name"] in GREEN):
+            raise StepError(f"doctor.py: {each['verdict']} {each['name']}: {each['value']}; remedy: {each['remedy']}")
 
 
 def charged(causes: Sequence[str], voltage: float | None) -> None:
@@ -89,7 +86,7 @@ def yielded(fastest: float) -> None:
 def moved(names: Sequence[str], index: int, ordered: float, turns: Sequence[float]) -> None:
     """The turns of all joints, rad, while that of `index` was ordered to turn."""
     own, (first, second) = turns[index], sorted(range(len(turns)), key=lambda each: -abs(turns[each]))[:2]
-    least, found = SHARE * abs(ordered), f"{names[index]} moved by {own:+.3f} rad, ordered {ordered:+.3f} rad"
+    least, found = ALONG * abs(ordered), f"{names[index]} moved by {own:+.3f} rad, ordered {ordered:+.3f} rad"
     if abs(turns[first]) < least:
         raise StepError(f"{found}: check the supply of its motor, and that nothing blocks the leg")
     if first != index:

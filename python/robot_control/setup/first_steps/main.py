@@ -2,14 +2,13 @@
 
 import argparse
 import math
-import os
 import time
 from collections.abc import Sequence
 from pathlib import Path
 
 import rospy
+from roslib.packages import find_node
 
-from robot_control.data.record.main import record_command
 from robot_control.files.files import given_path, one_message
 from robot_control.robot.ros_master import require_master
 from robot_control.robot.ros_node import begin_node
@@ -20,8 +19,8 @@ from robot_control.setup.description import describe
 from robot_control.setup.first_steps.checks import StepError
 from robot_control.setup.first_steps.robot import WatchedRobot
 from robot_control.setup.first_steps.steps import STEPS, TURN, Context
+from robot_control.setup.foot_motions import foot_motions
 from robot_control.setup.terminal_dialog import NoAnswerError, Questions
-from robot_control.setup.zero_joints.main import positive_turns
 from robot_control.ui.child import Child, children
 from robot_control.ui.table import table
 
@@ -49,14 +48,14 @@ def share_and_turns(names: Sequence[str]) -> tuple[float, list[tuple[str, float,
         middle = {joint["name"]: (joint["lower"] + joint["upper"]) / 2 for joint in robot["joints"]}
         lying = {name: angle for leg in robot["legs"] for name, angle in zip(leg["joints"], leg["lying"], strict=True)}
         turns = [math.copysign(TURN, middle[name] - lying[name]) for name in names]
-        words = positive_turns(urdf, [lying[name] for name in names], names, turns)
+        words = foot_motions(urdf, [lying[name] for name in names], names, turns)
         return robot["mass"] * GRAVITY / len(robot["legs"]), list(zip(names, turns, words, strict=True))
 
 
 def _recorder(folder: Path) -> Child:
-    command = record_command([str(folder), f"__ns:={rospy.get_namespace()}"], dict(os.environ))
-    Path(command[1].partition("=")[2]).parent.mkdir(parents=True, exist_ok=True)
-    return Child(command, folder / "record.log")
+    folder.mkdir(parents=True, exist_ok=True)
+    (program,) = find_node("robot_control", "record.py")
+    return Child([program, str(folder), f"__ns:={rospy.get_namespace()}"], folder / "record.log")
 
 
 @one_message("first_steps.py", RefusedError, StepError, OSError, ValueError)

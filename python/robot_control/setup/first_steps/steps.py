@@ -1,16 +1,17 @@
 """The steps of first_steps.py, in their order: what a person does, what is measured, and what the person confirms."""
 
+import json
+import subprocess
+import tempfile
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any
 
 import rospy
+from roslib.packages import find_node
 
 from robot_control.loop.roles import DRIVER
 from robot_control.robot.ros_master import living
-from robot_control.setup.doctor.main import drive_bus, examine, robot_block
-from robot_control.setup.doctor.system import System
 from robot_control.setup.first_steps import checks
 from robot_control.setup.first_steps.checks import StepError
 from robot_control.setup.first_steps.robot import WatchedRobot
@@ -64,11 +65,18 @@ def _hang(at: Context) -> None:
 
 
 def _doctor(at: Context) -> None:
-    block = robot_block(None) | at.parameters | {"drive_bus": drive_bus(Path(at.parameters.get("drives", "")))}
     simulated = {"driver": "mujoco"} if living(rospy.resolve_name(DRIVER)) else {}  # its drives are on no bus
-    rows = examine(System(Path("/"), block | simulated))
-    checks.green(rows)
-    print(f"  {len(rows)} lines, none is a FAULT; green: {', '.join(checks.GREEN)}")
+    with tempfile.NamedTemporaryFile("w", suffix=".yaml") as file:
+        json.dump({"robot": at.parameters | simulated}, file)
+        file.flush()
+        program = find_node("robot_control", "doctor.py")
+        done = subprocess.run([*program, "--json", "--params", file.name], capture_output=True, text=True, check=False)
+    try:
+        findings = json.loads(done.stdout)["checks"]
+    except ValueError:
+        raise StepError(f"doctor.py does not work: {done.stderr}") from None
+    checks.green(findings)
+    print(f"  {len(findings)} lines without a fault, green: {', '.join(checks.GREEN)}")
 
 
 def _battery(at: Context) -> None:
