@@ -4,6 +4,7 @@ import os
 import re
 import signal
 import tempfile
+import time
 import unittest
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -16,7 +17,7 @@ from robot_control.msg import SafetyStatus
 from robot_control.srv import InjectFault
 from system.launch_support import Launch
 from system.pseudo_terminal import PseudoTerminal
-from system.system_support import LIMIT, Latest, wait_for
+from system.system_support import LIMIT, LOOP_WITNESS, Latest, again_after_a_stall, wait_for
 
 BUS = f"first_steps{os.getpid()}"
 QUESTION = re.compile(r"\[y/n\]|Press Enter\.")
@@ -26,7 +27,7 @@ class Person:
     """Answers what the program asks, and presses the emergency stop when it says so."""
 
     def __init__(self, *arguments: str) -> None:
-        (path,) = roslib.packages.find_node("robot_control", "first_steps.py")
+        path = roslib.packages.find_node("robot_control", "first_steps.py")[0]
         self.terminal = PseudoTerminal([path, *arguments])
         self._inject_fault = rospy.ServiceProxy("mujoco_plant/inject_fault", InjectFault)
         self._button = "ok"
@@ -61,6 +62,7 @@ class FirstStepsTest(unittest.TestCase):
         self.addCleanup(folder.cleanup)
         self.out = Path(folder.name)
         self.safety = Latest("safety_status", SafetyStatus)
+        self.began = time.monotonic()
 
     @contextmanager
     def quadbot(self, scene: str) -> Iterator[None]:
@@ -75,6 +77,16 @@ class FirstStepsTest(unittest.TestCase):
                 path.unlink(missing_ok=True)
 
     @property
+    def robot(self) -> "FirstStepsTest":
+        """This case: again_after_a_stall reads whether its robot is `stalled`."""
+        return self
+
+    @property
+    def stalled(self) -> bool:
+        """True if the witness measured a stall of the loop, which may have stopped the robot during a step."""
+        return bool(LOOP_WITNESS.saw(self.began, time.monotonic()))
+
+    @property
     def state(self) -> str:
         return self.safety.message.state_name if self.safety.message else ""
 
@@ -86,6 +98,7 @@ class FirstStepsTest(unittest.TestCase):
         finally:
             person.terminal.end()
 
+    @again_after_a_stall
     def test_the_steps_in_the_air_pass_and_ctrl_c_stops_the_robot(self) -> None:
         with self.quadbot("stool"), self.person() as person:
             person.until("Lower the robot")
@@ -96,6 +109,7 @@ class FirstStepsTest(unittest.TestCase):
             wait_for("a stop", lambda: self.state == "STOPPED")
             self.assertEqual(self.safety.message.first_cause, "e_stop_service")
 
+    @again_after_a_stall
     def test_the_steps_on_the_floor_pass_and_a_robot_that_stands_there_does_not_hang(self) -> None:
         with self.quadbot("flat"):
             with self.person() as person:

@@ -54,7 +54,7 @@ def share_and_turns(names: Sequence[str]) -> tuple[float, list[tuple[str, float,
 
 def _recorder(folder: Path) -> Child:
     folder.mkdir(parents=True, exist_ok=True)
-    (program,) = find_node("robot_control", "record.py")
+    program = find_node("robot_control", "record.py")[0]
     return Child([program, str(folder), f"__ns:={rospy.get_namespace()}"], folder / "record.log")
 
 

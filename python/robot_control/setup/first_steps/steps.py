@@ -69,8 +69,8 @@ def _doctor(at: Context) -> None:
     with tempfile.NamedTemporaryFile("w", suffix=".yaml") as file:
         json.dump({"robot": at.parameters | simulated}, file)
         file.flush()
-        program = find_node("robot_control", "doctor.py")
-        done = subprocess.run([*program, "--json", "--params", file.name], capture_output=True, text=True, check=False)
+        program = find_node("robot_control", "doctor.py")[0]
+        done = subprocess.run([program, "--json", "--params", file.name], capture_output=True, text=True, check=False)
     try:
         findings = json.loads(done.stdout)["checks"]
     except ValueError:
