@@ -69,10 +69,26 @@ def test_a_measurement_beyond_its_rule_is_named_with_rule_and_remedy(check, word
         (turns(), r"front_left_thigh_joint moved by \+0.004 rad, ordered \+0.150 rad: check the supply"),
         (turns(front_left_thigh_joint=-0.15), "moved by -0.150 rad, ordered .* the wrong direction"),
         (turns(rear_right_thigh_joint=0.15), "and rear_right_thigh_joint moved by .* exchange their keys"),
-        (turns(front_left_thigh_joint=0.15, front_left_knee_joint=0.1), "and front_left_knee_joint along with it"),
-        (turns(front_left_thigh_joint=0.09), r"at most 0.05 rad off: check gear and range"),
+        (
+            turns(front_left_thigh_joint=0.15, front_left_knee_joint=0.1),
+            "front_left_knee_joint .* only one joint may move",
+        ),
+        (
+            turns(front_left_thigh_joint=0.15, rear_left_knee_joint=-0.9),
+            "rear_left_knee_joint .* only one joint may move",
+        ),
+        (turns(front_left_thigh_joint=0.09), r"at most 0.05 rad off, check range, gear"),
+        (turns(front_left_thigh_joint=1.2, front_left_knee_joint=0.4), r"at most 0.05 rad off, .* sign of torque"),
     ],
-    ids=["no motion", "wrong sign", "exchanged motors", "two joints", "wrong size"],
+    ids=[
+        "no motion",
+        "wrong sign",
+        "exchanged motors",
+        "two joints",
+        "one falls",
+        "wrong size",
+        "torque of wrong sign",
+    ],
 )
 def test_a_joint_that_does_not_move_as_ordered_is_named(measured, words):
     with pytest.raises(StepError, match=words):

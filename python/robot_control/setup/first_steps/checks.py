@@ -32,7 +32,7 @@ class StepError(RuntimeError):
 def hung(loads: Mapping[str, float], share: float) -> None:
     """No foot carries load."""
     for foot, load in loads.items():
-        if abs(load) > HANGS * share:
+        if load > HANGS * share:
             rule = f"at most {HANGS * share:.1f} N while the robot hangs: lift it until all feet hang free"
             raise StepError(f"{foot} carries {load:.1f} N, {rule}")
 
@@ -85,19 +85,20 @@ def yielded(fastest: float) -> None:
 
 def moved(names: Sequence[str], index: int, ordered: float, turns: Sequence[float]) -> None:
     """The turns of all joints, rad, while that of `index` was ordered to turn."""
-    own, (first, second) = turns[index], sorted(range(len(turns)), key=lambda each: -abs(turns[each]))[:2]
-    least, found = ALONG * abs(ordered), f"{names[index]} moved by {own:+.3f} rad, ordered {ordered:+.3f} rad"
-    if abs(turns[first]) < least:
-        raise StepError(f"{found}: check the supply of its motor, and that nothing blocks the leg")
-    if first != index:
-        remedy = "exchange their keys in the drive file (zero_joints.py finds exchanged motors)"
-        raise StepError(f"{found}, and {names[first]} moved by {turns[first]:+.3f} rad: {remedy}")
+    own, name, least = turns[index], names[index], ALONG * abs(ordered)
+    other = max((each for each in range(len(turns)) if each != index), key=lambda each: abs(turns[each]))
+    along = f", and {names[other]} moved by {turns[other]:+.3f} rad" if abs(turns[other]) > least else ""
+    found = f"{name} moved by {own:+.3f} rad, ordered {ordered:+.3f} rad{along}: "
+    if abs(own) < least and along:
+        raise StepError(f"{found}exchange their keys in the drive file (zero_joints.py finds exchanged motors)")
+    if abs(own) < least:
+        raise StepError(f"{found}check the supply of its motor, and that nothing blocks the leg")
     if own * ordered < 0:
-        raise StepError(f"{found}, the wrong direction: change it in the drive file (zero_joints.py)")
-    if abs(turns[second]) > least:
-        raise StepError(f"{found}, and {names[second]} along with it: hold the body still, and check the linkage")
+        raise StepError(f"{found}it is the wrong direction, change it in the drive file (zero_joints.py)")
     if abs(own - ordered) > TURN_ERROR:
-        raise StepError(f"{found}, at most {TURN_ERROR} rad off: check gear and range of its motor, and friction")
+        raise StepError(f"{found}at most {TURN_ERROR} rad off, check range, gear, sign of torque and friction")
+    if along:
+        raise StepError(f"{found}only one joint may move, check supply and linkage of the other one")
 
 
 def walked(gait: str, used: str, ordered: float, speed: float) -> None:

@@ -24,6 +24,8 @@ from robot_control.setup.terminal_dialog import NoAnswerError, Questions
 from robot_control.ui.child import Child, children
 from robot_control.ui.table import table
 
+RECORDING = 10.0
+"""s until the recorder has opened its bag"""
 GRAVITY = 9.81
 """m/s²"""
 
@@ -58,6 +60,10 @@ def _recorder(folder: Path) -> Child:
     return Child([program, str(folder), f"__ns:={rospy.get_namespace()}"], folder / "record.log")
 
 
+def _bags(folder: Path, began: float) -> list[Path]:
+    return [path for path in folder.rglob("*.bag*") if path.stat().st_mtime >= began]
+
+
 @one_message("first_steps.py", RefusedError, StepError, OSError, ValueError)
 def main() -> None:
     """Entry point of scripts/first_steps.py: exit code 0 if all steps passed, else 1 with one message."""
@@ -74,6 +80,8 @@ def main() -> None:
         if others := other_senders(master_state()):
             raise RefusedError(f"{', '.join(others)} may also command the robot: end it, or run rosnode cleanup")
         started.append(_recorder(options.out))
+        if not robot.wait(lambda: _bags(options.out, began), RECORDING):
+            raise RefusedError(f"no bag is recorded: read {options.out}/record.log")
         print("Ctrl-C stops the robot and ends.")
         of_robot = share_and_turns(robot.newest("joint_states").name)
         context = Context(robot, Questions(signals.going_on), server_tree("robot"), *of_robot)
@@ -82,8 +90,7 @@ def main() -> None:
         finally:
             print(f"\n{robot.stop()}")
     print("\n".join(table([("step", "result"), *results.items()])))
-    bags = [path for path in options.out.rglob("*.bag") if path.stat().st_mtime >= began]
-    print(f"bag: {bags[0] if bags else f'none; see {options.out}/record.log'}")
+    print(f"bag: {_bags(options.out, began)[0]}")
     if why:
         raise StepError(f"{step}: {why}. To continue: rosrun robot_control first_steps.py --from {step}")
 

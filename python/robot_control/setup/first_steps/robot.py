@@ -43,11 +43,17 @@ class WatchedRobot:
         self._services = Services(self._watch)
         self._topics = {topic: Latest(topic, kind) for topic, kind in TOPICS.items()}
         self._path = rospy.Publisher("joint_trajectory", JointTrajectory, queue_size=1, tcp_nodelay=True)
-        self._twist = Sender(rospy.Publisher("cmd_vel", Twist, queue_size=1, tcp_nodelay=True), Twist())
-        needed = [self._topics[topic] for topic in ("joint_states", "leg_state", "odom")]
-        await_all(lambda: None not in (self._watch.message, *(topic.message for topic in needed)), signals)
-        if self._watch.message is None or None in [topic.message for topic in needed]:
-            raise RefusedError("no safety_status, joint_states, leg_state or odom: start a robot on legs first")
+        velocity = rospy.Publisher("cmd_vel", Twist, queue_size=1, tcp_nodelay=True)
+        self._twist = Sender(velocity, Twist())
+
+        def ready() -> bool:
+            received = [self._topics[topic].message for topic in ("joint_states", "leg_state", "odom")]
+            taken = self._path.get_num_connections() and velocity.get_num_connections()
+            return None not in (self._watch.message, *received) and bool(taken)
+
+        await_all(ready, signals)
+        if not ready():
+            raise RefusedError("no robot on legs answers: start it first, and check it with why.py")
 
     def newest(self, topic: str) -> Any:  # noqa: ANN401 (of the topic)
         """The newest message of one of TOPICS."""
