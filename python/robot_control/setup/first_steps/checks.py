@@ -17,10 +17,10 @@ TILT = 0.15
 """rad, of a body that hangs, lies or stands level"""
 ALONG = 0.5
 """of the ordered turn, which no other joint may reach"""
-TURN_ERROR = 0.05
+TURN_ERROR = 0.06
 """rad, of a joint that moves without load"""
-REST = 0.1
-"""rad/s, of a joint that was let go of"""
+SINKING = 0.5
+"""rad/s, at which a damped leg may sink after it was let go of"""
 SPEED_ERROR = 0.3
 """of the ordered speed, in the mean"""
 
@@ -78,9 +78,9 @@ def pressed(first_cause: str) -> None:
 
 def yielded(fastest: float) -> None:
     """The speed of the fastest joint after all were let go of, rad/s."""
-    if fastest > REST:
+    if fastest > SINKING:
         remedy = "let go of the legs; if they fall by themselves, check the supply of the motors and their damping"
-        raise StepError(f"a joint moves at {fastest:.2f} rad/s, at most {REST} rad/s: {remedy}")
+        raise StepError(f"a joint moves at {fastest:.2f} rad/s, at most {SINKING} rad/s: {remedy}")
 
 
 def moved(names: Sequence[str], index: int, ordered: float, turns: Sequence[float]) -> None:

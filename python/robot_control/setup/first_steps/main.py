@@ -1,7 +1,6 @@
 """first_steps.py: the steps in their order, the bag and the summary."""
 
 import argparse
-import math
 import time
 from collections.abc import Sequence
 from pathlib import Path
@@ -13,21 +12,18 @@ from robot_control.files.files import given_path, one_message
 from robot_control.robot.ros_master import require_master
 from robot_control.robot.ros_node import begin_node
 from robot_control.robot.running_robot import RefusedError, master_state, other_senders
-from robot_control.robot.server_values import described_robot, server_tree
+from robot_control.robot.server_values import described_robot
 from robot_control.robot.topic_sender import ended_by_signals
 from robot_control.setup.description import describe
 from robot_control.setup.first_steps.checks import StepError
 from robot_control.setup.first_steps.robot import WatchedRobot
-from robot_control.setup.first_steps.steps import STEPS, TURN, Context
-from robot_control.setup.foot_motions import foot_motions
+from robot_control.setup.first_steps.steps import STEPS, Context
 from robot_control.setup.terminal_dialog import NoAnswerError, Questions
 from robot_control.ui.child import Child, children
 from robot_control.ui.table import table
 
 RECORDING = 10.0
 """s until the recorder has opened its bag"""
-GRAVITY = 9.81
-"""m/s²"""
 
 
 def parse_options(arguments: Sequence[str]) -> argparse.Namespace:
@@ -41,17 +37,6 @@ def parse_options(arguments: Sequence[str]) -> argparse.Namespace:
     parser.add_argument("--from", dest="begin", choices=STEPS, default="hang", help="first step (default %(default)s)")
     parser.add_argument("--out", type=given_path, default="first_steps", help="folder of the bag (default %(default)s)")
     return parser.parse_args(arguments)
-
-
-def share_and_turns(names: Sequence[str]) -> tuple[float, list[tuple[str, float, str]]]:
-    """A quarter of the robot's weight, N, and the small turn of each joint, towards the middle of its range."""
-    with described_robot() as (parameters, urdf):
-        robot = describe(urdf, parameters)
-        middle = {joint["name"]: (joint["lower"] + joint["upper"]) / 2 for joint in robot["joints"]}
-        lying = {name: angle for leg in robot["legs"] for name, angle in zip(leg["joints"], leg["lying"], strict=True)}
-        turns = [math.copysign(TURN, middle[name] - lying[name]) for name in names]
-        words = foot_motions(urdf, [lying[name] for name in names], names, turns)
-        return robot["mass"] * GRAVITY / len(robot["legs"]), list(zip(names, turns, words, strict=True))
 
 
 def _recorder(folder: Path) -> Child:
@@ -83,12 +68,12 @@ def main() -> None:
         if not robot.wait(lambda: _bags(options.out, began), RECORDING):
             raise RefusedError(f"no bag is recorded: read {options.out}/record.log")
         print("Ctrl-C stops the robot and ends.")
-        of_robot = share_and_turns(robot.newest("joint_states").name)
-        context = Context(robot, Questions(signals.going_on), server_tree("robot"), *of_robot)
-        try:
-            step, why = take(steps, context, results)
-        finally:
-            print(f"\n{robot.stop()}")
+        with described_robot() as (parameters, urdf):
+            context = Context(robot, Questions(signals.going_on), parameters, urdf, describe(urdf, parameters))
+            try:
+                step, why = take(steps, context, results)
+            finally:
+                print(f"\n{robot.stop()}")
     print("\n".join(table([("step", "result"), *results.items()])))
     print(f"bag: {_bags(options.out, began)[0]}")
     if why:

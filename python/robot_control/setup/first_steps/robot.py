@@ -117,11 +117,18 @@ class WatchedRobot:
         return "THE STOP WAS NOT CONFIRMED: press the emergency stop."
 
     def reset(self) -> None:
-        """Ends a stop."""
-        self._services.reset()
-        answer = self._answer()
-        if not (answer and answer.accepted):
-            raise StepError(f"e_stop_reset is refused: {answer.text if answer else 'no answer'}")
+        """Ends a stop, as soon as the joints rest."""
+        answers: list[Answer | None] = []
+
+        def ask() -> None:
+            self._services.reset()
+            answers.append(self._answer())
+
+        def released() -> bool:
+            return bool(answers) and answers[-1] is not None and answers[-1].accepted
+
+        if not self.wait(released, ANSWER, ask):
+            raise StepError(f"e_stop_reset: {answers[-1].text if answers[-1] else 'no answer, run why.py'}")
         self.wait(self._watch.drivable, ANSWER)
         self.require_release()
         self._path.publish(JointTrajectory())
@@ -132,10 +139,10 @@ class WatchedRobot:
         self._call("set_posture", SetPosture, posture)
         self._move_until(posture)
 
-    def turn(self, joint: str, angle: float, seconds: float) -> None:
-        """Moves one joint of a robot that lies to `angle`, rad."""
-        point = JointTrajectoryPoint(positions=[angle], time_from_start=rospy.Duration(seconds))
-        self._path.publish(JointTrajectory(joint_names=[joint], points=[point]))
+    def turn(self, angles: dict[str, float], seconds: float) -> None:
+        """Moves some joints of a robot that lies to `angles`, rad."""
+        point = JointTrajectoryPoint(positions=list(angles.values()), time_from_start=rospy.Duration(seconds))
+        self._path.publish(JointTrajectory(joint_names=list(angles), points=[point]))
         self._move(seconds + ARRIVAL)
 
     def walk(self, gait: str, speed: float, seconds: float) -> tuple[str, float]:

@@ -1,6 +1,7 @@
 """The steps of first_steps.py, in their order: what a person does, what is measured, and what the person confirms."""
 
 import json
+import math
 import subprocess
 import tempfile
 from collections.abc import Callable, Sequence
@@ -12,15 +13,19 @@ from roslib.packages import find_node
 
 from robot_control.loop.roles import DRIVER
 from robot_control.robot.ros_master import living
+from robot_control.setup.description import Description
 from robot_control.setup.first_steps import checks
 from robot_control.setup.first_steps.checks import StepError
 from robot_control.setup.first_steps.robot import WatchedRobot
+from robot_control.setup.foot_motions import foot_motions
 from robot_control.setup.terminal_dialog import Questions
 
+GRAVITY = 9.81
+"""m/s²"""
 TURN = 0.15
 """rad, by which each joint moves"""
-TURN_TIME = 0.5
-"""s for that"""
+TURN_TIME, FOLD_TIME = 0.5, 1.5
+"""s for that, and for one leg to fold"""
 PATIENCE = 60.0
 """s to press or release the emergency stop"""
 LET_GO = 1.0
@@ -37,11 +42,15 @@ class Context:
     robot: WatchedRobot
     ask: Questions
     parameters: dict[str, Any]
-    """block `robot` of the running robot"""
-    share: float
-    """N, a quarter of the weight"""
-    joints: Sequence[tuple[str, float, str]]
-    """name; small turn from where it lies, rad; and the motion of the foot that a person sees then"""
+    """with the block `robot` of the running robot"""
+    urdf: str
+    """path"""
+    model: Description
+
+    @property
+    def share(self) -> float:
+        """N, a quarter of the weight."""
+        return float(self.model["mass"]) * GRAVITY / 4
 
     def confirm(self, question: str, remedy: str = "begin again once you can type y") -> None:
         """Raises StepError unless the person types y."""
@@ -67,7 +76,7 @@ def _hang(at: Context) -> None:
 def _doctor(at: Context) -> None:
     simulated = {"driver": "mujoco"} if living(rospy.resolve_name(DRIVER)) else {}  # its drives are on no bus
     with tempfile.NamedTemporaryFile("w", suffix=".yaml") as file:
-        json.dump({"robot": at.parameters | simulated}, file)
+        json.dump({"robot": at.parameters["robot"] | simulated}, file)
         file.flush()
         program = find_node("robot_control", "doctor.py")[0]
         done = subprocess.run([program, "--json", "--params", file.name], capture_output=True, text=True, check=False)
@@ -112,15 +121,20 @@ def _joints(at: Context) -> None:
     at.release()
     at.robot.take("lying")
     checks.hung(at.robot.loads, at.share)
-    at.confirm("All legs are folded alike, left mirrored to right. Is that so?", ZEROS)
-    names = [name for name, _, _ in at.joints]
-    for index, (name, ordered, words) in enumerate(at.joints):
+    state = at.robot.newest("joint_states")
+    middle = {each["name"]: (each["lower"] + each["upper"]) / 2 for each in at.model["joints"]}
+    small = [math.copysign(TURN, middle[name] - angle) for name, angle in zip(state.name, state.position, strict=True)]
+    words = foot_motions(at.urdf, state.position, state.name, small)
+    for index, (name, ordered) in enumerate(zip(state.name, small, strict=True)):
         before = at.robot.newest("joint_states").position
-        at.robot.turn(name, before[index] + ordered, TURN_TIME)
+        at.robot.turn({name: before[index] + ordered}, TURN_TIME)
         turns = _turns(at, before)
-        checks.moved(names, index, ordered, turns)
-        at.confirm(f"{name} turned by {turns[index]:+.2f} rad, {words}. Did you see that?", ZEROS)
-        at.robot.turn(name, before[index], TURN_TIME)
+        checks.moved(state.name, index, ordered, turns)
+        at.confirm(f"{name} turned by {turns[index]:+.2f} rad, {words[index]}. Did you see that?", ZEROS)
+    at.confirm("All legs fold now, as the robot lies. Ready?")
+    for leg in at.model["legs"]:
+        at.robot.turn(dict(zip(leg["joints"], leg["lying"], strict=True)), FOLD_TIME)
+    at.confirm("All legs are folded alike, left mirrored to right. Is that so?", ZEROS)
 
 
 def _turns(at: Context, before: Sequence[float]) -> list[float]:
@@ -132,7 +146,7 @@ def _lie(at: Context) -> None:
     at.release()
     at.robot.take("lying")
     checks.level(*at.robot.tilt)
-    at.confirm("It lies on its belly, all legs folded. Is that so?")
+    at.confirm("It lies on its belly, the legs beside it. Is that so?")
 
 
 def _stand(at: Context) -> None:
