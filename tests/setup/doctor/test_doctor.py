@@ -239,6 +239,21 @@ def test_a_bus_of_simulated_drives_needs_no_interface(tmp_path):
     assert "unix:/tmp/drives: simulated drives" in done.stdout
 
 
+@pytest.mark.parametrize(
+    ("bus", "verdict"),
+    [
+        ({"dialect": "ak"}, Verdict.NOTE),
+        ({"dialect": "cybergear", "on_silence": "keeps"}, Verdict.NOTE),
+        ({"dialect": "damiao"}, Verdict.OK),
+    ],
+)
+def test_motors_that_keep_their_last_order_are_named(tmp_path, bus, verdict):
+    write(tmp_path, preempt_rt())
+    found = rows(tmp_path, RT_ROBOT | {"drive_bus": bus})["silence"].finding
+    assert found.verdict is verdict
+    assert ("cuts the supply of the motors" in found.remedy) == (verdict is Verdict.NOTE)
+
+
 def test_an_ordinary_program_on_the_core_of_a_loop_with_privileges_is_no_alarm(tmp_path):
     write(tmp_path, preempt_rt() | task(800, "blender", ticks=900_000, core=3))
     assert rows(tmp_path, RT_ROBOT)["core_load"].finding.verdict is Verdict.NOTE

@@ -12,9 +12,10 @@ import pytest
 import yaml
 from robot_control.installed_files import share_file
 from robot_control.robot.running_robot import RefusedError
+from robot_control.setup.foot_motions import foot_motions
 from robot_control.setup.zero_joints.dialog import NotFoundError, Zeroed, find_zeros
 from robot_control.setup.zero_joints.drive_file import DriveFileError, read_joints, robot_of, with_values
-from robot_control.setup.zero_joints.main import known_angles, parse_options, positive_turns
+from robot_control.setup.zero_joints.main import known_angles, parse_options
 
 GEARS = {"damiao": 9.0, "cybergear": 9.0, "ak": 9.0, "unitree_legged": 6.33}
 """turns of the rotor per turn of the joint"""
@@ -194,10 +195,10 @@ def test_angles_come_from_the_drive_file_or_from_a_file_of_their_own(tmp_path):
 
 
 def test_the_words_follow_from_the_urdf():
-    words = positive_turns(share_file("urdf/quadbot.urdf"), LYING, NAMES)
+    words = foot_motions(share_file("urdf/quadbot.urdf"), LYING, NAMES)
     assert len(words) == 12
     assert all(word.startswith("so that its foot goes ") for word in words)
-    assert "axis in the URDF" in positive_turns("no.urdf", LYING, NAMES)[0]
+    assert "axis in the URDF" in foot_motions("no.urdf", LYING, NAMES)[0]
 
 
 def test_the_command_line():

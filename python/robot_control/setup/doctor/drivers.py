@@ -107,6 +107,15 @@ def _not_ready(system: System, value: str, remedy: str, *commands: str) -> Findi
     return (note if simulated else warning)(value, remedy, *commands)
 
 
+def silence(system: System) -> Finding:
+    """Motors that have no timeout: none of their registers shows it, so the drive file alone is read."""
+    bus = system.robot.get("drive_bus")
+    if isinstance(bus, dict) and (bus.get("dialect") == "ak" or bus.get("on_silence") == "keeps"):
+        value = "the motors keep their last order for ever when this computer is silent"
+        return note(value, "use an emergency stop that cuts the supply of the motors")
+    return ok("no drive file names motors without a timeout")
+
+
 def serial_latency(system: System) -> Finding:
     """The latency timer of USB serial adapters (FTDI)."""
     names = system.names("sys/bus/usb-serial/devices/*/latency_timer")
@@ -168,6 +177,7 @@ def device_files(system: System) -> Finding:
 
 CHECKS = (
     Check("can", "commands and samples of the drives go over this bus", can),
+    Check("silence", "a program that ends leaves the motors with their last order", silence),
     Check("serial_latency", "an adapter holds received bytes back for so long", serial_latency),
     Check("usb_autosuspend", "a suspended adapter needs milliseconds to wake up", autosuspend),
     Check("device_files", "the driver opens its port as this user", device_files),

@@ -7,13 +7,11 @@ import time
 from collections.abc import Sequence
 from pathlib import Path
 
-import numpy as np
 import rosgraph
 import rospy
 import yaml  # type: ignore[import-untyped]
 from sensor_msgs.msg import JointState
 
-from robot_control import _robot_control
 from robot_control.files.files import given_path, one_message, write_text
 from robot_control.files.output_files import check_outputs
 from robot_control.robot.boundary import Latest
@@ -25,7 +23,7 @@ from robot_control.robot.running_robot import RefusedError, await_all
 from robot_control.robot.safety_watch import SafetyWatch
 from robot_control.robot.server_values import described_robot, server_text
 from robot_control.robot.topic_sender import Signals, ended_by_signals
-from robot_control.settings.parameter_layers import layered
+from robot_control.setup.foot_motions import foot_motions
 from robot_control.setup.terminal_dialog import NoAnswerError, Questions
 from robot_control.setup.zero_joints.dialog import NotFoundError, Zeroed, find_zeros
 from robot_control.setup.zero_joints.drive_file import FileJoint, read_joints, robot_of, with_values
@@ -39,7 +37,6 @@ PATIENCE = 20.0
 PERIOD = 0.02
 LOST = ("driver_lost", "driver_fault", "encoders_lost", "machine_not_ready")
 """causes of a stop after which the angle of a joint may be its last one"""
-WAYS = (("forward", "backward"), ("to the left", "to the right"), ("up", "down"))
 
 
 class RestingRobot:
@@ -127,20 +124,6 @@ def require_older(path: Path) -> None:
         raise RefusedError(f"{path} was changed after the driver started: restart the driver, and begin again")
 
 
-def positive_turns(urdf: str, angles: Sequence[float], names: Sequence[str]) -> list[str]:
-    """The motion of the foot when each joint turns in its positive direction, in words."""
-    try:
-        slopes = np.asarray(_robot_control.legs(*layered(None, urdf)).jacobian(np.asarray(angles)))
-    except Exception:
-        return ["towards greater angles (about its axis in the URDF)"] * len(names)
-    words = []
-    for index in range(len(names)):
-        slope = slopes[index // 3, :, index % 3]
-        axis = int(abs(slope).argmax())
-        words.append(f"so that its foot goes {WAYS[axis][int(slope[axis] < 0)]}")
-    return words
-
-
 @one_message("zero_joints.py", RefusedError, NoAnswerError, NotFoundError, OSError, ValueError)
 def main() -> None:
     """Entry point of scripts/zero_joints.py: exit code 0 with the drive file written, else 1 with one message."""
@@ -162,7 +145,7 @@ def main() -> None:
         with_values(text, {name: {"offset": each.offset} for name, each in zip(robot.names, given, strict=True)})
         angles = known_angles(given, robot.names, options.angles)
         with described_robot() as (_, urdf):
-            words = positive_turns(urdf, angles, robot.names)
+            words = foot_motions(urdf, angles, robot.names)
         joints = [Zeroed(*each) for each in zip(robot.names, given, angles, words, strict=True)]
         found = find_zeros(joints, robot, Questions(signals.going_on))
     if path.read_text(encoding="utf-8") != text:

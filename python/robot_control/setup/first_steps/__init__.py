@@ -1,0 +1,1 @@
+"""first_steps.py: the first contact with a real robot on legs."""
