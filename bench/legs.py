@@ -41,8 +41,10 @@ PARTS = (
     "walking_replayed",
     "switches",
     "disturbances",
+    "kicks",
     "push_limits",
     "faults",
+    "faults_uneven",
     "walking_hours",
     "walking_silent",
     "leaning_walks",
@@ -65,7 +67,9 @@ SEEDS = {
     "walking_replayed": 4,
     "switches": 24,
     "disturbances": 24,
+    "kicks": 24,
     "faults": 20,
+    "faults_uneven": 20,
     "walking_hours": 12,
     "leaning_walks": 84,
     "weak_hips": 50,
@@ -143,6 +147,8 @@ BOUNDS = {
     "tilt while gaits change": 0.3,  # rad
     "dip of the speed while gaits change": 0.3,
     "pushed over": 0.02,
+    "turned over, kicks": 0.05,
+    "not caught, kicks": 0.05,
     "tilt with a silent ": 0.15,  # rad
     "stops in an hour": 0,
     "time with a warning in an hour": 0,  # s

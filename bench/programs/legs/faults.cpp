@@ -37,14 +37,13 @@ bool names(const Permit& permit, const Fault& fault) {
   return (permit.first_cause & kNoNames) == 0 && permit.evidence[0].joint == fault.joint;
 }
 
-}  // namespace
-
-void faults(const LegModel& model, std::uint64_t seed, WorstValues& worst) {
+void faults_on(const LegModel& model, const Parameters& parameters, const std::string& ground, std::uint64_t seed,
+               WorstValues& worst) {
   const double period = kGaits[gait_named("trot")].scaled(model.leg_length()).period;
   Request trot = stance({ModeKind::kGait, gait_named("trot")});
   trot.twist.linear[0] = 0.5;
   for (const Fault& fault : faults_of(model)) {
-    QuadrupedLoop robot(model, walking_parameters(seed));
+    QuadrupedLoop robot(model, parameters);
     robot.wait(0.3);
     robot.run(kHealthy + period * static_cast<double>(seed % kPhases) / kPhases, trot);
     robot.clear();
@@ -57,16 +56,32 @@ void faults(const LegModel& model, std::uint64_t seed, WorstValues& worst) {
     const bool walks = robot.permit().causes == 0 && robot.command().legged.phase == LegPhase::kWalking;
     const bool is_named = names(robot.permit(), fault) && stopped <= kNamed;
     const bool over = robot.tilt_now() > kTurnedOver;
-    worst.average("turned over by a fault", over ? 1 : 0, "of the faults");
-    worst.average("neither named nor walked through", walks || is_named ? 0 : 1, "of the faults");
-    worst.average("neither, " + part_of(fault) + " " + fault.kind, walks || is_named ? 0 : 1, "of the faults");
+    worst.average("turned over by a fault" + ground, over ? 1 : 0, "of the faults");
+    worst.average("neither named nor walked through" + ground, walks || is_named ? 0 : 1, "of the faults");
+    worst.average("neither, " + part_of(fault) + " " + fault.kind + ground, walks || is_named ? 0 : 1, "of the faults");
     if (over || !(walks || is_named))
-      std::fprintf(stderr, "%s, seed %llu, %s %s: %s, first %s of joint %d, after %.2f s, tilt %.2f rad\n",
-                   model.name.c_str(), static_cast<unsigned long long>(seed), fault.component.c_str(),
+      std::fprintf(stderr, "%s%s, seed %llu, %s %s: %s, first %s of joint %d, after %.2f s, tilt %.2f rad\n",
+                   model.name.c_str(), ground.c_str(), static_cast<unsigned long long>(seed), fault.component.c_str(),
                    fault.kind.c_str(), over ? "turned over" : "upright",
                    names_of(kStopCauseNames, robot.permit().first_cause).c_str(),
                    static_cast<int>(robot.permit().evidence[0].joint), stopped, robot.tilt);
   }
+}
+
+}  // namespace
+
+void faults(const LegModel& model, std::uint64_t seed, WorstValues& worst) {
+  faults_on(model, walking_parameters(seed), "", seed, worst);
+}
+
+void faults_uneven(const LegModel& model, std::uint64_t seed, WorstValues& worst) {
+  Parameters slope = walking_parameters(seed), tiles = slope;
+  slope.plant.slope = kPi / 18;
+  slope.plant.slope_heading = kPi / 4 * static_cast<double>(seed % 8);
+  tiles.plant.terrain = {.kind = TerrainKind::kRough, .height = 0.06 * model.leg_length() / kReferenceLeg,
+                         .length = 0.25, .count = 24};
+  faults_on(model, slope, ", slope of 10 deg", seed, worst);
+  faults_on(model, tiles, ", tiles of 3 cm", seed, worst);
 }
 
 }  // namespace robot_control::bench

@@ -136,6 +136,33 @@ void disturbances(const LegModel& model, std::uint64_t seed, WorstValues& worst)
   disturbed(model, usual, "masses 5 % more", worst, 1.05);
 }
 
+void kicks(const LegModel& model, std::uint64_t seed, WorstValues& worst) {
+  constexpr int kDirections = 8, kPhases = 24;
+  constexpr double kImpulse = 20, kDuration = 0.1;  // N·s on a robot of 12.7 kg, s
+  const Gait gait = kGaits[gait_named("trot")].scaled(model.leg_length());
+  for (const double speed : {0.3, 1.0}) {
+    for (int i = 0; i < kDirections; ++i) {
+      Parameters parameters = walking_parameters(seed);
+      parameters.plant.sensor_errors = ErrorLevel::kField;
+      const double direction = 2 * kPi * i / kDirections, force = kImpulse / kDuration * model.mass / 12.7;
+      parameters.plant.push_x = force * std::cos(direction);
+      parameters.plant.push_y = force * std::sin(direction);
+      parameters.plant.push_start = kBegin + gait.period * static_cast<double>(seed % kPhases) / kPhases;
+      parameters.plant.push_duration = kDuration;
+      QuadrupedLoop robot(model, parameters);
+      robot.wait(0.3);
+      robot.run(kBegin + 3, trot(speed));
+      const bool over = robot.tilt > kTurnedOver, stops = stopped(robot) != 0;
+      worst.average("turned over, kicks at " + std::to_string(speed).substr(0, 3) + " m/s", over ? 1 : 0, "of the kicks");
+      worst.average("not caught, kicks at " + std::to_string(speed).substr(0, 3) + " m/s", over || stops ? 1 : 0,
+                    "of the kicks");
+      if (over || stops)
+        std::fprintf(stderr, "%s, %.1f m/s, %d deg, seed %llu: %s\n", model.name.c_str(), speed, 45 * i,
+                     static_cast<unsigned long long>(seed), robot.causes().c_str());
+    }
+  }
+}
+
 void push_limits(const LegModel& model, std::uint64_t seed, WorstValues& worst) {
   constexpr int kDirections = 8, kPhases = 24, kSteps = 10;
   constexpr double kStep = 5, kDuration = 0.1;  // N·s on a robot of 12.7 kg, s

@@ -60,12 +60,17 @@ void switches(const LegModel& model, std::uint64_t seed, WorstValues& worst);
 /// or weak, and with masses that are not the described ones. The seed chooses one of 24 phases of the gait for the
 /// push.
 void disturbances(const LegModel& model, std::uint64_t seed, WorstValues& worst);
+/// Kicks of 20 N·s on 12.7 kg within 0.1 s, in eight directions, against trots of 0.3 and 1.0 m/s, with the errors of the
+/// field. The seed chooses one of 24 phases of the gait.
+void kicks(const LegModel& model, std::uint64_t seed, WorstValues& worst);
 /// The largest push of 0.1 s, in steps of 5 N·s on 12.7 kg, with which and with all smaller ones a robot walks on.
 /// Eight directions, 0° to the front and 90° to the left, for each gait.
 void push_limits(const LegModel& model, std::uint64_t seed, WorstValues& worst);
 /// A trot of 0.5 m/s with each fault of each encoder, of each motor and of the IMU. The seed chooses one of 20 phases
 /// of the gait. A fault is named if the first cause of the stop comes in time and names its joint, or the IMU.
 void faults(const LegModel& model, std::uint64_t seed, WorstValues& worst);
+/// The same on a slope of 10° and on tiles of ±3 cm.
+void faults_uneven(const LegModel& model, std::uint64_t seed, WorstValues& worst);
 /// Ten minutes of walking with random gaits and twists, in stretches between two resets of the odometry.
 void walking_hours(const LegModel& model, std::uint64_t seed, WorstValues& worst);
 /// The controller is silent for 5 … 19 cycles at 200 phases of a trot of 1.0 m/s.

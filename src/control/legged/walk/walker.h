@@ -10,8 +10,9 @@
 ///   contact   a foot that touches the ground in the second half of its swing, for kTouchTime within kTouchRadius, bears
 ///             from then on. A foot that is late is pushed down by the force that it is to bear, which fades from
 ///             kReachSpeed to twice that: it meets lower ground without a blow
-///   riser     a foot that stays kMetRiser behind its path over ground, in the part kFirstLift … kLastLift of its swing, has
-///             met a riser. It goes kBackOff back, and over the riser by another path from there to its foothold
+///   riser     a foot that is kMetRiser behind its path over ground, and is held there, has met a riser in the part
+///             kFirstLift … kLastLift of its swing. A push moves the path away from a foot that is not held. The foot
+///             goes kBackOff back, and over the riser by another path from there to its foothold
 ///   ground    is the plane through the places where the feet bore last. So a foot lands where the others stand,
 ///             whatever the error of the estimated tilt
 ///   target    moves from where the robot was, with the twist, its velocity through a low pass of half a period: a body

@@ -12,6 +12,7 @@ namespace {
 
 constexpr double kReachSpeed = 0.8;  // m/s, from which on a foot that bears is pushed down with less force
 constexpr double kMetRiser = 0.03;   // m, by which a foot stays behind its path
+constexpr double kHeldShare = 0.25;  // of its path's speed, below which a foot is held
 constexpr double kBackOff = 0.02;    // m, from the riser
 constexpr double kFirstLift = 0.1;   // of the swing
 constexpr double kLastLift = 0.6;    // of the swing
@@ -68,8 +69,13 @@ void Walker::lift_again(State& state, const WalkInput& input, const WalkingBody&
   for (std::size_t leg = 0; leg < kLegs; ++leg) {
     const double part = gait(state).swung(leg, state.phase);
     if (state.bears[leg] != 0 || part > kLastLift || part - state.departed[leg] < kFirstLift) continue;
-    const Eigen::Vector3d behind = path(state, input, body, leg).place - body.feet[leg];
-    if (behind.head<2>().norm() < kMetRiser * scale) continue;
+    const SwingPoint point = path(state, input, body, leg);
+    const Eigen::Vector3d behind = point.place - body.feet[leg];
+    const Eigen::Map<const Eigen::Vector3d> rates(&body.rates[kLegJoints * leg]);
+    const Eigen::Vector3d moves =
+        body.velocity + body.rate.cross(body.feet[leg]) + body.turned * body.jacobians[leg] * rates;
+    const bool held = moves.head<2>().dot(behind.head<2>()) < kHeldShare * point.velocity.head<2>().dot(behind.head<2>());
+    if (behind.head<2>().norm() < kMetRiser * scale || !held) continue;
     Map(state.departs[leg].data()) =
         body.feet[leg] - kBackOff * scale * Eigen::Vector3d(behind.x(), behind.y(), 0).normalized();
     state.departed[leg] = part;
