@@ -389,6 +389,13 @@ class ClosedLoop:
         return self._loop.smooth_speed
 
     @property
+    def warning(self) -> str:
+        """What is suspicious about the machine, as in `/diagnostics`: a drive in fault, with its remedy. Empty if nothing
+        is.
+        """
+        return self._loop.warning
+
+    @property
     def paused(self) -> bool:
         """The last value that `set_pause` set."""
         return self._paused

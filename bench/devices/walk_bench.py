@@ -1,0 +1,85 @@
+"""The table of `scripts/bench devices --robot quadbot`: losses at each phase of a stride, and long walks on a disturbed
+bus or line, by drive.
+
+scripts/bench devices losses --robot quadbot --first 7 --runs 1
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from bench.devices.disturbed_walk import DisturbedWalk, run_walk, together
+from bench.devices.walk_loss import LOSSES, PHASES, WalkLoss, WalkOutcome, run_loss
+from bench.faults.sequence_judge import OVER_LIMIT
+from bench.rows import Result, Row, Say, bounded, judged, plain
+from bench.runs.runner import Runner
+
+WALK_TIME = 1800.0  # s of each drive, in WALKS parts
+WALKS = 6
+STATES = ("ok", "disturbed")
+ODOMETRY = 1.5  # times the error of an undisturbed walk
+
+
+def bench(parts: Sequence[str], first: int, runs: int | None, say: Say, runner: Runner) -> Result:
+    """The table, and whether every figure keeps its bound.
+
+    Args:
+        parts: what is measured, of losses and disturbed.
+        first: the first phase and seed.
+        runs: phases of each loss; the walks last `runs`/`PHASES` of `WALK_TIME`. None: `PHASES`.
+        say: receives progress and every broken rule.
+        runner: where the trials run.
+    """
+    phases = runs or PHASES
+    rows: list[Row] = []
+    if "losses" in parts:
+        rows += loss_rows(first, phases, say, runner)
+    if "disturbed" in parts:
+        rows += walk_rows(first, WALK_TIME * min(1.0, phases / PHASES), say, runner)
+    return judged("devices", rows)
+
+
+def loss_rows(first: int, phases: int, say: Say, runner: Runner) -> list[Row]:
+    """Per drive and kind of loss: those that broke a rule, and the latest name; per drive the greatest tilt."""
+    kinds = [(drive, kind) for drive, losses in LOSSES.items() for kind in losses]
+    trials = [WalkLoss(*of, seed) for of in kinds for seed in range(first, first + phases)]
+    outcomes: dict[tuple[str, str], list[WalkOutcome]] = {of: [] for of in kinds}
+    for trial, outcome in zip(trials, runner.outcomes(run_loss, trials, say, chunk=5), strict=True):
+        outcomes[trial.drive, trial.kind].append(outcome)
+        for rule in outcome.broken:
+            say(f"{trial}: {rule}")
+    rows = []
+    for drive, losses in LOSSES.items():
+        for kind, loss in losses.items():
+            found = outcomes[drive, kind]
+            name = f"{drive}, {kind}:"
+            rows.append(bounded(f"{name} losses that broke a rule", sum(bool(each.broken) for each in found), "", 0))
+            rows.append(bounded(f"{name} until it is named", 1e3 * max(e.named for e in found), "ms", 1e3 * loss.latest))
+        tilt = max(each.tilt for kind in losses for each in outcomes[drive, kind])
+        rows.append(bounded(f"{drive}: greatest tilt", tilt, "rad", OVER_LIMIT))
+    return rows
+
+
+def walk_rows(first: int, seconds: float, say: Say, runner: Runner) -> list[Row]:
+    """Per drive: walks that a stop latched, gaps beyond the hold, and the error of the odometry."""
+    seeds = range(first, first + WALKS)
+    walks = [DisturbedWalk(drive, state, seconds / WALKS, seed) for drive in LOSSES for state in STATES for seed in seeds]
+    found = iter(runner.outcomes(run_walk, walks, say))
+    rows = []
+    for drive in LOSSES:
+        undisturbed, disturbed = (together([next(found) for _ in seeds]) for _ in STATES)
+        for state, walk in zip(STATES, (undisturbed, disturbed), strict=True):
+            if walk.causes:
+                say(f"{drive}, {state}: {', '.join(walk.causes)} within {walk.walked:.0f} s")
+            rows.append(bounded(f"{drive}, {state}: stops that latched", len(walk.causes), "", 0))
+        rows += [
+            plain(f"{drive}, disturbed: gaps beyond the hold", disturbed.gaps, ""),
+            plain(f"{drive}, disturbed: longest gap", 1e3 * disturbed.longest, "ms"),
+            bounded(
+                f"{drive}, disturbed: error of the odometry, of the undisturbed",
+                disturbed.odometry / undisturbed.odometry,
+                "",
+                ODOMETRY,
+            ),
+        ]
+    return rows
