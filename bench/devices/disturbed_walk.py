@@ -12,7 +12,7 @@ from robot_control.loop.drives import DRIVES
 from robot_control.loop.signal_names import causes_in
 
 from bench.devices.disturbed_drive import SEGMENT, rms, travel
-from bench.devices.walk_loss import DATAGRAM_RATE, KNEE, SPEED, walker_behind
+from bench.devices.walk_loss import KNEE, SPEED, walker_behind
 
 HOLD = 4  # cycles without a sample, beyond what the gate holds a command
 COLUMNS = ("permit_causes", f"{KNEE}_age", *(f"{of}_{axis}" for of in ("truth", "estimate") for axis in ("x", "y", "yaw")))
@@ -43,7 +43,7 @@ class WalkFigures:
 
 def run_walk(walk: DisturbedWalk) -> WalkFigures:
     """Runs one walk, until a stop latches."""
-    loop = walker_behind(walk.drive, walk.seed, DATAGRAM_RATE)
+    loop = walker_behind(walk.drive, walk.seed)
     loop.run(1.0)
     loop.inject_fault("bus" if DRIVES[walk.drive].driver == "can" else "line", walk.state)
     causes: list[str] = []

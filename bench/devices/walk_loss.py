@@ -4,7 +4,7 @@ The loss comes at one of `PHASES` phases of a stride, while the request goes on.
 
     named    its stop latches and the driver's words name it; only where samples cease, encoders_lost may stop before
     upright  the body never leans by `OVER`
-    folds    the robot lies and rests `FOLD_TIME` after the loss
+    folds    from `FOLD_TIME` after the loss on the robot lies and rests, as in bench/faults/sequence_judge.py
 """
 
 from __future__ import annotations
@@ -20,16 +20,19 @@ from robot_control.loop.drives import DRIVES
 from robot_control.loop.signal_names import bits_in, mask_of
 
 from bench.devices.loss_trial import first
-from bench.faults.sequence_judge import FOLD_TIME, OVER_LIMIT, STANDING_SPEED
+from bench.faults.sequence_judge import FOLD_TIME, MEAN_TIME, OVER_LIMIT, STANDING_SPEED
 
 SPEED = 0.5  # m/s
-RISE_TIME = 4.0  # s, from the rest until it trots evenly
+RISE_TIME = 3.0  # s, from the rest until it trots evenly
 STRIDE = 0.5  # s, of the trot at this speed
 PHASES = 20
-REST_TIME = 0.3  # s
 CAN_RATE, DATAGRAM_RATE = 1000.0, 500.0  # Hz
 LOSS, FAULT = 0.02, 0.3  # s until it is named
+LYING = 0.1  # m above the place where it lay; one leg may hold it up
+COLUMNS = ("permit_causes", "truth_tilt", "truth_z", "truth_linear", "truth_lateral")
+EVERY_JOINT = "every joint"
 KNEE = "front_left_knee_joint"
+OF_KNEE = f"{KNEE} (node 3): fault; the drive"
 ENCODERS_LOST = mask_of("StopCause", "encoders_lost")
 
 
@@ -47,11 +50,11 @@ class Loss:
 CAN = {
     "bus gone": Loss("bus", "off", LOSS, "is silent"),
     "cable of a leg": Loss("can0", "off", LOSS, "is silent"),
-    "motor silent": Loss(KNEE, "off", LOSS, "is silent"),
-    "motor restarts": Loss(KNEE, "reset", LOSS, "is silent"),
+    "motor silent": Loss(KNEE, "off", LOSS, f"{OF_KNEE} is silent"),
+    "motor restarts": Loss(KNEE, "reset", LOSS, f"{OF_KNEE} is silent"),
     "second writer": Loss("can0", "second_writer", LOSS, "commanded by another program"),
-    "motor hot": Loss(KNEE, "hot", FAULT, "is too hot"),
-    "battery empty": Loss(KNEE, "under_voltage", FAULT, "reports an error"),
+    "motor hot": Loss(KNEE, "hot", FAULT, f"{OF_KNEE} is too hot"),
+    "battery empty": Loss(EVERY_JOINT, "under_voltage", FAULT, "under-voltage"),
 }
 UNITREE = {
     "line gone": Loss("line", "cut", LOSS, "is silent"),
@@ -96,11 +99,10 @@ class WalkOutcome:
     broken: tuple[str, ...]
 
 
-def walker_behind(drive: str, seed: int, rate: float | None = None) -> ClosedLoop:
-    """Quadbot behind these drives, at the rate in Hz for which its drive file is made."""
+def walker_behind(drive: str, seed: int) -> ClosedLoop:
+    """Quadbot behind these drives, at the rate for which its drive file is made."""
     driver = DRIVES[drive].driver
-    own_rate = CAN_RATE if driver == "can" else DATAGRAM_RATE
-    robot = {"driver": driver, "rate": rate or own_rate}
+    robot = {"driver": driver, "rate": CAN_RATE if driver == "can" else DATAGRAM_RATE}
     drives = share_file(f"config/drives/{drive}.yaml")
     return ClosedLoop({"robot": robot}, seed=seed, urdf=share_file("urdf/quadbot.urdf"), drives=drives)
 
@@ -109,10 +111,12 @@ def run_loss(trial: WalkLoss) -> WalkOutcome:
     """Runs one trial."""
     loss = LOSSES[trial.drive][trial.kind]
     loop = walker_behind(trial.drive, trial.seed)
-    loop.run(1.0)
-    loop.run(RISE_TIME + STRIDE * trial.seed / PHASES, (SPEED, 0.0))
-    loop.inject_fault(loss.component, loss.fault)
-    log = loop.run(FOLD_TIME + REST_TIME, (SPEED, 0.0))
+    loop.run(1.0, columns=COLUMNS)
+    loop.run(RISE_TIME + STRIDE * trial.seed / PHASES, (SPEED, 0.0), COLUMNS)
+    joints = [joint["name"] for joint in loop.robot["joints"]]
+    for component in joints if loss.component == EVERY_JOINT else [loss.component]:
+        loop.inject_fault(component, loss.fault)
+    log = loop.run(FOLD_TIME + MEAN_TIME, (SPEED, 0.0), COLUMNS)
     causes = log["permit_causes"].astype(np.int64)
     named = first(causes & mask_of("StopCause", loss.cause) != 0)
     before = int(np.bitwise_or.reduce(causes[:named], initial=0))
@@ -128,7 +132,8 @@ def broken_rules(loss: Loss, loop: ClosedLoop, log: Log, before: int) -> Iterato
         yield f"named: {loop.warning}"
     if log["truth_tilt"].max() > OVER_LIMIT:
         yield "upright"
-    rest = round(REST_TIME / loop.period)
-    speed = max(np.abs(log[f"truth_{name}"][-rest:]).max() for name in ("linear", "angular"))
-    if speed > STANDING_SPEED:
-        yield f"folds: {speed:.2f}"
+    last = round(MEAN_TIME / loop.period)
+    speed = np.hypot(*(log[f"truth_{way}"][-last:].mean() for way in ("linear", "lateral")))
+    height = log["truth_z"][-1]
+    if speed > STANDING_SPEED or height > LYING:
+        yield f"folds: {speed:.2f} m/s at {height:.2f} m"
