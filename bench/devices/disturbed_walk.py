@@ -1,5 +1,6 @@
-"""A long walk of quadbot behind simulated drives on a disturbed bus or line, in virtual time: latched stops, the longest
-gap between two samples, and the error of the odometry.
+"""A long walk of quadbot behind simulated drives on a disturbed bus or line, in virtual time.
+
+Figures are the stops that latched, the longest gap between two samples, and the error of the odometry.
 """
 
 from __future__ import annotations
@@ -15,7 +16,11 @@ from bench.devices.disturbed_drive import SEGMENT, rms, travel
 from bench.devices.walk_loss import KNEE, SPEED, walker_behind
 
 HOLD = 4  # cycles without a sample, beyond what the gate holds a command
-COLUMNS = ("permit_causes", f"{KNEE}_age", *(f"{of}_{axis}" for of in ("truth", "estimate") for axis in ("x", "y", "yaw")))
+COLUMNS = (
+    "permit_causes",
+    f"{KNEE}_age",
+    *(f"{of}_{axis}" for of in ("truth", "estimate") for axis in ("x", "y", "yaw")),
+)
 
 
 @dataclass(frozen=True)

@@ -1,5 +1,6 @@
-"""The table of `scripts/bench devices --robot quadbot`: losses at each phase of a stride, and long walks on a disturbed
-bus or line, by drive.
+"""The table of `scripts/bench devices --robot quadbot`, by drive.
+
+It has losses at each phase of a stride, and long walks on a disturbed bus or line.
 
 scripts/bench devices losses --robot quadbot --first 7 --runs 1
 """
@@ -14,8 +15,9 @@ from bench.faults.sequence_judge import OVER_LIMIT
 from bench.rows import Result, Row, Say, bounded, judged, plain
 from bench.runs.runner import Runner
 
-WALK_TIME = 300.0  # s
-WALKS = {"ok": 1, "disturbed": 6}  # of each drive
+WALK_TIME = 1800.0  # s of each drive, in WALKS parts
+WALKS = 6
+STATES = ("ok", "disturbed")
 ODOMETRY = 1.5  # times the error of an undisturbed walk
 
 
@@ -53,7 +55,9 @@ def loss_rows(first: int, phases: int, say: Say, runner: Runner) -> list[Row]:
             found = outcomes[drive, kind]
             name = f"{drive}, {kind}:"
             rows.append(bounded(f"{name} losses that broke a rule", sum(bool(each.broken) for each in found), "", 0))
-            rows.append(bounded(f"{name} until it is named", 1e3 * max(e.named for e in found), "ms", 1e3 * loss.latest))
+            rows.append(
+                bounded(f"{name} until it is named", 1e3 * max(e.named for e in found), "ms", 1e3 * loss.latest)
+            )
         tilt = max(each.tilt for kind in losses for each in outcomes[drive, kind])
         rows.append(bounded(f"{drive}: greatest tilt", tilt, "rad", OVER_LIMIT))
     return rows
@@ -61,11 +65,9 @@ def loss_rows(first: int, phases: int, say: Say, runner: Runner) -> list[Row]:
 
 def walk_rows(first: int, seconds: float, say: Say, runner: Runner) -> list[Row]:
     """Per drive: walks that a stop latched, gaps beyond the hold, and the error of the odometry."""
+    seeds = range(first, first + WALKS)
     walks = [
-        DisturbedWalk(drive, state, seconds, first + i)
-        for drive in LOSSES
-        for state, count in WALKS.items()
-        for i in range(count)
+        DisturbedWalk(drive, state, seconds / WALKS, seed) for drive in LOSSES for state in STATES for seed in seeds
     ]
     figures: dict[tuple[str, str], list[WalkFigures]] = {}
     for walk, found in zip(walks, runner.outcomes(run_walk, walks, say), strict=True):
@@ -74,7 +76,7 @@ def walk_rows(first: int, seconds: float, say: Say, runner: Runner) -> list[Row]
             say(f"{walk}: {', '.join(found.causes)} within {found.walked:.0f} s")
     rows = []
     for drive in LOSSES:
-        undisturbed, disturbed = (together(figures[drive, state]) for state in WALKS)
+        undisturbed, disturbed = (together(figures[drive, state]) for state in STATES)
         name = f"{drive}, disturbed:"
         ratio = disturbed.odometry / undisturbed.odometry
         rows += [

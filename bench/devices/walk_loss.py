@@ -38,7 +38,7 @@ ENCODERS_LOST = mask_of("StopCause", "encoders_lost")
 
 @dataclass(frozen=True)
 class Loss:
-    """What is injected, s until it is named, words of the driver, and the cause of the stop."""
+    """A loss has a fault that is injected, s until it is named, words of the driver, and the cause of its stop."""
 
     component: str
     fault: str

@@ -390,9 +390,7 @@ class ClosedLoop:
 
     @property
     def warning(self) -> str:
-        """What is suspicious about the machine, as in `/diagnostics`: a drive in fault, with its remedy. Empty if nothing
-        is.
-        """
+        """The machine's own warning, as in `/diagnostics`, such as a drive in fault with its remedy; "" without one."""
         return self._loop.warning
 
     @property

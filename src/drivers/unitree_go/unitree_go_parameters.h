@@ -15,8 +15,8 @@ inline std::vector<Word> words_of(GoRobot) {
   return {{"go2", GoRobot::kGo2}, {"b2", GoRobot::kB2}};
 }
 
-/// s without a new state, after which the driver stops: 20 ms from a loss on, of which a state under way takes 2 ms and
-/// a cycle 2 ms. The robot sends without being asked, so its line is silent for so long more rarely than that of a Go1.
+/// s without a new state, after which the driver stops. From a loss on it is 20 ms, with 2 ms of a state under way and
+/// a cycle of 2 ms. A Go2 sends without being asked, so its line is silent for so long more rarely than that of a Go1.
 inline constexpr double kGoSilence = 0.016;
 
 struct UnitreeGoLine {

@@ -1,4 +1,4 @@
-"""Losses behind the simulated drives of a robot that trots: one phase of those of scripts/bench devices --robot quadbot."""
+"""Losses behind the simulated drives of a robot that trots: one phase of scripts/bench devices --robot quadbot."""
 
 import pytest
 from robot_control.loop.drives import DRIVES

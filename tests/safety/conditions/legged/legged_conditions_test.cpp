@@ -629,7 +629,7 @@ TEST_F(SwingingMotorTest, IsNotJudgedWhileTheDriverBrakesOrTheGateClamps) {
   EXPECT_LT(swing(0, 0), 0.3);
 }
 
-/// Of 31 samples 30 are lost, in which a knee turns by 0.14 rad. The limit is 0.09 rad.
+/// A knee turns by 0.14 rad while 30 samples are lost. The limit is 0.09 rad.
 TEST_F(WalkingConditionsTest, ASampleThatIsRepeatedIsNoStuckEncoder) {
   std::array<JointSample, kMaxJoints> sampled{};
   const double seen = walk(2, [&, lost = 30](double) mutable {
