@@ -641,6 +641,16 @@ TEST_F(WalkingConditionsTest, ASampleThatIsRepeatedIsNoStuckEncoder) {
   EXPECT_EQ(seen, 2) << causes(Reaction::kBrake);
 }
 
+TEST_F(WalkingConditionsTest, AStuckEncoderIsNamedInItsSwingWhereEverySecondSampleIsLost) {
+  const double seen = walk(2, [&, held = sensors_.joints[8].position, lost = false](double t) mutable {
+    if (t > 0.6) sensors_.joints[8].position = held;
+    sensors_.joints[8].age_ns = lost ? std::llround(1.0e9 * kPeriod) : 0;
+    lost = !lost;
+  });
+  EXPECT_LT(seen, 1.1);
+  EXPECT_EQ(causes(Reaction::kBrake), "encoder_stuck");
+}
+
 /// The state of a noisy gyro moves where a foot is to land.
 TEST_F(WalkingConditionsTest, ACommandThatJumpsInEachCycleIsNoStuckEncoder) {
   bool aside = false;
