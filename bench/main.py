@@ -27,7 +27,7 @@ from bench.drives.wheel_command import WHEEL_COMMANDS
 from bench.faults.fault_sequence import ALL_RUNS
 from bench.navigation import bench as navigation
 from bench.release.sender_sequences import sender_rows
-from bench.robot_corpus import DIFFBOT, OWN
+from bench.robot_corpus import DIFFBOT, OWN, QUADBOT
 from bench.rows import Result
 from bench.runs import seed_programs
 from bench.runs.address import check_address
@@ -75,7 +75,7 @@ PARTS = {
 NAMES = MEASURED + JUDGED
 SEED_PROGRAMS = {"limiter": 1_000_000, "release": 10_000, "bags": 10_000}  # seeds; a minute at most on two cores
 BY_WHEEL_COMMAND = ("campaign", "driving", "drive", "release")
-BY_ROBOT = ("campaign", "navigation", "processes", "record", "release")
+BY_ROBOT = ("campaign", "devices", "navigation", "processes", "record", "release")
 ON_CLUSTERS = ("campaign", "devices", "driving", "odometry", "tuning", *SEED_PROGRAMS)
 
 
@@ -142,17 +142,24 @@ def _odometry(bench: Any, given: argparse.Namespace, runner: Runner) -> Result: 
     return result
 
 
+def _devices(bench: Any, given: argparse.Namespace, runner: Runner) -> Result:  # noqa: ANN401 (a module)
+    parts = _parts_of("devices", given)
+    if given.robot == QUADBOT:
+        legs_bench = importlib.import_module("bench.devices.walk_bench")
+        on_legs: Result = legs_bench.bench(parts, given.first, given.runs, say, runner)
+        return on_legs
+    result: Result = bench.bench(
+        parts, given.first, given.runs or bench.ALL_RUNS, say, runner, program=programs_of(given)
+    )
+    return result
+
+
 TRIALS: dict[str, tuple[str, Callable[[Any, argparse.Namespace, Runner], Result]]] = {
     "campaign": (
         "faults.campaign",
         lambda m, g, runner: m.bench(g.first, g.runs or ALL_RUNS, say, runner, g.wheel_command, robot=g.robot),
     ),
-    "devices": (
-        "devices.bench",
-        lambda m, g, runner: m.bench(
-            _parts_of("devices", g), g.first, g.runs or m.ALL_RUNS, say, runner, program=programs_of(g)
-        ),
-    ),
+    "devices": ("devices.bench", _devices),
     "driving": ("drives.normal_driving", lambda m, g, runner: m.bench(g.share, say, runner, g.errors, g.wheel_command)),
     "odometry": ("odometry.bench", _odometry),
     "recordings": ("recordings", lambda m, g, _: m.bench(_parts_of("recordings", g), say, programs_of(g), g.file)),

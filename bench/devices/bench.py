@@ -1,5 +1,5 @@
 """The table of `scripts/bench devices`: losses, failing answers, silence on a slope, and disturbed buses and lines, by
-dialect.
+dialect. With `--robot quadbot` losses and disturbed walks of a robot on legs, by drive.
 
 scripts/bench devices --first 40 --runs 1
 """

@@ -4,7 +4,7 @@
 /// are those of its steady part, in which both encoders and both contacts correct it in every cycle. The reference is a
 /// fixed arithmetic kernel (a chain of dependent multiply-adds), interleaved block by block. The cycle of motor drives
 /// on CAN is compared with bare system calls (can_cycle.h). That of boards on a serial line is compared with what is
-/// allowed (serial_cycle.h).
+/// allowed (serial_cycle.h), as is that of the motors of legs (leg_cycle.h).
 
 #include <filesystem>
 #include <string>
@@ -12,6 +12,7 @@
 
 #include "bench/programs/can_cycle.h"
 #include "bench/programs/kernel.h"
+#include "bench/programs/leg_cycle.h"
 #include "bench/programs/rows.h"
 #include "bench/programs/serial_cycle.h"
 #include "control/wheeled/drive_controller.h"
@@ -22,6 +23,7 @@
 #include "estimation/wheeled/estimator.h"
 #include "gate/gate.h"
 #include "loop/gate_setup.h"
+#include "robots/robot_kind.h"
 #include "rt/clock.h"
 #include "safety/conditions/wheeled/wheeled_conditions.h"
 #include "simulation/closed_loop.h"
@@ -91,6 +93,19 @@ void add(std::vector<Row>& rows, const std::string& name, const Timing& timing) 
   rows.push_back({name + " allocations", static_cast<double>(timing.allocations), "per block of 2000", 0, "none", 0});
 }
 
+/// The drivers of legs, each with its motors in quadbot.
+void add_leg_cycles(std::vector<Row>& rows, const std::filesystem::path& config, Parameters parameters) {
+  parameters.urdf = config.parent_path() / "urdf" / "quadbot.urdf";
+  const std::unique_ptr<Robot> robot = make_robot(parameters);
+  const DriveMotors motors = drive_motors(robot->machine(), robot->brakes());
+  for (const DriveRow& row : kDriveRows) {
+    if (row.command != "impedance") continue;
+    const std::string file = config / "drives" / (std::string(row.name) + ".yaml");
+    const auto read = read_drive_file(file, row.driver, {.joints = motors.joints, .rate = parameters.loop.rate});
+    add_leg_cycle(rows, std::string(row.name), *read, motors);
+  }
+}
+
 void run(const std::string& path) {
   const Parameters parameters = read_parameters(path);
   ClosedLoop loop(parameters);
@@ -146,16 +161,17 @@ void run(const std::string& path) {
                              permit);
               }));
 
-  const std::filesystem::path drives = std::filesystem::path(path).parent_path() / "drives";
+  const std::filesystem::path config = std::filesystem::path(path).parent_path();
   std::vector<std::string> joints;
   for (const WheelModel& wheel : robot.wheels) joints.push_back(robot.joints[wheel.joint].name);
   for (const DriveRow& row : kDriveRows) {
-    if (row.command == "impedance") continue;  // of legs
-    const std::string file = drives / (std::string(row.name) + ".yaml");
+    if (row.command == "impedance") continue;
+    const std::string file = config / "drives" / (std::string(row.name) + ".yaml");
     const auto read = read_drive_file(file, row.driver, {.joints = joints, .rate = parameters.loop.rate});
     if (const auto* can = dynamic_cast<const CanDriveFile*>(read.get()))
       add_can_cycle(rows, std::string(row.name), *can, robot, period);
   }
+  add_leg_cycles(rows, config, parameters);
   add_serial_cycle<BoardMachine>(rows, "board", {.mode = JointMode::kEffort, .effort = 0});
   add_serial_cycle<RoboclawMachine>(rows, "roboclaw", {.mode = JointMode::kDriveVelocity, .velocity = 5});
   print("step", rows);

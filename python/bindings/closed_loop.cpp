@@ -197,6 +197,7 @@ void bind_closed_loop(py::module_& module) {
       .def_property_readonly("robot", [](const ClosedLoop& loop) { return describe(loop.robot().machine()); })
       .def_property_readonly(
           "gaits", [](const ClosedLoop& loop) { return gait_words(all_gaits(loop.parameters().leg_control.gaits)); })
+      .def_property_readonly("warning", &ClosedLoop::warning)
       .def_property_readonly("fresh", &ClosedLoop::fresh)
       .def_property_readonly("cycle", &ClosedLoop::cycle)
       .def_property_readonly("time", &ClosedLoop::time)

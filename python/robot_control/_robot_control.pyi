@@ -48,6 +48,7 @@ class ClosedLoop:
     def stop_distance(self, speed: float, emergency: bool) -> float: ...
     fresh: bool
     smooth_speed: float
+    warning: str
     period: float
     robot: dict[str, Any]
     gaits: list[str]

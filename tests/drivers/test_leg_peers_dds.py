@@ -25,8 +25,8 @@ REPORT = 24  # bytes before a state
 DOMAIN = 100 + os.getpid() % 100
 """of DDS; other tests on this machine have another one"""
 MOTORS = 20
-STOPPED = 0.022
-"""s: the driver's max_silence of 18 ms and a cycle of 2 ms, and 2 ms of this machine"""
+STOPPED = 0.02
+"""s: the driver's max_silence of 16 ms and a cycle of 2 ms, and 2 ms of this machine"""
 FEW = 20
 
 

@@ -67,7 +67,7 @@ class ClosedLoop:
     move its legs   set_posture, set_gait, body_pose, foot_target, joint_targets
     keep a log      log_into, end_log
     copy it         clone
-    read it         scan, robot, units, time, cycle, period, paused, stop_distance, smooth_speed
+    read it         scan, robot, units, time, cycle, period, paused, stop_distance, smooth_speed, warning
 
     The same arguments and calls give the same bits, and the four nodes in lockstep give them, too. A pickle holds the
     arguments and the seed: it makes the same loop again, in any process. `ClosedLoops` runs many at once.
@@ -387,6 +387,11 @@ class ClosedLoop:
         `state_estimator.encoder_noise` (control/wheeled/smooth_speed.h).
         """
         return self._loop.smooth_speed
+
+    @property
+    def warning(self) -> str:
+        """The machine's own warning, as in `/diagnostics`, such as a drive in fault with its remedy; "" without one."""
+        return self._loop.warning
 
     @property
     def paused(self) -> bool:

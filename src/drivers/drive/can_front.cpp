@@ -74,7 +74,10 @@ void CanFront::run(std::span<const JointSample> joints) {
   for (Bus& bus : buses_) {
     for (bool more = true; more;) {
       const ReceivedFrames received = bus.line.receive({.time_ns = begin_ns, .utc_ns = begin_ns});
-      for (const ReceivedFrame& each : received.frames) bus.can.send(bus.host, each.frame);
+      for (const ReceivedFrame& each : received.frames) {
+        bus.can.send(bus.host, each.frame);
+        if (bus.has_second_writer) bus.carry(each.frame, begin_ns);
+      }
       more = received.more;
     }
   }
@@ -114,13 +117,14 @@ void CanFront::run_devices(std::span<const JointSample> joints) {
 void CanFront::Bus::inject(std::string_view kind, std::int64_t period_ns) {
   const bool disturbed = kind == "disturbed";
   fault = answer_fault(kind);
+  has_second_writer = kind == "second_writer";
   can.connect(host, kind != "off");
   can.lose(kind == "lossy" || disturbed ? kFrameLoss : 0);
   can.delay(disturbed ? period_ns : 0);
 }
 
 std::string CanFront::inject(std::string_view component, std::string_view kind) {
-  constexpr std::array<std::string_view, 4> kBusFaults{"ok", "off", "lossy", "disturbed"};
+  constexpr std::array<std::string_view, 5> kBusFaults{"ok", "off", "lossy", "disturbed", "second_writer"};
   const std::vector<Word> words = words_of(DeviceFault());
   const auto word = std::ranges::find(words, kind, &Word::text);
   const auto joint = std::ranges::find(joints_, component);
@@ -140,7 +144,7 @@ std::string CanFront::inject(std::string_view component, std::string_view kind) 
   }
   std::string problem = "component must be bus";
   for (const Bus& bus : buses_) problem += buses_.size() > 1 ? ", " + bus.address : "";
-  problem += std::string(" (with ok, off, lossy, disturbed, ") + kAnswerFaultWords + ")";
+  problem += std::string(" (with ok, off, lossy, disturbed, second_writer, ") + kAnswerFaultWords + ")";
   for (const std::string& name : joints_) problem += ", " + name;
   problem += "; kind";
   for (const Word& each : words) problem += " " + std::string(each.text);

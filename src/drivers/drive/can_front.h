@@ -3,9 +3,10 @@
 /// file expects it. Their clocks run fast and slow by kClockPpm in turn.
 ///
 /// `inject` takes a joint, the address of a bus, or `bus` for all of them as the component. The kinds of a bus are ok,
-/// off, lossy and disturbed. Off means that the driver's cable is out, lossy that frames are lost with the probability
-/// kFrameLoss. On a disturbed bus the others are late as well, by up to one period. With a word of AnswerFault this
-/// happens to the frames to the driver. A fault of a drive with two axes belongs to both.
+/// off, lossy, disturbed and second_writer. Off means that the driver's cable is out, lossy that frames are lost with
+/// the probability kFrameLoss. On a disturbed bus the others are late as well, by up to one period. A second writer
+/// sends each of the driver's frames as well. With a word of AnswerFault this happens to the frames to the driver. A
+/// fault of a drive with two axes belongs to both.
 
 #include <algorithm>
 #include <deque>
@@ -72,6 +73,7 @@ class CanFront final : public DeviceFront {
     std::size_t host;            // the driver's party on the simulated bus
     std::deque<Answer> answers;  // on their way to the driver
     AnswerFault fault = AnswerFault::kNone;
+    bool has_second_writer = false;
     std::mt19937_64 random;
   };
 

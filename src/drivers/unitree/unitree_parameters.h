@@ -22,10 +22,6 @@ struct LegObstacle {
   bool is_fault = false;  ///< false: a driver that starts waits until the obstacle is gone
 };
 
-/// s without a new state, after which the driver stops: 20 ms from the last one on, in cycles of 2 ms. A line that
-/// loses 5 % of the datagrams each way is silent for so long once in 1000 times 30 minutes.
-inline constexpr double kLeggedSilence = 0.018;
-
 template <class Robot>
 struct UnitreeJoint {
   static constexpr const char *kPlace = "motor", *kMotor = "motor";

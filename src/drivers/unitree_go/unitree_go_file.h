@@ -14,7 +14,7 @@ class UnitreeGoFile final : public FileOfJoints<DatagramDriveFile, UnitreeJoint<
   std::string_view line_block() const override { return "unitree_go"; }
   Keys line_keys() override { return keys(line_); }
   void check_line(GivenValues& given) const override;
-  double tolerated_silence() const override { return kLeggedSilence; }
+  double tolerated_silence() const override { return kGoSilence; }
   const std::string& address() const override { return line_.address; }
   std::uint16_t host_port() const override { return static_cast<std::uint16_t>(line_.port); }
   std::unique_ptr<Driver> make_driver(const DriveMotors& motors, LineEnd end, DriverClock clock) const override;

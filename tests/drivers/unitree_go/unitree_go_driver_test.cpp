@@ -54,8 +54,8 @@ struct UnitreeGo : testing::TestWithParam<double> {
     return INFINITY;
   }
 
-  static constexpr double kInFlight = 0.01;                ///< s, after which no datagram of before is on the line
-  static constexpr double kLost = kLeggedSilence + 0.006;  ///< s, of which a state on the line takes one cycle of 2 ms
+  static constexpr double kInFlight = 0.01;            ///< s, after which no datagram of before is on the line
+  static constexpr double kLost = kGoSilence + 0.006;  ///< s, of which a state on the line takes one cycle of 2 ms
   static constexpr JointCommand kTurns{.mode = JointMode::kVelocity, .velocity = 3, .damping = 0.5};
   Go2InAir machine_{GetParam()};
 };

@@ -8,6 +8,8 @@
 ///          same. The command of a robot that walks demands angles of feet in the air alone. Its limit is kSwingFactor
 ///          larger. q has to stay for kRepeatTime, and for two cycles: a noisy gyro moves the command at once, and no joint
 ///
+/// Only a new sample shows that q stays, or that it was possible: a drive that sent nothing repeats its last one.
+///
 /// While c stays, a stuck encoder changes nothing: the joint is where it reports to be. An angle that is missing or not
 /// finite is not evaluated.
 
@@ -36,7 +38,7 @@ class EncoderJump {
     const double position = now.joint(i).position, reach = kFaster * now.limits[i].speed * period_;
     const double past =
         joint.known ? std::abs(position - joint.possible) - reach * static_cast<double>(joint.cycles) : 0;
-    if (past <= watch.limit()) joint = {.known = true, .possible = position};
+    if (past <= watch.limit() && now.new_samples[i]) joint = {.known = true, .possible = position};
     return beyond(i, past, watch.limit());
   }
 
@@ -75,7 +77,7 @@ class EncoderStuck {
     std::size_t demand_count = 0;           ///< of `demands`
     bool demanded = false;                  ///< c₀ is known
     double reported = 0;                    ///< rad, the last q
-    std::uint64_t stays = 0;                ///< cycles since it changed
+    std::uint64_t stays = 0;                ///< cycles with a new sample since it changed
     double demand = 0;                      ///< rad, c₀
   };
 
@@ -93,11 +95,11 @@ class EncoderStuck {
     const double position = now.joint(i).position;
     const bool stays = position == joint.reported, commanded = demands(now, i);
     double moved = 0;
-    joint.stays = stays ? joint.stays + now.elapsed : 0;
+    if (now.new_samples[i]) joint.stays = stays ? joint.stays + now.elapsed : 0;
     if (joint.demand_count == kAnswer && commanded) {
       if (!joint.demanded || !stays) joint.demand = joint.demands.front();
       joint.demanded = true;
-      if (joint.stays >= stays_) moved = std::abs(joint.demands.front() - joint.demand);
+      if (joint.stays >= stays_ && now.new_samples[i]) moved = std::abs(joint.demands.front() - joint.demand);
     }
     joint.reported = position;
     joint.demanded = joint.demanded && commanded;

@@ -10,9 +10,14 @@
 ///   standing  all joints are inside for kStandingTime
 ///
 /// In the first kStandingTime of a run the robot is neither.
+///
+/// A drive that sent nothing leaves its last sample in force, which grows older by the time that passed. Such a sample
+/// is not new, and no evidence of what the joint did since.
 
 #include <array>
+#include <bitset>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 
 #include "machine/legs/leg_model.h"
@@ -30,6 +35,7 @@ struct LegJointLimits {
 struct LeggedMeasurements : BodyMeasurements, FootMeasurements {
   const std::array<LegJointLimits, kLegsJoints>& limits;
   LegPhase phase;  ///< that of the command; lying without one
+  std::bitset<kLegsJoints> new_samples;
 
   bool walks() const noexcept { return phase == LegPhase::kWalking; }
   const JointSample& joint(std::size_t i) const noexcept { return input.sensors->joints[i]; }
@@ -52,7 +58,10 @@ class LeggedObserver {
 
   /// `period` s.
   LeggedObserver(const SafetyParameters& parameters, const LegModel& robot, double period)
-      : period_(period), body_(robot, {}, period, kForceTime, kLanding), feet_(parameters, robot, period) {
+      : period_(period),
+        period_ns_(std::llround(1.0e9 * period)),
+        body_(robot, {}, period, kForceTime, kLanding),
+        feet_(parameters, robot, period) {
     for (std::size_t i = 0; i < kLegsJoints; ++i) {
       const JointModel& joint = robot.joints[i];
       limits_[i] = {.speed = joint.velocity_limit,
@@ -68,6 +77,7 @@ class LeggedObserver {
     feet_.enter_run();
     moving_ = anchored_ = false;
     inside_ = 0;
+    ages_ns_ = {};
   }
 
   LeggedMeasurements step(const MonitorInput& input, std::uint64_t elapsed, double /*speed_limit*/) noexcept {
@@ -80,7 +90,7 @@ class LeggedObserver {
     const FootMeasurements feet = feet_.step(input, body_, elapsed);
     const BodyMeasurements body{
         input, elapsed, dt, body_, feet_.ground(), lies ? kSteepest : 0, kSteepest, phase == LegPhase::kWalking};
-    return {body, feet, limits_, phase};
+    return {body, feet, limits_, phase, find_new_samples(sensors, elapsed)};
   }
 
   bool moving() const noexcept { return moving_; }
@@ -102,6 +112,18 @@ class LeggedObserver {
     if (standing()) moving_ = false;
   }
 
+  /// The age of a sample that is repeated grows by `elapsed` cycles, but for the jitter of the cycles.
+  std::bitset<kLegsJoints> find_new_samples(const SensorFrame& sensors, std::uint64_t elapsed) noexcept {
+    std::bitset<kLegsJoints> found;
+    const std::int64_t passed_ns = static_cast<std::int64_t>(elapsed) * period_ns_;
+    for (std::size_t i = 0; i < kLegsJoints; ++i) {
+      const std::int64_t age_ns = sensors.joints[i].age_ns;
+      found[i] = age_ns < ages_ns_[i] + passed_ns - period_ns_ / 2;
+      ages_ns_[i] = age_ns;
+    }
+    return found;
+  }
+
   bool stays(const SensorFrame& sensors) const noexcept {
     bool inside = anchored_;
     for (std::size_t i = 0; i < kLegsJoints; ++i) {
@@ -112,13 +134,15 @@ class LeggedObserver {
   }
 
   double period_;
+  std::int64_t period_ns_;
   std::array<LegJointLimits, kLegsJoints> limits_{};
   BodyMotion body_;
   StandingFeet feet_;
   std::array<double, kLegsJoints> anchor_{};  ///< rad
   bool anchored_ = false;
   bool moving_ = false;
-  double inside_ = 0;  ///< s
+  double inside_ = 0;                                ///< s
+  std::array<std::int64_t, kLegsJoints> ages_ns_{};  ///< of the samples in the cycle before
 };
 
 }  // namespace robot_control

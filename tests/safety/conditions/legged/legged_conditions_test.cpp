@@ -629,6 +629,28 @@ TEST_F(SwingingMotorTest, IsNotJudgedWhileTheDriverBrakesOrTheGateClamps) {
   EXPECT_LT(swing(0, 0), 0.3);
 }
 
+/// A knee turns by 0.14 rad while 30 samples are lost. The limit is 0.09 rad.
+TEST_F(WalkingConditionsTest, ASampleThatIsRepeatedIsNoStuckEncoder) {
+  std::array<JointSample, kMaxJoints> sampled{};
+  const double seen = walk(2, [&, lost = 30](double) mutable {
+    lost = lost == 30 ? 0 : lost + 1;
+    if (lost == 0) sampled = sensors_.joints;
+    for (JointSample& joint : sampled) joint.age_ns = lost * std::llround(1.0e9 * kPeriod);
+    sensors_.joints = sampled;
+  });
+  EXPECT_EQ(seen, 2) << causes(Reaction::kBrake);
+}
+
+TEST_F(WalkingConditionsTest, AStuckEncoderIsNamedInItsSwingWhereEverySecondSampleIsLost) {
+  const double seen = walk(2, [&, held = sensors_.joints[8].position, lost = false](double t) mutable {
+    if (t > 0.6) sensors_.joints[8].position = held;
+    sensors_.joints[8].age_ns = lost ? std::llround(1.0e9 * kPeriod) : 0;
+    lost = !lost;
+  });
+  EXPECT_LT(seen, 1.1);
+  EXPECT_EQ(causes(Reaction::kBrake), "encoder_stuck");
+}
+
 /// The state of a noisy gyro moves where a foot is to land.
 TEST_F(WalkingConditionsTest, ACommandThatJumpsInEachCycleIsNoStuckEncoder) {
   bool aside = false;

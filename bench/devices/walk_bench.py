@@ -1,0 +1,87 @@
+"""The table of `scripts/bench devices --robot quadbot`, by drive.
+
+It has losses at each phase of a stride, and long walks on a disturbed bus or line.
+
+scripts/bench devices losses --robot quadbot --first 7 --runs 1
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from bench.devices.disturbed_walk import DisturbedWalk, WalkFigures, run_walk, together
+from bench.devices.walk_loss import LOSSES, PHASES, WalkLoss, WalkOutcome, run_loss
+from bench.faults.sequence_judge import OVER_LIMIT
+from bench.rows import Result, Row, Say, bounded, judged, plain
+from bench.runs.runner import Runner
+
+WALKS = 30  # of each drive, half an hour
+WALK_TIME = 60.0  # s; in a longer walk a late correction of the heading outweighs lost frames
+STATES = ("ok", "disturbed")
+ODOMETRY = 1.5  # times the error of an undisturbed walk
+
+
+def bench(parts: Sequence[str], first: int, runs: int | None, say: Say, runner: Runner) -> Result:
+    """The table, and whether every figure keeps its bound.
+
+    Args:
+        parts: what is measured, of losses and disturbed.
+        first: the first phase and seed.
+        runs: phases of each loss, and the share of `WALKS` in `PHASES`. None: all.
+        say: receives progress and every broken rule.
+        runner: where the trials run.
+    """
+    phases = runs or PHASES
+    rows: list[Row] = []
+    if "losses" in parts:
+        rows += loss_rows(first, phases, say, runner)
+    if "disturbed" in parts:
+        rows += walk_rows(first, max(1, WALKS * phases // PHASES), say, runner)
+    return judged("devices", rows)
+
+
+def loss_rows(first: int, phases: int, say: Say, runner: Runner) -> list[Row]:
+    """Per drive and kind of loss: those that broke a rule, and the latest name; per drive the greatest tilt."""
+    kinds = [(drive, kind) for drive, losses in LOSSES.items() for kind in losses]
+    trials = [WalkLoss(*of, seed) for of in kinds for seed in range(first, first + phases)]
+    outcomes: dict[tuple[str, str], list[WalkOutcome]] = {of: [] for of in kinds}
+    for trial, outcome in zip(trials, runner.outcomes(run_loss, trials, say, chunk=5), strict=True):
+        outcomes[trial.drive, trial.kind].append(outcome)
+        for rule in outcome.broken:
+            say(f"{trial}: {rule}")
+    rows = []
+    for drive, losses in LOSSES.items():
+        for kind, loss in losses.items():
+            found = outcomes[drive, kind]
+            name = f"{drive}, {kind}:"
+            rows.append(bounded(f"{name} losses that broke a rule", sum(bool(each.broken) for each in found), "", 0))
+            rows.append(
+                bounded(f"{name} until it is named", 1e3 * max(e.named for e in found), "ms", 1e3 * loss.latest)
+            )
+        tilt = max(each.tilt for kind in losses for each in outcomes[drive, kind])
+        rows.append(bounded(f"{drive}: greatest tilt", tilt, "rad", OVER_LIMIT))
+    return rows
+
+
+def walk_rows(first: int, count: int, say: Say, runner: Runner) -> list[Row]:
+    """Per drive: walks that a stop latched, gaps beyond the hold, and the error of the odometry."""
+    seeds = range(first, first + count)
+    walks = [DisturbedWalk(drive, state, WALK_TIME, seed) for drive in LOSSES for state in STATES for seed in seeds]
+    figures: dict[tuple[str, str], list[WalkFigures]] = {}
+    for walk, found in zip(walks, runner.outcomes(run_walk, walks, say), strict=True):
+        figures.setdefault((walk.drive, walk.state), []).append(found)
+        if found.causes:
+            say(f"{walk}: {', '.join(found.causes)} within {found.walked:.0f} s")
+    rows = []
+    for drive in LOSSES:
+        undisturbed, disturbed = (together(figures[drive, state]) for state in STATES)
+        name = f"{drive}, disturbed:"
+        ratio = disturbed.odometry / undisturbed.odometry
+        rows += [
+            bounded(f"{drive}: stops that latched", len(undisturbed.causes + disturbed.causes), "", 0),
+            plain(f"{name} walked", disturbed.walked, "s"),
+            plain(f"{name} gaps beyond the hold", disturbed.gaps, ""),
+            plain(f"{name} longest gap", 1e3 * disturbed.longest, "ms"),
+            bounded(f"{name} error of the odometry, of the undisturbed", ratio, "", ODOMETRY),
+        ]
+    return rows
