@@ -78,8 +78,8 @@ void faults_uneven(const LegModel& model, std::uint64_t seed, WorstValues& worst
   Parameters slope = walking_parameters(seed), tiles = slope;
   slope.plant.slope = kPi / 18;
   slope.plant.slope_heading = kPi / 4 * static_cast<double>(seed % 8);
-  tiles.plant.terrain = {.kind = TerrainKind::kRough, .height = 0.06 * model.leg_length() / kReferenceLeg,
-                         .length = 0.25, .count = 24};
+  tiles.plant.terrain = {
+      .kind = TerrainKind::kRough, .height = 0.06 * model.leg_length() / kReferenceLeg, .length = 0.25, .count = 24};
   faults_on(model, slope, ", slope of 10 deg", seed, worst);
   faults_on(model, tiles, ", tiles of 3 cm", seed, worst);
 }

@@ -153,7 +153,8 @@ void kicks(const LegModel& model, std::uint64_t seed, WorstValues& worst) {
       robot.wait(0.3);
       robot.run(kBegin + 3, trot(speed));
       const bool over = robot.tilt > kTurnedOver, stops = stopped(robot) != 0;
-      worst.average("turned over, kicks at " + std::to_string(speed).substr(0, 3) + " m/s", over ? 1 : 0, "of the kicks");
+      worst.average("turned over, kicks at " + std::to_string(speed).substr(0, 3) + " m/s", over ? 1 : 0,
+                    "of the kicks");
       worst.average("not caught, kicks at " + std::to_string(speed).substr(0, 3) + " m/s", over || stops ? 1 : 0,
                     "of the kicks");
       if (over || stops)

@@ -60,8 +60,8 @@ void switches(const LegModel& model, std::uint64_t seed, WorstValues& worst);
 /// or weak, and with masses that are not the described ones. The seed chooses one of 24 phases of the gait for the
 /// push.
 void disturbances(const LegModel& model, std::uint64_t seed, WorstValues& worst);
-/// Kicks of 20 N·s on 12.7 kg within 0.1 s, in eight directions, against trots of 0.3 and 1.0 m/s, with the errors of the
-/// field. The seed chooses one of 24 phases of the gait.
+/// Kicks of 20 N·s on 12.7 kg within 0.1 s, in eight directions, against trots of 0.3 and 1.0 m/s, with the errors of
+/// the field. The seed chooses one of 24 phases of the gait.
 void kicks(const LegModel& model, std::uint64_t seed, WorstValues& worst);
 /// The largest push of 0.1 s, in steps of 5 N·s on 12.7 kg, with which and with all smaller ones a robot walks on.
 /// Eight directions, 0° to the front and 90° to the left, for each gait.

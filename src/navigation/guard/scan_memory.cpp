@@ -10,8 +10,8 @@
 namespace robot_control::navigation {
 namespace {
 
-constexpr double kMinPassing = 0.1;   // m by which a ray has to pass a point
-constexpr double kMaxGap = 0.25;      // m between the ends of neighbouring rays on one surface
+constexpr double kMinPassing = 0.1;  // m by which a ray has to pass a point
+constexpr double kMaxGap = 0.25;     // m between the ends of neighbouring rays on one surface
 constexpr double kDegrees = 180 / M_PI;
 constexpr double kJump = 0.5;  // m, rad beyond kMaxObjectSpeed
 
@@ -41,7 +41,7 @@ bool in_view(const Scan& scan, const PlanarPose& sensor, Point at) {
 ScanMemory::Fate ScanMemory::fate_of(const Memory& memory, const Scan& scan, const PlanarPose& sensor,
                                      double stamp) const {
   const bool viewed = in_view(scan, sensor, memory.at);
-  const bool recent = viewed ? stamp - memory.seen <= kRecall : way_ - memory.way <= kLookAhead;
+  const bool recent = viewed ? stamp - memory.seen <= kRecall : driven_ - memory.driven <= kLookAhead;
   const Fate hidden = recent ? Fate::kKept : Fate::kForgotten;
   const Fate aged = memory.vanished && (recent || blind_) ? Fate::kVanished : hidden;
   const double ray = ray_towards(scan, sensor, memory.at), range = distance({sensor.x, sensor.y}, memory.at);
@@ -104,7 +104,7 @@ void ScanMemory::update(const Scan& scan, const PlanarPose& mount, const PlanarP
   const double turned = std::abs(std::remainder(base.yaw - base_.yaw, 2 * M_PI));
   const double moved = distance({base.x, base.y}, {base_.x, base_.y});
   if (!(elapsed >= 0 && elapsed <= kRecall) || moved > allowed || turned > allowed) *this = ScanMemory();
-  way_ += moved, stamp_ = stamp, base_ = base;
+  driven_ += moved, stamp_ = stamp, base_ = base;
   const PlanarPose sensor = composed(base, mount);
   std::vector<bool> vanished(360);  // degrees
   std::erase_if(memories_, [&](Memory& memory) {
@@ -122,7 +122,7 @@ void ScanMemory::update(const Scan& scan, const PlanarPose& mount, const PlanarP
     if (own) world.ranges[i] = std::numeric_limits<float>::infinity();
     const Point end = end_of(scan, sensor, i);
     if (echo(world, i) && in_view(scan, sensor, end) && !blind_)
-      memories_.push_back({.at = end, .seen = stamp, .way = way_});
+      memories_.push_back({.at = end, .seen = stamp, .driven = driven_});
   }
   points_.clear();
   for (const Memory& memory : memories_) points_.push_back(memory.at);

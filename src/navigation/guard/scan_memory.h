@@ -48,8 +48,8 @@ class ScanMemory {
  private:
   struct Memory {
     Point at;
-    double seen = 0;  // s
-    double way = 0;   // m, when it was seen
+    double seen = 0;    // s
+    double driven = 0;  // m, when it was seen
     bool vanished = false;
   };
   enum class Fate { kForgotten, kKept, kVanished };
@@ -62,7 +62,7 @@ class ScanMemory {
   PlanarPose reference_sensor_;
   PlanarPose base_;
   double stamp_ = -1e9;  // s
-  double way_ = 0;       // m that the base has driven
+  double driven_ = 0;    // m, of the base
   bool blind_ = false;
   std::string problem_;
 };
