@@ -13,6 +13,7 @@ namespace {
 constexpr double kMinPassing = 0.1;  // m by which a ray has to pass a point
 constexpr double kMaxGap = 0.25;     // m between the ends of neighbouring rays on one surface
 constexpr double kDegrees = 180 / M_PI;
+constexpr double kSway = 0.05;  // m: a base that moves less stands
 constexpr double kJump = 0.5;  // m, rad beyond kMaxObjectSpeed
 
 bool echo(const Scan& scan, std::size_t ray) {
@@ -46,7 +47,7 @@ ScanMemory::Fate ScanMemory::fate_of(const Memory& memory, const Scan& scan, con
   const Fate aged = memory.vanished && (recent || blind_) ? Fate::kVanished : hidden;
   const double ray = ray_towards(scan, sensor, memory.at), range = distance({sensor.x, sensor.y}, memory.at);
   const auto rays = static_cast<double>(scan.ranges.size());
-  if (!viewed) return aged;
+  if (!viewed) return memory.vanished && blind_ ? Fate::kVanished : hidden;
   int behind = 0, silent = 0;
   for (const double side : {std::floor(ray), std::ceil(ray)}) {
     const auto i = static_cast<std::size_t>(side);
@@ -104,7 +105,9 @@ void ScanMemory::update(const Scan& scan, const PlanarPose& mount, const PlanarP
   const double turned = std::abs(std::remainder(base.yaw - base_.yaw, 2 * M_PI));
   const double moved = distance({base.x, base.y}, {base_.x, base_.y});
   if (!(elapsed >= 0 && elapsed <= kRecall) || moved > allowed || turned > allowed) *this = ScanMemory();
-  driven_ += moved, stamp_ = stamp, base_ = base;
+  stamp_ = stamp, base_ = base;
+  const double passed = distance({base.x, base.y}, counted_);
+  if (passed > kSway) driven_ += passed, counted_ = {base.x, base.y};
   const PlanarPose sensor = composed(base, mount);
   std::vector<bool> vanished(360);  // degrees
   std::erase_if(memories_, [&](Memory& memory) {
@@ -126,6 +129,10 @@ void ScanMemory::update(const Scan& scan, const PlanarPose& mount, const PlanarP
   }
   points_.clear();
   for (const Memory& memory : memories_) points_.push_back(memory.at);
+  for (std::size_t i = 0; i < world.ranges.size(); ++i) {
+    const Point end = end_of(scan, sensor, i);
+    if (echo(world, i) && !in_view(scan, sensor, end)) points_.push_back(end);
+  }
   problem_.clear();
   const double since = distance({sensor.x, sensor.y}, {reference_sensor_.x, reference_sensor_.y}) +
                        std::abs(std::remainder(sensor.yaw - reference_sensor_.yaw, 2 * M_PI));

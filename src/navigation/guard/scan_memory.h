@@ -42,7 +42,7 @@ class ScanMemory {
   /// Returns why the newest scan is doubted; "" if it is not.
   const std::string& problem() const noexcept { return problem_; }
 
-  /// Returns what was seen and is not forgotten, in odom. Parts of the robot are left out.
+  /// Returns what is seen, and what was seen and is not forgotten, in odom. Parts of the robot are left out.
   const std::vector<Point>& points() const noexcept { return points_; }
 
  private:
@@ -63,6 +63,7 @@ class ScanMemory {
   PlanarPose base_;
   double stamp_ = -1e9;  // s
   double driven_ = 0;    // m, of the base
+  Point counted_;        // where that was counted last
   bool blind_ = false;
   std::string problem_;
 };
