@@ -14,7 +14,7 @@ constexpr double kMinPassing = 0.1;  // m by which a ray has to pass a point
 constexpr double kMaxGap = 0.25;     // m between the ends of neighbouring rays on one surface
 constexpr double kDegrees = 180 / M_PI;
 constexpr double kSway = 0.05;  // m: a base that moves less stands
-constexpr double kJump = 0.5;  // m, rad beyond kMaxObjectSpeed
+constexpr double kJump = 0.5;   // m, rad beyond kMaxObjectSpeed
 
 bool echo(const Scan& scan, std::size_t ray) {
   return scan.hit(scan.ranges[ray]);

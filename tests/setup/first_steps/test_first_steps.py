@@ -46,6 +46,8 @@ def test_a_healthy_robot_passes_every_check():
             lambda: checks.stood({"front_left": 30.0, "rear_left": 2.0}, SHARE),
             "rear_left carries 2.0 N, at least 12.4 N",
         ),
+        (lambda: checks.hung({"front_left": float("nan")}, SHARE), "front_left carries nan N"),
+        (lambda: checks.stood({"front_left": float("nan")}, SHARE), "front_left carries nan N"),
         (lambda: checks.level(0.02, 0.4), r"\+0.02 and \+0.40 rad, at most ±0.15 rad: level the body"),
         (lambda: checks.green([found("swap", "fault")]), "fault swap: full; remedy: free it"),
         (lambda: checks.green([found("can", "warning")]), "warning can: full; remedy: free it"),

@@ -32,7 +32,7 @@ class StepError(RuntimeError):
 def hung(loads: Mapping[str, float], share: float) -> None:
     """No foot carries load."""
     for foot, load in loads.items():
-        if load > HANGS * share:
+        if not load <= HANGS * share:
             rule = f"at most {HANGS * share:.1f} N while the robot hangs: lift it until all feet hang free"
             raise StepError(f"{foot} carries {load:.1f} N, {rule}")
 
@@ -40,7 +40,7 @@ def hung(loads: Mapping[str, float], share: float) -> None:
 def stood(loads: Mapping[str, float], share: float) -> None:
     """Every foot carries load."""
     for foot, load in loads.items():
-        if load < STANDS * share:
+        if not load >= STANDS * share:
             rule = (
                 f"at least {STANDS * share:.1f} N while the robot stands: check the zeros of its joints, and the floor"
             )
@@ -49,7 +49,7 @@ def stood(loads: Mapping[str, float], share: float) -> None:
 
 def level(roll: float, pitch: float) -> None:
     """The tilt of the body, rad."""
-    if max(abs(roll), abs(pitch)) > TILT:
+    if not (abs(roll) <= TILT and abs(pitch) <= TILT):
         remedy = "level the body; if it is level, check how the IMU is mounted (robot.imu_link)"
         raise StepError(f"roll and pitch are {roll:+.2f} and {pitch:+.2f} rad, at most ±{TILT} rad: {remedy}")
 
@@ -78,7 +78,7 @@ def pressed(first_cause: str) -> None:
 
 def yielded(fastest: float) -> None:
     """The speed of the fastest joint after all were let go of, rad/s."""
-    if fastest > SINKING:
+    if not fastest <= SINKING:
         remedy = "let go of the legs; if they fall by themselves, check the supply of the motors and their damping"
         raise StepError(f"a joint moves at {fastest:.2f} rad/s, at most {SINKING} rad/s: {remedy}")
 
