@@ -15,6 +15,18 @@ Request trot(double speed, double lateral = 0) {
           .mode = {ModeKind::kGait, gait_named("trot")}};
 }
 
+constexpr int kDirections = 8, kPushPhases = 24;
+constexpr double kPushTime = 0.1;  // s
+
+/// A push of `force` N in one of kDirections, at one of kPushPhases of the gait.
+void push_at(Parameters& parameters, const Gait& gait, std::uint64_t phase, int direction, double force) {
+  const double angle = 2 * kPi * direction / kDirections;
+  parameters.plant.push_x = force * std::cos(angle);
+  parameters.plant.push_y = force * std::sin(angle);
+  parameters.plant.push_start = kBegin + gait.period * static_cast<double>(phase % kPushPhases) / kPushPhases;
+  parameters.plant.push_duration = kPushTime;
+}
+
 double stopped(const QuadrupedLoop& robot) {
   return robot.permit().causes != 0 || robot.command().legged.phase != LegPhase::kWalking ? 1 : 0;
 }
@@ -102,17 +114,11 @@ void switches(const LegModel& model, std::uint64_t seed, WorstValues& worst) {
 }
 
 void disturbances(const LegModel& model, std::uint64_t seed, WorstValues& worst) {
-  constexpr int kDirections = 8, kPhases = 24;
-  constexpr double kForce = 150, kDuration = 0.1;  // N on a robot of 12.7 kg, s
+  constexpr double kForce = 150;  // N on a robot of 12.7 kg
   const Gait gait = kGaits[gait_named("trot")].scaled(model.leg_length());
   for (int i = 0; i < kDirections; ++i) {
     Parameters parameters = walking_parameters(seed);
-    const double direction = 2 * kPi * i / kDirections, force = kForce * model.mass / 12.7;
-    parameters.plant.push_x = force * std::cos(direction);
-    parameters.plant.push_y = force * std::sin(direction);
-    parameters.plant.push_start =
-        kBegin + gait.period * static_cast<double>(seed % kPhases) / static_cast<double>(kPhases);
-    parameters.plant.push_duration = kDuration;
+    push_at(parameters, gait, seed, i, kForce * model.mass / 12.7);
     QuadrupedLoop robot(model, parameters);
     robot.wait(0.3);
     robot.run(kBegin + 3, trot(0.3));
@@ -137,26 +143,20 @@ void disturbances(const LegModel& model, std::uint64_t seed, WorstValues& worst)
 }
 
 void kicks(const LegModel& model, std::uint64_t seed, WorstValues& worst) {
-  constexpr int kDirections = 8, kPhases = 24;
-  constexpr double kImpulse = 20, kDuration = 0.1;  // N·s on a robot of 12.7 kg, s
+  constexpr double kImpulse = 20;  // N·s on a robot of 12.7 kg
   const Gait gait = kGaits[gait_named("trot")].scaled(model.leg_length());
   for (const double speed : {0.3, 1.0}) {
+    const std::string name = "kicks at " + std::to_string(speed).substr(0, 3) + " m/s";
     for (int i = 0; i < kDirections; ++i) {
       Parameters parameters = walking_parameters(seed);
       parameters.plant.sensor_errors = ErrorLevel::kField;
-      const double direction = 2 * kPi * i / kDirections, force = kImpulse / kDuration * model.mass / 12.7;
-      parameters.plant.push_x = force * std::cos(direction);
-      parameters.plant.push_y = force * std::sin(direction);
-      parameters.plant.push_start = kBegin + gait.period * static_cast<double>(seed % kPhases) / kPhases;
-      parameters.plant.push_duration = kDuration;
+      push_at(parameters, gait, seed, i, kImpulse / kPushTime * model.mass / 12.7);
       QuadrupedLoop robot(model, parameters);
       robot.wait(0.3);
       robot.run(kBegin + 3, trot(speed));
       const bool over = robot.tilt > kTurnedOver, stops = stopped(robot) != 0;
-      worst.average("turned over, kicks at " + std::to_string(speed).substr(0, 3) + " m/s", over ? 1 : 0,
-                    "of the kicks");
-      worst.average("not caught, kicks at " + std::to_string(speed).substr(0, 3) + " m/s", over || stops ? 1 : 0,
-                    "of the kicks");
+      worst.average("turned over, " + name, over ? 1 : 0, "of the kicks");
+      worst.average("not caught, " + name, over || stops ? 1 : 0, "of the kicks");
       if (over || stops)
         std::fprintf(stderr, "%s, %.1f m/s, %d deg, seed %llu: %s\n", model.name.c_str(), speed, 45 * i,
                      static_cast<unsigned long long>(seed), robot.causes().c_str());
@@ -165,8 +165,8 @@ void kicks(const LegModel& model, std::uint64_t seed, WorstValues& worst) {
 }
 
 void push_limits(const LegModel& model, std::uint64_t seed, WorstValues& worst) {
-  constexpr int kDirections = 8, kPhases = 24, kSteps = 10;
-  constexpr double kStep = 5, kDuration = 0.1;  // N·s on a robot of 12.7 kg, s
+  constexpr int kSteps = 10;
+  constexpr double kStep = 5;  // N·s on a robot of 12.7 kg
   struct Walk {
     std::uint64_t gait;
     double speed;  // m/s
@@ -178,13 +178,10 @@ void push_limits(const LegModel& model, std::uint64_t seed, WorstValues& worst) 
     walk.mode = {ModeKind::kGait, each.gait};
     for (int i = 0; i < kDirections; ++i) {
       Parameters parameters = walking_parameters(seed);
-      parameters.plant.push_start = kBegin + gait.period * static_cast<double>(seed % kPhases) / kPhases;
-      parameters.plant.push_duration = kDuration;
-      const double direction = 2 * kPi * i / kDirections, step = kStep * model.mass / 12.7;
+      const double step = kStep * model.mass / 12.7;
       double taken = 0;
       for (int k = 1; k <= kSteps; ++k) {
-        parameters.plant.push_x = k * step / kDuration * std::cos(direction);
-        parameters.plant.push_y = k * step / kDuration * std::sin(direction);
+        push_at(parameters, gait, seed, i, k * step / kPushTime);
         QuadrupedLoop robot(model, parameters);
         robot.wait(0.3);
         robot.run(kBegin + 2.5, walk);

@@ -41,13 +41,15 @@ bool in_view(const Scan& scan, const PlanarPose& sensor, Point at) {
 
 ScanMemory::Fate ScanMemory::fate_of(const Memory& memory, const Scan& scan, const PlanarPose& sensor,
                                      double stamp) const {
-  const bool viewed = in_view(scan, sensor, memory.at);
-  const bool recent = viewed ? stamp - memory.seen <= kRecall : driven_ - memory.driven <= kLookAhead;
+  if (!in_view(scan, sensor, memory.at)) {
+    if (memory.vanished && blind_) return Fate::kVanished;
+    return driven_ - memory.driven <= kLookAhead ? Fate::kKept : Fate::kForgotten;
+  }
+  const bool recent = stamp - memory.seen <= kRecall;
   const Fate hidden = recent ? Fate::kKept : Fate::kForgotten;
   const Fate aged = memory.vanished && (recent || blind_) ? Fate::kVanished : hidden;
   const double ray = ray_towards(scan, sensor, memory.at), range = distance({sensor.x, sensor.y}, memory.at);
   const auto rays = static_cast<double>(scan.ranges.size());
-  if (!viewed) return memory.vanished && blind_ ? Fate::kVanished : hidden;
   int behind = 0, silent = 0;
   for (const double side : {std::floor(ray), std::ceil(ray)}) {
     const auto i = static_cast<std::size_t>(side);
@@ -119,20 +121,20 @@ void ScanMemory::update(const Scan& scan, const PlanarPose& mount, const PlanarP
   });
   const auto blind = std::count(vanished.begin(), vanished.end(), true);
   blind_ = static_cast<double>(blind) > kDegrees * kDoubtfulAngle;
+  points_.clear();
   Scan world = scan;  // without the parts of the robot
   for (std::size_t i = 0; i < scan.ranges.size(); ++i) {
     const bool own = echo(scan, i) && footprint.distance(end_of(scan, mount, i)) < -kLaserNoise;
     if (own) world.ranges[i] = std::numeric_limits<float>::infinity();
+    if (!echo(world, i)) continue;
     const Point end = end_of(scan, sensor, i);
-    if (echo(world, i) && in_view(scan, sensor, end) && !blind_)
+    if (!in_view(scan, sensor, end)) {
+      points_.push_back(end);
+    } else if (!blind_) {
       memories_.push_back({.at = end, .seen = stamp, .driven = driven_});
+    }
   }
-  points_.clear();
   for (const Memory& memory : memories_) points_.push_back(memory.at);
-  for (std::size_t i = 0; i < world.ranges.size(); ++i) {
-    const Point end = end_of(scan, sensor, i);
-    if (echo(world, i) && !in_view(scan, sensor, end)) points_.push_back(end);
-  }
   problem_.clear();
   const double since = distance({sensor.x, sensor.y}, {reference_sensor_.x, reference_sensor_.y}) +
                        std::abs(std::remainder(sensor.yaw - reference_sensor_.yaw, 2 * M_PI));

@@ -71,12 +71,13 @@ void Walker::lift_again(State& state, const WalkInput& input, const WalkingBody&
     if (state.bears[leg] != 0 || part > kLastLift || part - state.departed[leg] < kFirstLift) continue;
     const SwingPoint point = path(state, input, body, leg);
     const Eigen::Vector3d behind = point.place - body.feet[leg];
+    if (behind.head<2>().norm() < kMetRiser * scale) continue;
     const Eigen::Map<const Eigen::Vector3d> rates(&body.rates[kLegJoints * leg]);
     const Eigen::Vector3d moves =
         body.velocity + body.rate.cross(body.feet[leg]) + body.turned * body.jacobians[leg] * rates;
     const bool held =
         moves.head<2>().dot(behind.head<2>()) < kHeldShare * point.velocity.head<2>().dot(behind.head<2>());
-    if (behind.head<2>().norm() < kMetRiser * scale || !held) continue;
+    if (!held) continue;
     Map(state.departs[leg].data()) =
         body.feet[leg] - kBackOff * scale * Eigen::Vector3d(behind.x(), behind.y(), 0).normalized();
     state.departed[leg] = part;
