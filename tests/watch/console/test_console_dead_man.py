@@ -97,6 +97,13 @@ def test_without_a_held_key_nothing_is_sent_after_a_second(page):
     assert page.run(ZEROS + 0.2)[-1] is None
 
 
+def test_a_page_at_rest_sends_zeros_for_as_long_as_a_reset_may_need_them(page):
+    page.run(ZEROS)
+    page.authority.rest(page.now + 5.0)
+    assert set(page.run(5.0 - PERIOD)) == {Command()}
+    assert page.run(0.2)[-1] is None
+
+
 def test_backwards_it_is_no_faster_than_the_robot_may(page):
     page.press(-1.0)
     assert page.run(0.5)[-1].linear == -0.3

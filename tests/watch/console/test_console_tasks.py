@@ -5,6 +5,8 @@ from __future__ import annotations
 import time
 
 import pytest
+from robot_control.drive.keys.operator import ZEROS, Limits
+from robot_control.robot.command import Command
 
 from bench.console.browser import Browser, missing
 from bench.console.process import wait_for
@@ -133,6 +135,8 @@ def test_each_task_takes_two_presses_at_most(browser, served, size):
         "its second step",
         lambda: browser.run("return Boolean(document.querySelector('#confirm-reset:enabled')?.offsetParent)"),
     )
+    later = time.monotonic() + 2.0 * ZEROS
+    assert robot.authority.command(Limits(1.0, 1.0, 1.0), later)[0] == Command(), "zeros are evidence for the reset"
     person.press("#confirm-reset")
     wait_for("the reset", lambda: ("reset", {}) in robot.made)
     person.done("reset, control included")

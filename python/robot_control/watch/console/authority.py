@@ -145,6 +145,12 @@ class Authority:
             page.dead_man.pad.refuse(now)
         self._zeros_until = now + ZEROS
 
+    def rest(self, until: float) -> None:
+        """Sends zeros until then, s: one that arrived after the last late cycle is what a reset waits for; silence has to
+        last for cmd_vel_timeout without such a cycle (safety/latch/motion_release.h).
+        """
+        self._zeros_until = until
+
     def command(self, limits: Limits, now: float) -> tuple[Command | None, float]:
         """The command to send now, or None if nothing is sent; and its age, s."""
         for each in self.pages.values():

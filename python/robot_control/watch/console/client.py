@@ -16,7 +16,7 @@ from robot_control.robot.command import Command
 from robot_control.robot.robot_kind import running_kind
 from robot_control.watch.console.authority import Page, RefusedError
 from robot_control.watch.console.backend import Backend
-from robot_control.watch.console.calls import against, check_call
+from robot_control.watch.console.calls import RESET_WINDOW, against, check_call
 from robot_control.watch.console.dead_man import Drive
 from robot_control.watch.console.messages import MAX_SIZE, MessageError, Rate, parse
 from robot_control.watch.console.replay.replay import REFUSAL, Replay
@@ -184,6 +184,8 @@ class Client:
                     backend.reset()
                     text = "the reset was requested"
                 else:
+                    if name == "reset_asked":
+                        backend.authority.rest(time.monotonic() + RESET_WINDOW)
                     text = await asyncio.to_thread(backend.calls.make, self.page, name, arguments)
                 accepted = True
             except RefusedError as error:
