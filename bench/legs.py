@@ -79,6 +79,8 @@ SEEDS = {
     "terrain": 40,
 }
 """of each robot; others have one"""
+RATES = (1000.0, 500.0)
+"""Hz, of the loop"""
 OWN_ROBOT = ("cost", "walking_cost", "pose", "circle", "trot", "gaits")
 """parts that are promised of the project's own quadruped alone"""
 BOUNDS = {
@@ -245,12 +247,19 @@ def bench(
     runs: int | None,
     run_program: Callable[..., dict[str, Any]],
     say: Say,
+    *,
+    rate: float = RATES[0],
+    delay: float | None = None,
 ) -> Result:
-    """The rows of these parts, and whether each meets its bound. `run_program` runs the program of this name."""
+    """The rows of these parts, and whether each meets its bound. `run_program` runs the program of this name.
+
+    `rate` is that of the loop in Hz, `delay` the time from sensor to torque in s: whole periods, one by default.
+    """
     rows = []
+    late = max(0, round((delay or 0) * rate) - 1)
     for part in parts:
         seeds = runs or SEEDS.get(part, 1)
-        program = ("bench_legs",) if part == "kinematics" else ("bench_legs_loop", part, first, seeds)
+        program = ("bench_legs",) if part == "kinematics" else ("bench_legs_loop", part, first, seeds, rate, late)
         robots = urdfs()[:1] if part in OWN_ROBOT else urdfs()
         measured = [judged(row, part) for row in run_program(*program, *robots)["rows"]]
         for row in measured:

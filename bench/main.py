@@ -172,7 +172,12 @@ TRIALS: dict[str, tuple[str, Callable[[Any, argparse.Namespace, Runner], Result]
     "drive": ("drives.drive_promises", lambda m, g, _: m.bench(say, g.wheel_command)),
     "slopes": ("drives.slopes", lambda m, _, __: m.bench(say)),
     "board_clock": ("devices.board_clock", lambda m, g, _: m.bench(programs_of(g), g.share, say)),
-    "legs": ("legs", lambda m, g, _: m.bench(_parts_of("legs", g), g.first, g.runs, programs_of(g), say)),
+    "legs": (
+        "legs",
+        lambda m, g, _: m.bench(
+            _parts_of("legs", g), g.first, g.runs, programs_of(g), say, rate=g.rate, delay=g.delay
+        ),
+    ),
     "console": ("console.bench", lambda m, g, _: m.bench(g.share, say)),
     "realtime": (
         "realtime.bench",
@@ -300,6 +305,8 @@ def parse(arguments: Sequence[str] | None = None) -> argparse.Namespace:
     parser.add_argument("--worlds", type=Path, help="navigation barn: folder of public worlds, N.json each")
     parser.add_argument("--map", choices=navigation.MAPS, default=navigation.MAPS[0], help="navigation barn: the map")
     parser.add_argument("--speed", type=float, choices=navigation.SPEEDS, default=0.5, help="navigation barn: m/s")
+    parser.add_argument("--rate", type=float, choices=legs.RATES, default=legs.RATES[0], help="legs: Hz of the loop")
+    parser.add_argument("--delay", type=float, help="legs: s from sensor to torque, whole periods; default: one")
     parser.add_argument("--keep", type=Path, help="record: folder for the logs and their reports")
     cluster = parser.add_argument_group("cluster", f"{', '.join(ON_CLUSTERS)} run with the workers of a Dask scheduler")
     cluster.add_argument("--scheduler", metavar="tls://HOST:8786", help="its address; default: this computer only")
@@ -328,6 +335,7 @@ def parse(arguments: Sequence[str] | None = None) -> argparse.Namespace:
             given.robot != DIFFBOT and (other or given.markdown),
             f"--robot {given.robot} is for {', '.join(BY_ROBOT)} without --markdown",
         ),
+        (given.markdown and (given.rate != legs.RATES[0] or given.delay), f"{writes} the default --rate and --delay"),
         (given.markdown and given.only, f"{writes} all scenarios, not of --only some"),
     ):
         if wrong:

@@ -1,4 +1,7 @@
-/// bench_legs_loop ROW FIRST SEEDS URDF…: measures robots on legs in the closed loop, on the simulated machine.
+/// bench_legs_loop ROW FIRST SEEDS RATE LATE URDF…: measures robots on legs in the closed loop, on the simulated machine.
+///
+/// RATE is that of the loop in Hz. Each command is late by LATE cycles, in addition to the one of the bus. The rows of the
+/// cost are those of 1000 Hz alone.
 ///
 /// ROW is the name of one of kRows. A value is the worst one of SEEDS seeds from FIRST on. bench/legs.py judges it.
 
@@ -49,14 +52,16 @@ constexpr NamedRow kRows[] = {{"postures", postures},
 
 int run(int argc, char** argv) {
   const auto found = std::find_if(std::begin(kRows), std::end(kRows),
-                                  [&](const NamedRow& row) { return argc > 4 && row.name == argv[1]; });
+                                  [&](const NamedRow& row) { return argc > 6 && row.name == argv[1]; });
   if (found == std::end(kRows)) {
-    std::fprintf(stderr, "usage: bench_legs_loop ROW FIRST SEEDS URDF...\n");
+    std::fprintf(stderr, "usage: bench_legs_loop ROW FIRST SEEDS RATE LATE URDF...\n");
     return 1;
   }
   const std::uint64_t first = std::strtoull(argv[2], nullptr, 10), seeds = std::strtoull(argv[3], nullptr, 10);
+  QuadrupedLoop::given_rate = std::strtod(argv[4], nullptr);
+  QuadrupedLoop::given_lateness = std::strtoull(argv[5], nullptr, 10);
   std::vector<Row> rows;
-  for (int i = 4; i < argc; ++i) {
+  for (int i = 6; i < argc; ++i) {
     const LegModel model = read_legs(load_description(argv[i]), {}, {});
     WorstValues worst;
     for (std::uint64_t seed = first; seed < first + seeds; ++seed) found->measure(model, seed, worst);

@@ -12,8 +12,8 @@ Mode gait(std::uint64_t index) {
 /// Returns the mean twist of the base, by truth, while it walks so for `seconds`.
 WalkingTwist mean_twist(QuadrupedLoop& robot, double seconds, const Request& request) {
   WalkingTwist mean{};
-  const double part = 1 / static_cast<double>(QuadrupedLoop::cycles(seconds));
-  for (std::uint64_t k = 0; k < QuadrupedLoop::cycles(seconds); ++k) {
+  const double part = 1 / static_cast<double>(robot.cycles(seconds));
+  for (std::uint64_t k = 0; k < robot.cycles(seconds); ++k) {
     if (k % 20 == 0) robot.loop.request(request);
     robot.step();
     const Twist& twist = robot.truth().twist_base;

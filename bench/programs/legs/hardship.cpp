@@ -37,9 +37,9 @@ struct Speeds {
   static constexpr double kSlow = 0.08;  // m/s, below which no dip is judged
 
   void step(const QuadrupedLoop& robot, double lag) {
-    requested += 0.001 / lag * (robot.command().twist_limited.linear[0] - requested);
-    limited += 0.001 / kTime * (requested - limited);
-    measured += 0.001 / kTime * (robot.truth().twist_base.linear[0] - measured);
+    requested += robot.period() / lag * (robot.command().twist_limited.linear[0] - requested);
+    limited += robot.period() / kTime * (requested - limited);
+    measured += robot.period() / kTime * (robot.truth().twist_base.linear[0] - measured);
     if (limited > kSlow) dip = std::max(dip, 1 - measured / limited);
   }
 
@@ -207,7 +207,7 @@ void walking_silent(const LegModel& model, std::uint64_t seed, WorstValues& wors
       const int silent = kMin + i % (kMax - kMin + 1);
       robot.loop.request(trot(1.0));
       robot.loop.inject_fault(node, "off");
-      robot.wait(0.001 * silent);
+      robot.wait(robot.period() * silent);
       robot.loop.inject_fault(node, "ok");
       robot.run(0.6 + period * i / kLosses, trot(1.0));
       if (stopped(robot) != 0)

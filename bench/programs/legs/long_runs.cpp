@@ -81,7 +81,7 @@ void replay(const LegModel& model, std::uint64_t seed, bool walks, WorstValues& 
       }
     }
   }
-  const ReplayReport report = robot.recording.replay(robot.loop.robot(), 0.001);
+  const ReplayReport report = robot.recording.replay(robot.loop.robot(), robot.period());
   worst.add("replay that is not exact", report.exact() ? 0 : 1, "runs");
   if (!report.exact())
     std::fprintf(stderr, "%s, seed %llu: %s", model.name.c_str(), static_cast<unsigned long long>(seed),

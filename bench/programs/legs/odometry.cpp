@@ -120,7 +120,7 @@ void drive(const LegModel& model, const Course& course, std::uint64_t seed, cons
   const auto run = [&](double seconds, const std::function<Request(double)>& request) {
     for (double t = 0; t < seconds; t += 0.02) {
       robot.loop.request(request(t));
-      for (int k = 0; k < 20; ++k) robot.step();
+      robot.wait(0.02);
       const Vector3d now = vector_of(robot.truth().pose_world.position);
       travelled += (now - before).head<2>().norm();
       before = now;
@@ -205,7 +205,7 @@ void odometry(const LegModel& model, std::uint64_t seed, WorstValues& worst) {
 }
 
 void contact(const LegModel& model, std::uint64_t seed, WorstValues& worst) {
-  constexpr int kAir = 40, kInTime = 15, kBounce = 10;  // cycles; a foot that lands leaves the ground again for less
+  constexpr double kAir = 0.04, kInTime = 0.015, kBounce = 0.01;  // s; a foot that lands bounces for less
   constexpr double kTouches = 1;                        // N
   constexpr double kSeconds = 10;
   struct Walk {
@@ -218,22 +218,23 @@ void contact(const LegModel& model, std::uint64_t seed, WorstValues& worst) {
     parameters.plant.contact_sensors = false;
     QuadrupedLoop robot(model, parameters);
     stand_up(robot);
-    std::array<int, kLegs> air{}, since{};
+    const std::uint64_t aloft = robot.cycles(kAir), limit = robot.cycles(kInTime), bounce = robot.cycles(kBounce);
+    std::array<std::uint64_t, kLegs> air{}, since{};
     std::array<bool, kLegs> waits{};
     double touchdowns = 0, found = 0, swing = 0, wrong = 0;
     const Request request = walk({chosen.speed, 0}, {ModeKind::kGait, chosen.gait});
-    for (int k = 0; k < kSeconds * 1000; ++k) {
-      if (k % 20 == 0) robot.loop.request(request);
+    for (std::uint64_t k = 0; k < robot.cycles(kSeconds); ++k) {
+      if (k % robot.cycles(0.02) == 0) robot.loop.request(request);
       robot.step();
       for (std::size_t leg = 0; leg < kLegs; ++leg) {
         const bool touches = robot.truth().normal_force[leg] > kTouches;
         const bool said = robot.state().contacts[leg].probability >= 0.5;
-        if (touches && air[leg] > kAir) waits[leg] = true, since[leg] = 0;
-        const bool in_time = since[leg] <= kInTime;
+        if (touches && air[leg] > aloft) waits[leg] = true, since[leg] = 0;
+        const bool in_time = since[leg] <= limit;
         if (waits[leg] && (said || !in_time)) touchdowns += 1, found += in_time ? 1 : 0, waits[leg] = false;
         since[leg] += 1;
         air[leg] = touches ? 0 : air[leg] + 1;
-        const bool swings = air[leg] > kBounce;
+        const bool swings = air[leg] > bounce;
         swing += swings ? 1 : 0;
         wrong += swings && said ? 1 : 0;
       }

@@ -55,16 +55,17 @@ void body_pose(const LegModel& model, std::uint64_t seed, WorstValues& worst) {
     const std::array<double, 6> begin = pose(robot);
     robot.clear();
     double sum = 0;
-    for (int k = 0; k < 4000; ++k) {
+    const std::uint64_t cycles = robot.cycles(4);
+    for (std::uint64_t k = 0; k < cycles; ++k) {
       Request request;
       double* const values[6] = {&request.posture.x,    &request.posture.y,     &request.posture.height,
                                  &request.posture.roll, &request.posture.pitch, &request.posture.yaw};
-      *values[axis] = sizes[axis] * std::sin(omega * k * 0.001);
+      *values[axis] = sizes[axis] * std::sin(omega * robot.period() * static_cast<double>(k));
       robot.loop.request(request);
       robot.step();
       sum += std::pow(pose(robot)[axis] - begin[axis] - *values[axis], 2);
     }
-    worst.add(axis < 3 ? "RMS of the place" : "RMS of the angle", std::sqrt(sum / 4000), axis < 3 ? "m" : "rad");
+    worst.add(axis < 3 ? "RMS of the place" : "RMS of the angle", std::sqrt(sum / static_cast<double>(cycles)), axis < 3 ? "m" : "rad");
     worst.add("slip of a foot", *std::max_element(robot.slipped.begin(), robot.slipped.end()), "m");
   }
   worst.add("stops", robot.permit().causes == 0 ? 0 : 1, "runs");
@@ -84,8 +85,9 @@ void circle(const LegModel& model, std::uint64_t seed, WorstValues& worst) {
     const Eigen::Vector3d begin = foot();
     double sum = 0;
     constexpr double kRadius = 0.05;  // m
-    for (int k = 0; k < 2000; ++k) {
-      const double turn = kPi * k * 0.001;
+    const std::uint64_t cycles = robot.cycles(2);
+    for (std::uint64_t k = 0; k < cycles; ++k) {
+      const double turn = kPi * robot.period() * static_cast<double>(k);
       Request request = up;
       request.posture.x = kRadius * std::sin(turn);
       request.posture.height += kRadius * (1 - std::cos(turn));
@@ -94,7 +96,7 @@ void circle(const LegModel& model, std::uint64_t seed, WorstValues& worst) {
       sum += (foot() - begin - kRadius * Eigen::Vector3d(std::sin(turn), 0, 1 - std::cos(turn))).squaredNorm();
     }
     const std::string name = name_of(static_cast<LegPlace>(leg));
-    worst.add("RMS of foot " + name, std::sqrt(sum / 2000), "m");
+    worst.add("RMS of foot " + name, std::sqrt(sum / static_cast<double>(cycles)), "m");
     worst.add("tilt with foot " + name, robot.tilt, "rad");
     robot.run(2.5, {});
   }

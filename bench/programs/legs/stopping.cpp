@@ -6,9 +6,9 @@ namespace {
 
 constexpr double kPush = 0.02;  // s
 
-void sway(QuadrupedLoop& robot, double size, int cycle) {
+void sway(QuadrupedLoop& robot, double size, std::uint64_t cycle) {
   Request request;
-  request.posture.y = size * robot.robot().leg_length() * std::sin(2 * kPi * kSway * cycle * 0.001);
+  request.posture.y = size * robot.robot().leg_length() * std::sin(2 * kPi * kSway * robot.period() * static_cast<double>(cycle));
   robot.loop.request(request);
   robot.step();
 }
@@ -43,7 +43,7 @@ void stop(const LegModel& model, std::uint64_t seed, WorstValues& worst) {
     QuadrupedLoop robot(model, seed);
     stand_up(robot);
     if (situation == "swaying") {
-      for (int k = 0; k < 1250; ++k) sway(robot, 0.1, k);
+      for (std::uint64_t k = 0; k < robot.cycles(1.25); ++k) sway(robot, 0.1, k);
     } else if (situation == "one foot up") {
       Request up = stance({ModeKind::kLift, seed % kLegs});
       up.posture.height = leg_tuning(model).lift;
@@ -80,22 +80,22 @@ void rest(const LegModel& model, std::uint64_t seed, WorstValues& worst) {
 }
 
 void silent(const LegModel& model, std::uint64_t seed, WorstValues& worst) {
-  constexpr int kSwayed = 1000;
   std::vector<Vector3> undisturbed;
-  for (int cycles = 0; cycles < 20; cycles += cycles == 0 ? 5 : 1) {
+  for (std::uint64_t cycles = 0; cycles < 20; cycles += cycles == 0 ? 5 : 1) {
     QuadrupedLoop robot(model, seed);
     stand_up(robot);
     double moved = 0;
-    for (int k = 0; k < kSwayed; ++k) {
-      if (k == 500 && cycles > 0) robot.loop.inject_fault("controller", "off");
-      if (k == 500 + cycles) robot.loop.inject_fault("controller", "ok");
+    const std::uint64_t half = robot.cycles(0.5);
+    for (std::uint64_t k = 0; k < 2 * half; ++k) {
+      if (k == half && cycles > 0) robot.loop.inject_fault("controller", "off");
+      if (k == half + cycles) robot.loop.inject_fault("controller", "ok");
       sway(robot, 0.05, k);
       const Vector3& place = robot.truth().pose_world.position;
       if (cycles == 0) {
         undisturbed.push_back(place);
         continue;
       }
-      const Vector3& other = undisturbed[static_cast<std::size_t>(k)];
+      const Vector3& other = undisturbed[k];
       moved = std::max(moved, std::hypot(place[0] - other[0], place[1] - other[1], place[2] - other[2]));
     }
     worst.add("way of the body by 5 ... 19 silent cycles", moved, "m");

@@ -30,7 +30,7 @@ void walk(QuadrupedLoop& robot, const Walk& walk, WorstValues& worst) {
   const LegModel& model = robot.robot();
   for (double time = 0; time < kMeasured; time += kSend) {
     robot.loop.request(request_of(walk));
-    for (int k = 0; k < 20; ++k, ++count) {
+    for (std::uint64_t k = 0; k < robot.cycles(0.02); ++k, ++count) {
       robot.step();
       const TruthFrame& truth = robot.truth();
       const Quaternion& q = truth.pose_world.orientation;
@@ -65,7 +65,7 @@ void end_walk(QuadrupedLoop& robot, const Walk& walk, WorstValues& worst) {
   robot.loop.request({});
   while (robot.command().legged.phase == LegPhase::kWalking && time < 5) {
     robot.step();
-    time += 0.001;
+    time += robot.period();
   }
   worst.add("stands after, " + walk.name, time, "s");
   const double speed = walk.twist[0];

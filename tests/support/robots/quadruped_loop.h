@@ -27,9 +27,15 @@ struct QuadrupedLoop {
     loop_->record();
   }
 
+  /// What bench_legs_loop is called with: Hz of the loop, and cycles that a command is late.
+  static inline double given_rate = 1000;
+  static inline std::uint64_t given_lateness = 0;
+
   static Parameters parameters(std::uint64_t seed, ErrorLevel errors) {
     Parameters result = default_parameters();
     result.robot = {};
+    result.loop.rate = given_rate;
+    result.plant.actuator_delay = given_lateness;
     result.leg_control.request_timeout = 0.5;
     result.plant.seed = seed;
     result.plant.sensor_errors = errors;
@@ -37,10 +43,10 @@ struct QuadrupedLoop {
     return result;
   }
 
-  /// Requests this every 20 cycles.
+  /// Requests this every 20 ms.
   void run(double seconds, const Request& request) {
     for (std::uint64_t k = 0; k < cycles(seconds); ++k) {
-      if (k % 20 == 0) loop.request(request);
+      if (k % cycles(0.02) == 0) loop.request(request);
       step();
     }
   }
@@ -58,7 +64,7 @@ struct QuadrupedLoop {
     tilt = std::max(tilt, tilt_now());
     const Vector3& force = loop.row().driver->sensors.imu.linear_acceleration;
     shock = std::max(shock, std::hypot(force[0], force[1], force[2]) - 9.81);
-    for (std::size_t i = 0; i < kLegs; ++i) slipped[i] += now.slip[i] * 0.001;
+    for (std::size_t i = 0; i < kLegs; ++i) slipped[i] += now.slip[i] * period();
   }
   struct Fold {
     int cycles = 0;      ///< until the gate brakes
@@ -69,15 +75,16 @@ struct QuadrupedLoop {
     clear();
     loop.e_stop();
     Fold fold;
-    for (int k = 1; k <= 3000; ++k) {
+    for (int k = 1; k <= static_cast<int>(cycles(3)); ++k) {
       if (fold.cycles == 0 || gate().verdict != GateVerdict::kBrake) fold.cycles = k;
       step();
-      if (speed() >= 0.01) fold.rest_at = k * 0.001;
+      if (speed() >= 0.01) fold.rest_at = k * period();
     }
     return fold;
   }
   void clear() { effort = tilt = shock = 0, slipped = {}; }
-  static std::uint64_t cycles(double seconds) { return static_cast<std::uint64_t>(std::llround(seconds / 0.001)); }
+  double period() const { return parameters_.loop.period(); }
+  std::uint64_t cycles(double seconds) const { return static_cast<std::uint64_t>(std::llround(seconds / period())); }
 
   const LegModel& robot() const { return leg_model_of(loop.robot().machine()); }
   const TruthFrame& truth() const { return loop.row().driver->truth; }
