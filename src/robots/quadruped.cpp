@@ -96,7 +96,7 @@ SafetyParameters Quadruped::limits() const {
   limits.imu_lost.reaction = limits.imu_stuck.reaction = limits.imu_jump.reaction = Reaction::kBrake;
   limits.lift.reaction = Reaction::kOff;  // a robot that lies stands on no foot
   double& silence = limits.encoders_lost.persistence;
-  silence = std::max(silence, tolerated_silence(parameters_));
+  silence = std::max(silence, tolerated_silence(parameters_, true));
   return limits;
 }
 

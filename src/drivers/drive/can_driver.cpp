@@ -131,6 +131,7 @@ void CanDriver::read(SensorFrame& sensors) noexcept {
   const CanTime now = clock_();
   now_ns_ = now.time_ns;
   for (std::size_t i = 0; i < lines_.size(); ++i) receive(i, now);
+  drives_.judge_silence(now_ns_);
   judge_faults();
   sensors.driver_state = state_;
   sensors.faults = faults_;

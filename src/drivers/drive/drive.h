@@ -85,6 +85,9 @@ class Drive : public DriveStateMachine {
   /// Takes a frame that was received from any party of the bus; `now_ns` is the time of its reception.
   virtual void receive(const can_frame& frame, std::int64_t now_ns) noexcept = 0;
 
+  /// Fails if the last sample of a motor in `running` is older than max_silence. `step` begins with the same.
+  void judge_silence(std::int64_t now_ns) noexcept;
+
   /// Runs one cycle after all frames were received, and adds the frames to send.
   void step(const DriveCommand& command, std::int64_t now_ns, FrameBatch& send) noexcept;
 
@@ -144,7 +147,6 @@ class Drive : public DriveStateMachine {
   const std::int64_t period_ns_;
 
  private:
-  void judge_silence(std::int64_t now_ns) noexcept;
   bool accept_motion(double position, double velocity, std::int64_t now_ns) noexcept;  ///< Returns whether it is valid.
   bool is_possible(double velocity) noexcept;                                          ///< Fails if it is not.
   void note_order(double torque) noexcept;

@@ -22,6 +22,10 @@ void DriveSet::receive(const can_frame& frame, std::int64_t now_ns, std::size_t 
   }
 }
 
+void DriveSet::judge_silence(std::int64_t now_ns) noexcept {
+  for (const auto& drive : drives_) drive->judge_silence(now_ns);
+}
+
 void DriveSet::step(std::span<const DriveCommand> commands, std::int64_t now_ns, std::span<FrameBatch> send) noexcept {
   for (std::size_t i = 0; i < drives_.size(); ++i) {
     drives_[i]->step(i < commands.size() ? commands[i] : DriveCommand{}, now_ns, send[bus_of_[i]]);

@@ -33,6 +33,8 @@ class DriveSet {
 
   void receive(const can_frame& frame, std::int64_t now_ns, std::size_t bus = 0) noexcept;
 
+  void judge_silence(std::int64_t now_ns) noexcept;
+
   /// Runs one cycle, with one command per joint and one batch per bus.
   void step(std::span<const DriveCommand> commands, std::int64_t now_ns, std::span<FrameBatch> send) noexcept;
 

@@ -21,6 +21,7 @@ inline constexpr std::array kDriveRows{
 };
 
 /// Returns how old in s the samples of the driver may become without a fault of the robot, by the nature of its line.
-double tolerated_silence(const Parameters& parameters);
+/// Drives of wheels and of legs may share a driver.
+double tolerated_silence(const Parameters& parameters, bool on_legs);
 
 }  // namespace robot_control

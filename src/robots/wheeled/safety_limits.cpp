@@ -34,7 +34,7 @@ SafetyParameters safety_limits(const Parameters& parameters, const DriveTrain& r
   if (robot.wheel_command == WheelCommand::kVelocity) limits.joint_numbers = kValidKinematics;
   for (const WheelModel& wheel : robot.wheels) limits.count_ripple[wheel.joint] = count_ripple(robot, wheel, period);
   double& silence = limits.encoders_lost.persistence;
-  silence = std::max(silence, tolerated_silence(parameters));
+  silence = std::max(silence, tolerated_silence(parameters, false));
   return limits;
 }
 
