@@ -24,9 +24,10 @@ inline constexpr std::uint32_t kValidKinematics = kValidPosition | kValidVelocit
 /// The bits of a drive with an encoder and a measurement of its torque.
 inline constexpr std::uint32_t kValidMotion = kValidPosition | kValidVelocity | kValidEffort;
 
-/// A drive that sends no sample in a cycle leaves the last one in force, and its age grows.
+/// A drive that sends no sample in a cycle leaves the last one in force, and its age grows. Its position is moved on by
+/// the driver.
 struct JointSample {
-  double position = 0;  ///< rad or m, at t_k − age
+  double position = 0;  ///< rad or m, at t_k: at t_k − age, plus velocity · age
   double velocity = 0;  ///< rad/s or m/s, at t_k − age
   double effort = 0;  ///< N·m or N, the mean actually applied over one period before t_k − age; NaN: never measured
   double temperature = 0;   ///< °C

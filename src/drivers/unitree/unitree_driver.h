@@ -13,7 +13,8 @@
 /// The effort is clamped to torque_limit; the motor limits the sum. `stop` sends the brake as the last datagram.
 ///
 /// `read` takes all states that arrived and uses the one with the newest tick. Its arrival counts as the time of the
-/// sample. The frame has the robot's IMU, the temperatures of its motors, and its battery with the sum of the cells. It
+/// sample. In a cycle without a new state each joint moves on with its velocity: an angle that is held would show a
+/// foot that stands while the body stops (docs/evidence/leg_drives.md). The frame has the robot's IMU, the temperatures of its motors, and its battery with the sum of the cells. It
 /// has the emergency stop while L2 and B of the remote are pressed. The raw numbers of the feet's sensors are not
 /// newton, so the frame has no contacts.
 ///
@@ -284,11 +285,13 @@ void UnitreeDriver<Robot>::fill_joint(std::size_t i, JointSample& sample) const 
   const UnitreeJoint<Robot>& joint = parameters_.joints[i];
   const auto& motor = state_.motors[joint.motor];
   const auto direction = static_cast<double>(joint.direction);
-  sample = {.position = position_of(i, state_),
-            .velocity = direction * double{motor.dq},
+  const double velocity = direction * double{motor.dq};
+  const std::int64_t age_ns = now_ns_ - state_ns_;
+  sample = {.position = position_of(i, state_) + 1.0e-9 * velocity * static_cast<double>(age_ns),
+            .velocity = velocity,
             .effort = direction * motor.tau,
             .temperature = static_cast<double>(motor.temperature),
-            .age_ns = now_ns_ - state_ns_,
+            .age_ns = age_ns,
             .valid = fresh() ? kValidMotion | kValidTemperature : 0U};
   const bool names_joint = status().cause == DriveCause::kHot || status().cause == DriveCause::kPositionJump;
   if (names_joint && status().code == i) sample.fault = static_cast<std::uint32_t>(status().cause);

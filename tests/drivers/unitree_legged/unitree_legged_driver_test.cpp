@@ -104,6 +104,16 @@ TEST_P(UnitreeLegged, AnImpedanceGoesToTheMotorsAsItIs) {
   }
 }
 
+TEST_P(UnitreeLegged, AJointMovesOnWithItsVelocityWhileNoStateComes) {
+  run(0.5);
+  inject("line", "cut");
+  const JointSample before = machine_.cycles(2, kTurns).joints[1], held = machine_.cycles(1, kTurns).joints[1];
+  EXPECT_GT(std::abs(held.velocity), 0.5);
+  EXPECT_GT(before.age_ns, 0);
+  EXPECT_EQ(held.velocity, before.velocity);
+  EXPECT_NEAR(held.position, before.position + held.velocity * machine_.period(), 1.0e-12);
+}
+
 TEST_P(UnitreeLegged, ABrakeDampsWithoutStiffness) {
   run(0.01, {});
   EXPECT_EQ(machine_.ordered(0).mode, unitree::kServo);
