@@ -1,12 +1,14 @@
-// A robot on legs: its posture, its gait, and the feet that bear.
+// A robot on legs: its posture, its gait, the feet that bear, and the ground below them.
 import { by, make, number, put, rows, show } from "/dom.js";
 import { onRead } from "/link.js";
 import { words } from "/words.js";
 
+const LEVEL = 0.06, DEGREE = Math.PI / 180;  // m/m: a slope below it counts as level (posture/ground_slope.h)
+
 onRead("fast", ({ legs }) => {
   by("gait-card").hidden = !legs;
   if (!legs) return;
-  const { posture, gait, chosen, gaits, feet } = legs, whose = chosen === "auto" ? "by the speed" : "chosen";
+  const { posture, gait, chosen, gaits, feet, slope } = legs, whose = chosen === "auto" ? "by the speed" : "chosen";
   put("posture", gait ? `${posture}, ${gait} (${whose})` : posture);
   put("mini-gait", (gait || posture).replace("_", " "));
   rows(by("gaits"), gaits.length, (i) => {
@@ -15,10 +17,14 @@ onRead("fast", ({ legs }) => {
     return button;
   }).forEach((button) => button.setAttribute("aria-pressed", String(button.dataset.gait === chosen)));
   rows(by("feet"), feet.length, () => make("span", {}, make("span"), make("b"))).forEach((foot, i) => {
-    const { name, bears, load } = feet[i];
-    foot.className = bears ? "bears" : "";
+    const { name, bears, load, met_riser, reaching } = feet[i];
+    foot.className = met_riser || reaching ? "meets" : bears ? "bears" : "";
     foot.title = words(name.replace("_", " "));
     show(foot.firstChild, name.split("_").map((word) => word.charAt(0).toUpperCase()).join(""));
-    show(foot.lastChild, bears ? `${number(load, 0)} N` : gait ? words("swings") : "–");
+    const meets = met_riser ? "obstacle" : reaching ? "no ground" : "";
+    show(foot.lastChild, meets ? words(meets) : bears ? `${number(load, 0)} N` : gait ? words("swings") : "–");
   });
+  const [ahead, left] = slope.map((rise) => number(Math.atan(rise) / DEGREE, 0));
+  by("slope").hidden = !(Math.hypot(...slope) > LEVEL);
+  put("slope", words(`The ground rises ${ahead}° to the front and ${left}° to the left.`));
 });
