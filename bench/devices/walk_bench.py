@@ -10,8 +10,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from bench.devices.disturbed_walk import DisturbedWalk, WalkFigures, run_walk, together
-from bench.devices.walk_loss import LOSSES, PHASES, WalkLoss, WalkOutcome, run_loss
-from bench.faults.sequence_judge import OVER_LIMIT
+from bench.devices.walk_loss import LEANS, LOSSES, PHASES, WalkLoss, WalkOutcome, run_loss
 from bench.rows import Result, Row, Say, bounded, judged, plain
 from bench.runs.runner import Runner
 
@@ -59,7 +58,7 @@ def loss_rows(first: int, phases: int, say: Say, runner: Runner) -> list[Row]:
                 bounded(f"{name} until it is named", 1e3 * max(e.named for e in found), "ms", 1e3 * loss.latest)
             )
         tilt = max(each.tilt for kind in losses for each in outcomes[drive, kind])
-        rows.append(bounded(f"{drive}: greatest tilt", tilt, "rad", OVER_LIMIT))
+        rows.append(bounded(f"{drive}: greatest tilt", tilt, "rad", LEANS))
     return rows
 
 
