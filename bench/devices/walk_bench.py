@@ -14,6 +14,7 @@ from bench.devices.walk_loss import LEANS, LOSSES, PHASES, WalkLoss, WalkOutcome
 from bench.rows import Result, Row, Say, bounded, judged, plain
 from bench.runs.runner import Runner
 
+PARTS = ("losses", "disturbed")
 WALKS = 30  # of each drive, half an hour
 WALK_TIME = 60.0  # s; in a longer walk a late correction of the heading outweighs lost frames
 STATES = ("ok", "disturbed")
@@ -24,7 +25,7 @@ def bench(parts: Sequence[str], first: int, runs: int | None, say: Say, runner: 
     """The table, and whether every figure keeps its bound.
 
     Args:
-        parts: what is measured, of losses and disturbed.
+        parts: what is measured, of `PARTS`.
         first: the first phase and seed.
         runs: phases of each loss, and the share of `WALKS` in `PHASES`. None: all.
         say: receives progress and every broken rule.
