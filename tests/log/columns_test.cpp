@@ -140,7 +140,8 @@ TEST_F(Columns, HoldTheTruthOfEachContact) {
 TEST_F(Columns, ShowHowARobotOnLegsWalks) {
   controller.command.requested.twist.linear = {0.5, 0.2, 0};
   controller.command.twist_limited.linear = {0.4, 0.1, 0};
-  controller.command.legged = {.phase = LegPhase::kWalking, .gait = 1, .gait_phase = 0.25, .slope = {0, -0.25}, .risers = 2, .reaches = 4};
+  controller.command.legged = {
+      .phase = LegPhase::kWalking, .gait = 1, .gait_phase = 0.25, .slope = {0, -0.25}, .risers = 2, .reaches = 4};
   controller.command.contact_schedule = {0, 0.5, 0, 0.75};
   estimator.state.contacts[1].probability = 0.9;
   estimator.state.contacts[1].load = 60;

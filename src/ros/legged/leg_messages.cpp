@@ -114,7 +114,7 @@ std::string ground_words(const LeggedCommand& command) {
   const auto [ahead, left] = command.slope;
   const double angle = std::atan(std::hypot(ahead, left));
   if (!(angle >= kLevelSlope)) return "";
-  static constexpr std::array kSides{"front", "front left",  "left",  "rear left",
+  static constexpr std::array kSides{"front", "front left", "left",  "rear left",
                                      "rear",  "rear right", "right", "front right"};
   const double eighths = std::atan2(left, ahead) * 4 / std::numbers::pi;
   return "rises " + in_degrees(angle) + " to the " + kSides[static_cast<std::size_t>(std::lround(eighths) + 8) % 8];

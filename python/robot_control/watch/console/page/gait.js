@@ -3,7 +3,8 @@ import { by, make, number, put, rows, show } from "/dom.js";
 import { onRead } from "/link.js";
 import { words } from "/words.js";
 
-const LEVEL = 0.06, DEGREE = Math.PI / 180;  // m/m: a slope below it counts as level (posture/ground_slope.h)
+const LEVEL = 0.06;  // m/m: a slope below it counts as level (posture/ground_slope.h)
+const SIDES = ["front", "front left", "left", "rear left", "rear", "rear right", "right", "front right"];
 
 onRead("fast", ({ legs }) => {
   by("gait-card").hidden = !legs;
@@ -24,7 +25,7 @@ onRead("fast", ({ legs }) => {
     const meets = met_riser ? "obstacle" : reaching ? "no ground" : "";
     show(foot.lastChild, meets ? words(meets) : bears ? `${number(load, 0)} N` : gait ? words("swings") : "–");
   });
-  const [ahead, left] = slope.map((rise) => number(Math.atan(rise) / DEGREE, 0));
-  by("slope").hidden = !(Math.hypot(...slope) > LEVEL);
-  put("slope", words(`The ground rises ${ahead}° to the front and ${left}° to the left.`));
+  const rise = Math.hypot(...slope), side = SIDES[(Math.round(Math.atan2(slope[1], slope[0]) * 4 / Math.PI) + 8) % 8];
+  by("slope").hidden = !(rise > LEVEL);
+  put("slope", words(`The ground rises ${number(Math.atan(rise) * 180 / Math.PI, 0)}° to the ${side}.`));
 });
