@@ -22,6 +22,7 @@ from typing import Any
 from robot_control.files.files import write_text
 
 from bench import legs, markdown, recordings
+from bench.devices import walk_bench
 from bench.drives.sensor_errors import LEVELS
 from bench.drives.wheel_command import WHEEL_COMMANDS
 from bench.faults.fault_sequence import ALL_RUNS
@@ -72,6 +73,8 @@ PARTS = {
     "loops": ("speed", "python", "instructions"),
     "recordings": recordings.PARTS,
 }
+ON_LEGS = {"devices": walk_bench.PARTS, "navigation": ("goals",)}
+"""Parts that another robot than diffbot has; of a benchmark that is not here it has all"""
 NAMES = MEASURED + JUDGED
 SEED_PROGRAMS = {"limiter": 1_000_000, "release": 10_000, "bags": 10_000}  # seeds; a minute at most on two cores
 BY_WHEEL_COMMAND = ("campaign", "driving", "drive", "release")
@@ -129,9 +132,13 @@ def run_seed_program(name: str, given: argparse.Namespace, runner: Runner) -> Re
     return result, all(row["value"] == 0 for row in result["rows"] if row["name"].endswith("sequences failed"))
 
 
+def _possible_parts(name: str, robot: str) -> tuple[str, ...]:
+    return PARTS[name] if robot == DIFFBOT else ON_LEGS.get(name, PARTS[name])
+
+
 def _parts_of(name: str, given: argparse.Namespace) -> list[str]:
-    """The parts of this benchmark that are named, or all."""
-    return [part for part in given.parts if part in PARTS[name]] or list(PARTS[name])
+    """The parts of this benchmark that are named, or all that the robot has."""
+    return [part for part in given.parts if part in PARTS[name]] or list(_possible_parts(name, given.robot))
 
 
 def _odometry(bench: Any, given: argparse.Namespace, runner: Runner) -> Result:  # noqa: ANN401 (a module)
@@ -145,9 +152,7 @@ def _odometry(bench: Any, given: argparse.Namespace, runner: Runner) -> Result: 
 def _devices(bench: Any, given: argparse.Namespace, runner: Runner) -> Result:  # noqa: ANN401 (a module)
     parts = _parts_of("devices", given)
     if given.robot == QUADBOT:
-        legs_bench = importlib.import_module("bench.devices.walk_bench")
-        on_legs: Result = legs_bench.bench(parts, given.first, given.runs, say, runner)
-        return on_legs
+        return walk_bench.bench(parts, given.first, given.runs, say, runner)
     result: Result = bench.bench(
         parts, given.first, given.runs or bench.ALL_RUNS, say, runner, program=programs_of(given)
     )
@@ -326,6 +331,8 @@ def parse(arguments: Sequence[str] | None = None) -> argparse.Namespace:
     given.names = given.names or list(MEASURED)
     alone = [name for name in given.names if name not in ON_CLUSTERS]
     other = [name for name in given.names if name not in BY_ROBOT]
+    known = {part for name in PARTS if name in given.names for part in _possible_parts(name, given.robot)}
+    absent = [part for part in given.parts if part not in known]
     writes = "--markdown writes the tables of"
     for wrong, why in (
         (given.scheduler and alone, f"{', '.join(alone)} cannot run on a cluster; {', '.join(ON_CLUSTERS)} can"),
@@ -336,6 +343,8 @@ def parse(arguments: Sequence[str] | None = None) -> argparse.Namespace:
             f"--robot {given.robot} is for {', '.join(BY_ROBOT)} without --markdown",
         ),
         (given.markdown and (given.rate != legs.RATES[0] or given.delay), f"{writes} the default --rate and --delay"),
+        (absent, f"{', '.join(absent)}: no part of --robot {given.robot}, which has {', '.join(sorted(known))}"),
+        ("logs" in given.parts and given.logs is None, "navigation logs needs --logs FOLDER"),
         (given.markdown and given.only, f"{writes} all scenarios, not of --only some"),
     ):
         if wrong:

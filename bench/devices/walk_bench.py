@@ -10,11 +10,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from bench.devices.disturbed_walk import DisturbedWalk, WalkFigures, run_walk, together
-from bench.devices.walk_loss import LOSSES, PHASES, WalkLoss, WalkOutcome, run_loss
-from bench.faults.sequence_judge import OVER_LIMIT
+from bench.devices.walk_loss import LEANS, LOSSES, PHASES, WalkLoss, WalkOutcome, run_loss
 from bench.rows import Result, Row, Say, bounded, judged, plain
 from bench.runs.runner import Runner
 
+PARTS = ("losses", "disturbed")
 WALKS = 30  # of each drive, half an hour
 WALK_TIME = 60.0  # s; in a longer walk a late correction of the heading outweighs lost frames
 STATES = ("ok", "disturbed")
@@ -25,7 +25,7 @@ def bench(parts: Sequence[str], first: int, runs: int | None, say: Say, runner: 
     """The table, and whether every figure keeps its bound.
 
     Args:
-        parts: what is measured, of losses and disturbed.
+        parts: what is measured, of `PARTS`.
         first: the first phase and seed.
         runs: phases of each loss, and the share of `WALKS` in `PHASES`. None: all.
         say: receives progress and every broken rule.
@@ -59,7 +59,7 @@ def loss_rows(first: int, phases: int, say: Say, runner: Runner) -> list[Row]:
                 bounded(f"{name} until it is named", 1e3 * max(e.named for e in found), "ms", 1e3 * loss.latest)
             )
         tilt = max(each.tilt for kind in losses for each in outcomes[drive, kind])
-        rows.append(bounded(f"{drive}: greatest tilt", tilt, "rad", OVER_LIMIT))
+        rows.append(bounded(f"{drive}: greatest tilt", tilt, "rad", LEANS))
     return rows
 
 

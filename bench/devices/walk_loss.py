@@ -3,7 +3,7 @@
 The loss comes at one of `PHASES` phases of a stride, while the request goes on.
 
     named    its stop latches and the driver's words name it; only where samples cease, encoders_lost may stop before
-    upright  the body never leans by `OVER`
+    upright  the body never leans by more than `LEANS`
     folds    from `FOLD_TIME` after the loss on the robot lies and rests, as in bench/faults/sequence_judge.py
 """
 
@@ -20,14 +20,16 @@ from robot_control.loop.drives import DRIVES
 from robot_control.loop.signal_names import bits_in, mask_of
 
 from bench.devices.loss_trial import first
-from bench.faults.sequence_judge import FOLD_TIME, MEAN_TIME, OVER_LIMIT, STANDING_SPEED
+from bench.faults.sequence_judge import FOLD_TIME, MEAN_TIME, STANDING_SPEED, resting_speed
 
 SPEED = 0.5  # m/s
 RISE_TIME = 3.0  # s, from the rest until it trots evenly
 STRIDE = 0.5  # s, of the trot at this speed
 PHASES = 20
 CAN_RATE, DATAGRAM_RATE = 1000.0, 500.0  # Hz
-LOSS, FAULT = 0.02, 0.3  # s until it is named
+LOSS, FAULT = 0.02, 0.3  # s until it is named: where samples cease, and what a motor or battery reports
+SEEN = 0.01  # s until it is named, where the next sample or report shows it: a few cycles, no time without samples
+LEANS = 0.6  # rad; docs/drivers.md states 0.55 after the loss of one bus
 LYING = 0.1  # m above the place where it lay; one leg may hold it up
 COLUMNS = ("permit_causes", "truth_tilt", "truth_z", "truth_linear", "truth_lateral")
 EVERY_JOINT = "every joint"
@@ -52,7 +54,7 @@ CAN = {
     "cable of a leg": Loss("can0", "off", LOSS, "is silent"),
     "motor silent": Loss(KNEE, "off", LOSS, f"{OF_KNEE} is silent"),
     "motor restarts": Loss(KNEE, "reset", LOSS, f"{OF_KNEE} is silent"),
-    "second writer": Loss("can0", "second_writer", LOSS, "commanded by another program"),
+    "second writer": Loss("can0", "second_writer", SEEN, "commanded by another program"),
     "motor hot": Loss(KNEE, "hot", FAULT, f"{OF_KNEE} is too hot"),
     "battery empty": Loss(EVERY_JOINT, "under_voltage", FAULT, "under-voltage"),
 }
@@ -61,16 +63,17 @@ UNITREE = {
     "robot off": Loss("robot", "off", LOSS, "is silent"),
     "crc wrong": Loss("robot", "encrypted", LOSS, "wrong check sum"),
     "stale tick": Loss("robot", "frozen", LOSS, "repeats its last"),
-    "another robot": Loss("robot", "other_robot", LOSS, "another one than before"),
+    "another robot": Loss("robot", "other_robot", SEEN, "another one than before"),
     "motor hot": Loss("motor", "hot", FAULT, "is too hot"),
     "battery empty": Loss("robot", "low_battery", FAULT, "low supply"),
     "e-stop of the remote": Loss("robot", "e_stop", FAULT, "", "e_stop_input"),
 }
 BRIDGE = {
     "bridge gone": Loss("bridge", "off", LOSS, "lost its bridge"),
-    "second writer": Loss("bridge", "second_writer", LOSS, "commanded by another program"),
-    "second writer sends": Loss("bridge", "other_commands", LOSS, "commanded by another program"),
-    "motion service": Loss("bridge", "active", LOSS, "motion service"),
+    "second writer": Loss("bridge", "second_writer", SEEN, "commanded by another program"),
+    "second writer sends": Loss("bridge", "other_commands", SEEN, "commanded by another program"),
+    "motion service begins": Loss("bridge", "active", SEEN, "motion service of its maker to be released"),
+    "motion service is asked": Loss("bridge", "asked", SEEN, "motion service of its maker to answer"),
 }
 LOSSES = {
     "damiao": CAN,
@@ -130,10 +133,9 @@ def broken_rules(loss: Loss, loop: ClosedLoop, log: Log, before: int) -> Iterato
         yield f"named: {bits_in('StopCause', before)}"
     if loss.words not in loop.warning:
         yield f"named: {loop.warning}"
-    if log["truth_tilt"].max() > OVER_LIMIT:
-        yield "upright"
-    last = round(MEAN_TIME / loop.period)
-    speed = np.hypot(*(log[f"truth_{way}"][-last:].mean() for way in ("linear", "lateral")))
+    if log["truth_tilt"].max() > LEANS:
+        yield f"upright: {log['truth_tilt'].max():.2f} rad"
+    speed = resting_speed(log, loop.period, {"truth_linear": 1, "truth_lateral": 1})[-1]
     height = log["truth_z"][-1]
     if speed > STANDING_SPEED or height > LYING:
         yield f"folds: {speed:.2f} m/s at {height:.2f} m"

@@ -34,7 +34,7 @@ to SWAY_SPEED.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from itertools import pairwise
 
@@ -117,6 +117,15 @@ def blocks(mask: Mask) -> list[tuple[int, int]]:
     return [(int(first), int(end)) for first, end in zip(edges[::2], edges[1::2], strict=True)]
 
 
+def resting_speed(log: Log, period: float, arms: Mapping[str, float]) -> Array:
+    """m/s, by which a robot rests below STANDING_SPEED: the means of these columns over MEAN_TIME, each times its arm.
+
+    At the beginning the means are over fewer cycles. `period` is in s.
+    """
+    window = max(1, round(MEAN_TIME / period))
+    return np.asarray(sum(np.abs(_mean(log[name], window)) * arm for name, arm in arms.items()))
+
+
 def _mean(values: Array, window: int) -> Array:
     """Means over the last `window` values, at the beginning over fewer."""
     sums = np.concatenate([[0.0], np.cumsum(values)])
@@ -134,10 +143,9 @@ class _Court:
         self._period = period
         self._speed = np.abs(log["truth_linear"]) + np.abs(log["truth_angular"]) * wheel_base / 2
         window = max(1, round(MEAN_TIME / period))
-        linear, angular = (np.abs(_mean(log[name], window)) for name in ("truth_linear", "truth_angular"))
         tilt = log["truth_tilt"]
         rocks = np.abs(tilt - tilt[np.maximum(np.arange(len(tilt)) - window, 0)]) > ROCKING
-        mean_speed = linear + angular * wheel_base / 2
+        mean_speed = resting_speed(log, period, {"truth_linear": 1, "truth_angular": wheel_base / 2})
         self._standing = (mean_speed <= STANDING_SPEED) | rocks
         self._on_legs = bool(sequence.gait)
         self._unbraked = failing(log, "motor", "garbage", *([] if self._on_legs else ["off", "intermittent"]))

@@ -227,7 +227,8 @@ class Robot:
 
     def _note(self, trip: Trip) -> None:
         trip.way += math.dist(self.place[:2], self._before[:2])
-        trip.air = min(trip.air, self.air_at(self.place, moving=False, outline=self._outline))
+        if not trip.hit:  # what moves on pushes it anywhere
+            trip.air = min(trip.air, self.air_at(self.place, moving=False, outline=self._outline))
         air = self.air_at(self.place, moving=True, outline=self._outline)
         if air <= 0 and not trip.hit:
             trip.hit, trip.drove_into = (

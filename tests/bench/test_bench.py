@@ -88,6 +88,43 @@ def test_an_unknown_name_is_refused(capsys):
     )
 
 
+@pytest.mark.parametrize(
+    ("command", "complaint"),
+    [
+        ("devices answers", "answers: no part of --robot quadbot, which has disturbed, losses"),
+        ("devices losses slope", "slope: no part of --robot quadbot"),
+        ("navigation routes guard", "routes, guard: no part of --robot quadbot, which has goals"),
+        ("fleet sequences", "--robot quadbot is for campaign, devices, navigation"),
+        ("devices losses", ""),
+        ("devices navigation goals disturbed", ""),
+        ("devices campaign", ""),
+    ],
+)
+def test_a_part_that_the_robot_does_not_have_is_refused(capsys, command, complaint):
+    words = [*command.split(), "--robot", "quadbot"]
+    if not complaint:
+        assert bench.parse(words).robot == "quadbot"
+        return
+    with pytest.raises(SystemExit) as ended:
+        bench.parse(words)
+    assert ended.value.code != 0
+    assert complaint in capsys.readouterr().err
+
+
+def test_all_parts_are_those_that_the_robot_has():
+    names = ["devices", "navigation"]
+    for words, parts in (([], bench.PARTS), (["--robot", "quadbot"], bench.ON_LEGS)):
+        given = bench.parse([*names, *words])
+        assert [bench._parts_of(name, given) for name in names] == [list(parts[name]) for name in names]
+
+
+def test_recorded_lasers_without_their_folder_are_refused(capsys):
+    with pytest.raises(SystemExit):
+        bench.parse(["navigation", "logs"])
+    assert "navigation logs needs --logs FOLDER" in capsys.readouterr().err
+    assert bench.parse(["navigation"]).parts == []
+
+
 @pytest.mark.parametrize(("failed", "code"), [(0, 0), (1, 1)])
 def test_a_limiter_that_violates_a_property_is_a_failure(tmp_path, monkeypatch, failed, code):
     program(

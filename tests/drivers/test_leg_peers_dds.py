@@ -25,8 +25,9 @@ REPORT = 24  # bytes before a state
 DOMAIN = 100 + os.getpid() % 100
 """of DDS; other tests on this machine have another one"""
 MOTORS = 20
-STOPPED = 0.02
-"""s: the driver's max_silence of 16 ms and a cycle of 2 ms, and 2 ms of this machine"""
+STOPPED = 10 * 0.02
+"""s: ten times what docs/drivers.md states, because this machine may be busy; UnitreeGo.EachLossIsNamedInTime… has the
+bound itself, in virtual time"""
 FEW = 20
 
 
@@ -333,7 +334,7 @@ def test_the_bridge_damps_the_legs_of_a_driver_that_ends_or_hangs(sdk, robot, ch
         time.sleep(0.3)
         damping = [when for when, command in commands if when > at and command.motor_cmd[0].kd == 4]
         sys.stdout.write(f"damps after {1e3 * (damping[0] - at):.1f} ms\n")
-        assert damping[0] - at < 0.03
+        assert damping[0] - at < STOPPED
         assert abs(turned(robot)) < 0.01
         time.sleep(4)
         count = len(commands)

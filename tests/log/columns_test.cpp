@@ -140,7 +140,8 @@ TEST_F(Columns, HoldTheTruthOfEachContact) {
 TEST_F(Columns, ShowHowARobotOnLegsWalks) {
   controller.command.requested.twist.linear = {0.5, 0.2, 0};
   controller.command.twist_limited.linear = {0.4, 0.1, 0};
-  controller.command.legged = {.phase = LegPhase::kWalking, .gait = 1, .gait_phase = 0.25};
+  controller.command.legged = {
+      .phase = LegPhase::kWalking, .gait = 1, .gait_phase = 0.25, .slope = {0, -0.25}, .risers = 2, .reaches = 4};
   controller.command.contact_schedule = {0, 0.5, 0, 0.75};
   estimator.state.contacts[1].probability = 0.9;
   estimator.state.contacts[1].load = 60;
@@ -149,6 +150,9 @@ TEST_F(Columns, ShowHowARobotOnLegsWalks) {
   EXPECT_EQ(value("legged_phase"), 6);
   EXPECT_EQ(value("legged_gait"), 1);
   EXPECT_EQ(value("legged_gait_phase"), 0.25);
+  EXPECT_EQ(value("slope_left"), -0.25);
+  EXPECT_EQ(value("legged_risers"), 2);
+  EXPECT_EQ(value("legged_reaches"), 4);
   EXPECT_EQ(value("front_right_stance"), 0.5);
   EXPECT_EQ(value("rear_right_stance"), 0.75);
   EXPECT_EQ(value(kContactLinks[1] + "_estimate_contact_probability"), 0.9);

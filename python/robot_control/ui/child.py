@@ -13,13 +13,16 @@ END_LIMIT = 20.0
 
 
 class Child:
-    """A program of ours in a process group of its own, its output in a file."""
+    """A program of ours in a process group of its own, its output in a file.
+
+    It also gets SIGINT when the thread that started it ends, even by SIGKILL.
+    """
 
     def __init__(self, command: Sequence[str], output: Path, environment: Mapping[str, str] | None = None) -> None:
         self.output = output
         self._file: IO[bytes] = output.open("wb")
         # A shell starts its background jobs with SIGINT ignored, and children would inherit that.
-        hearing = ("env", "--default-signal=INT", *command)
+        hearing = ("setpriv", "--pdeathsig", "INT", "env", "--default-signal=INT", *command)
         streams: dict[str, Any] = {"stdin": subprocess.DEVNULL, "stdout": self._file, "stderr": subprocess.STDOUT}
         self._process = subprocess.Popen(hearing, **streams, env=environment, start_new_session=True)
 

@@ -115,6 +115,7 @@ class LegControllerNode final : public CommandedNode {
     report_command(report, command_, std::exchange(since_report_, 0), programs(), intake().senders(loop_ns()), {},
                    intake().revoked());
     report.value("posture", std::string(name_of(command_.legged.phase)));
+    report.value("ground", ground_words(command_.legged));
   }
 
  private:

@@ -1,6 +1,7 @@
 #include "ros/legged/leg_messages.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -14,6 +15,13 @@
 #include "signals/roles.h"
 
 namespace robot_control {
+namespace {
+
+std::string in_degrees(double angle) {
+  return shortest(std::round(angle * 1800 / std::numbers::pi) / 10) + " deg";
+}
+
+}  // namespace
 
 Posture posture_of(const BodyPose& message) {
   return {.height = message.height,
@@ -75,6 +83,8 @@ LegState leg_state(const LegReport& report, const LegModel& robot, ros::Time sta
   message.body.roll = roll;
   message.body.pitch = pitch;
   message.body.yaw = yaw;
+  message.slope_ahead = command.legged.slope[0];
+  message.slope_left = command.legged.slope[1];
   for (const BitName& row : kCommandReasonNames) {
     if ((report.reasons & row.bit) == 0) continue;
     message.reasons.emplace_back(row.name);
@@ -86,6 +96,8 @@ LegState leg_state(const LegReport& report, const LegModel& robot, ros::Time sta
     message.bears.push_back(contact.probability > 0.5 ? 1 : 0);
     message.load.push_back(contact.load);
     message.slip.push_back(contact.slip);
+    message.met_riser.push_back(command.legged.risers >> leg & 1);
+    message.reaching.push_back(command.legged.reaches >> leg & 1);
   }
   for (std::size_t i = 0; i < robot.joints.size(); ++i) {
     const JointCommand& plan = report.plan.joints[i];
@@ -98,11 +110,20 @@ LegState leg_state(const LegReport& report, const LegModel& robot, ros::Time sta
   return message;
 }
 
+std::string ground_words(const LeggedCommand& command) {
+  const auto [ahead, left] = command.slope;
+  const double angle = std::atan(std::hypot(ahead, left));
+  if (!(angle >= kLevelSlope)) return "";
+  static constexpr std::array kSides{"front", "front left", "left",  "rear left",
+                                     "rear",  "rear right", "right", "front right"};
+  const double eighths = std::atan2(left, ahead) * 4 / std::numbers::pi;
+  return "rises " + in_degrees(angle) + " to the " + kSides[static_cast<std::size_t>(std::lround(eighths) + 8) % 8];
+}
+
 std::string slope_words(std::uint64_t reasons, const StateFrame& state, const LegModel& robot) {
   if ((reasons & kReasonTooSteep) == 0) return "";
   const double up = vertical_over_ground(state.base.attitude, robot.lying_pitch).z();
-  const auto degrees = [](double angle) { return shortest(std::round(angle * 1800 / std::numbers::pi) / 10) + " deg"; };
-  return " (by " + degrees(std::acos(std::clamp(up, -1.0, 1.0))) + ", at most " + degrees(kMaxSlope) + ")";
+  return " (by " + in_degrees(std::acos(std::clamp(up, -1.0, 1.0))) + ", at most " + in_degrees(kMaxSlope) + ")";
 }
 
 std::string no_permission(bool found, const Permit& permit, const MachineModel& robot, const Programs& programs) {

@@ -60,6 +60,9 @@ struct LegReport {
 /// Fills everything but the senders and the chosen gait.
 LegState leg_state(const LegReport& report, const LegModel& robot, ros::Time stamp);
 
+/// Returns how the ground below a robot on its feet rises, in words: "rises 10.2 deg to the front". "": it is level.
+std::string ground_words(const LeggedCommand& command);
+
 /// Returns the measured slope of the ground in words where it is a reason; else "".
 std::string slope_words(std::uint64_t reasons, const StateFrame& state, const LegModel& robot);
 

@@ -33,10 +33,13 @@ enum LegStop : std::uint64_t { kStopStanding = 0, kStopWalking = 1 };
 
 struct LeggedCommand {
   LegPhase phase = LegPhase::kLying;
-  std::uint64_t lifted = 0;      ///< 1 + i: the foot of LegPlace i is in the air, or on its way; 0: none
-  std::array<double, 6> body{};  ///< m and rad: x y height roll pitch yaw from the nominal pose, after limits
-  std::uint64_t gait = 0;        ///< index of the robot's gaits (control/legged/walk/gait_table.h)
-  double gait_phase = 0;         ///< 0 … 1
+  std::uint64_t lifted = 0;       ///< 1 + i: the foot of LegPlace i is in the air, or on its way; 0: none
+  std::array<double, 6> body{};   ///< m and rad: x y height roll pitch yaw from the nominal pose, after limits
+  std::uint64_t gait = 0;         ///< index of the robot's gaits (control/legged/walk/gait_table.h)
+  double gait_phase = 0;          ///< 0 … 1
+  std::array<double, 2> slope{};  ///< m/m: how much the ground rises to the front and left, below a robot on its feet
+  std::uint64_t risers = 0;       ///< bits 1 << LegPlace: feet that are lifted over an obstacle
+  std::uint64_t reaches = 0;      ///< the same: feet that find no ground
 };
 
 }  // namespace robot_control

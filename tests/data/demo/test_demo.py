@@ -32,10 +32,15 @@ def test_nothing_is_said_when_all_was_granted():
 
 def child(tmp_path, code):
     started = Child([sys.executable, "-u", "-c", code], tmp_path / "output")
-    deadline = time.monotonic() + 20
-    while "ready" not in (tmp_path / "output").read_text() and time.monotonic() < deadline:
-        time.sleep(0.01)
+    wait_for_text(tmp_path / "output", "ready")
     return started
+
+
+def wait_for_text(path, text):
+    deadline = time.monotonic() + 20
+    while not path.exists() or text not in path.read_text():
+        assert time.monotonic() < deadline, f"no {text!r} in {path}"
+        time.sleep(0.01)
 
 
 def test_a_child_that_heeds_sigint_ends_in_order(tmp_path):
@@ -57,6 +62,23 @@ def test_a_child_that_ignores_sigint_is_killed(tmp_path):
     one = child(tmp_path, "import signal, time\nsignal.signal(2, signal.SIG_IGN)\nprint('ready')\ntime.sleep(60)")
     assert not one.end(limit=0.2)
     assert not one.running
+
+
+def test_a_child_ends_in_order_with_a_program_that_is_killed(tmp_path):
+    """The output shows the end, because the process may stay as a zombie."""
+    heeds = f"try: exec({WAIT!r})\nexcept KeyboardInterrupt: print('bye')"
+    starts = f"""
+import pathlib, sys, time
+from robot_control.ui.child import Child
+Child([sys.executable, "-u", "-c", {heeds!r}], pathlib.Path({str(tmp_path / "output")!r}))
+time.sleep(60)"""
+    parent = subprocess.Popen([sys.executable, "-c", starts])
+    try:
+        wait_for_text(tmp_path / "output", "ready")
+    finally:
+        parent.kill()
+        parent.wait()
+    wait_for_text(tmp_path / "output", "bye")
 
 
 def test_what_was_started_is_ended_after_an_error(tmp_path):

@@ -54,6 +54,9 @@ TEST(LegMessages, AGaitAndItsModeAreOneAndTheSame) {
 TEST(LegMessages, TheStateNamesPostureFootAndReasons) {
   CommandFrame command;
   command.legged = {.phase = LegPhase::kStanding, .lifted = 4, .body = {0.01, 0.02, 0.03, 0.1, 0.2, 0.3}};
+  command.legged.slope = {0.1, -0.2};
+  command.legged.risers = 1;
+  command.legged.reaches = 8;
   CommandFrame plan;
   plan.joints[1] = {.mode = JointMode::kImpedance, .position = 0.7};
   StateFrame state;
@@ -70,6 +73,9 @@ TEST(LegMessages, TheStateNamesPostureFootAndReasons) {
   EXPECT_THAT(message.reasons, ElementsAre("out_of_reach"));
   EXPECT_THAT(message.bears, ElementsAre(0, 1, 0, 0));
   EXPECT_EQ(message.load[1], 31);
+  EXPECT_EQ(message.slope_left, -0.2);
+  EXPECT_THAT(message.met_riser, ElementsAre(1, 0, 0, 0));
+  EXPECT_THAT(message.reaching, ElementsAre(0, 0, 0, 1));
   EXPECT_TRUE(std::isnan(message.wanted[0]));
   EXPECT_EQ(message.wanted[1], 0.7);
 }
@@ -85,6 +91,15 @@ TEST(LegMessages, ARefusalSaysWhoHoldsThePermission) {
   EXPECT_THAT(no_permission(true, permit, robot, {.kind = kLeggedKind}), HasSubstr("e_stop_reset"));
   permit.action = PermitAction::kDrive;
   EXPECT_EQ(no_permission(true, permit, robot, {.kind = kLeggedKind}), "");
+}
+
+TEST(GroundWords, SayHowItRisesAndNothingOfALevelFloor) {
+  const auto words = [](double ahead, double left) { return ground_words({.slope = {ahead, left}}); };
+  EXPECT_EQ(words(0.05, 0), "");
+  EXPECT_EQ(words(std::nan(""), 0), "");
+  EXPECT_EQ(words(0.18, 0), "rises 10.2 deg to the front");
+  EXPECT_EQ(words(-0.18, 0.02), "rises 10.3 deg to the rear");
+  EXPECT_EQ(words(0.1, -0.1), "rises 8 deg to the front right");
 }
 
 TEST(SlopeWords, HaveTheMeasuredSlopeAndTheLargestOne) {

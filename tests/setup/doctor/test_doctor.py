@@ -17,6 +17,7 @@ from types import MappingProxyType
 from typing import NamedTuple
 
 import pytest
+import yaml
 from robot_control.setup.doctor.finding import Verdict
 from robot_control.setup.doctor.measure import (
     MeasureError,
@@ -167,9 +168,9 @@ FAULTS = {
     ),
     "no CAN interface": Planted("can", "connect the adapter", parameters={"driver": "can"}),
     "a CAN interface that is down": on_hardware("can", "ip link set can0 up", {LINK: can_link(flags=())}),
-    "another CAN interface": on_hardware("can", "connect the adapter", drive_bus={"address": "can1"}),
+    "another CAN interface": on_hardware("can", "connect the adapter", drive_file={"bus": {"address": "can1"}}),
     "another bit rate than that of the drives": on_hardware(
-        "can", "bitrate 500000", drive_bus={"address": "can0", "bit_rate": 500_000}
+        "can", "bitrate 500000", drive_file={"bus": {"address": "can0", "bit_rate": 500_000}}
     ),
     "a bus that is off": on_hardware("can", "terminators", {LINK: can_link(state="BUS-OFF")}),
     "errors on the bus": on_hardware("can", "terminators", {LINK: can_link(state="ERROR-PASSIVE", tx=128)}),
@@ -240,18 +241,32 @@ def test_a_bus_of_simulated_drives_needs_no_interface(tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("bus", "verdict"),
+    ("drive", "verdict", "words"),
     [
-        ({"dialect": "ak"}, Verdict.NOTE),
-        ({"dialect": "cybergear", "on_silence": "keeps"}, Verdict.NOTE),
-        ({"dialect": "damiao"}, Verdict.OK),
+        ("ak", Verdict.NOTE, "cuts the supply of the motors"),
+        ("unitree_legged", Verdict.NOTE, "state it as on_silence"),
+        ("unitree_go", Verdict.NOTE, "state it as on_silence"),
+        ("odrive", Verdict.OK, "states: coasts"),
+        ("vesc", Verdict.OK, "states: coasts"),
+        ("board", Verdict.OK, "states: holds"),
+        ("roboclaw", Verdict.OK, "states: coasts"),
+        ("cia402", Verdict.OK, "no drive file states a reaction"),
+        ("damiao", Verdict.OK, "no drive file states a reaction"),
+        ("cybergear", Verdict.OK, "no drive file states a reaction"),
     ],
 )
-def test_motors_that_keep_their_last_order_are_named(tmp_path, bus, verdict):
+def test_the_reaction_of_every_drive_on_silence_is_that_of_its_file(tmp_path, drive, verdict, words):
     write(tmp_path, preempt_rt())
-    found = rows(tmp_path, RT_ROBOT | {"drive_bus": bus})["silence"].finding
+    tree = yaml.safe_load((Path(__file__).parents[3] / f"config/drives/{drive}.yaml").read_text())
+    found = rows(tmp_path, RT_ROBOT | {"drive_file": tree})["silence"].finding
     assert found.verdict is verdict
-    assert ("cuts the supply of the motors" in found.remedy) == (verdict is Verdict.NOTE)
+    assert words in f"{found.value}; {found.remedy}"
+
+
+def test_one_joint_that_keeps_its_last_order_is_named(tmp_path):
+    write(tmp_path, preempt_rt())
+    tree = {"bus": {"dialect": "cybergear"}, "every_joint": {"node": 1}, "knee_joint": {"on_silence": "keeps"}}
+    assert rows(tmp_path, RT_ROBOT | {"drive_file": tree})["silence"].finding.verdict is Verdict.NOTE
 
 
 def test_an_ordinary_program_on_the_core_of_a_loop_with_privileges_is_no_alarm(tmp_path):

@@ -125,7 +125,11 @@ class MadeUp:
                 "gait": "walking_trot",
                 "chosen": "auto",
                 "gaits": ["auto", "trot", "walking_trot", "crawl"],
-                "feet": [{"name": foot, "bears": i in (0, 3), "load": 60.0 - i} for i, foot in enumerate(FEET)],
+                "slope": (0.18, -0.02),
+                "feet": [
+                    {"name": foot, "bears": i in (0, 3), "load": 60.0 - i, "met_riser": i == 1, "reaching": i == 2}
+                    for i, foot in enumerate(FEET)
+                ],
             }
         for name in self.silent:
             values.pop(name, None)

@@ -157,6 +157,8 @@ def test_the_feet_of_a_recording_bear_the_weight_of_the_robot(tmp_path):
     legs = replay.fast()["legs"]
     assert legs["posture"] == "standing"
     assert [(foot["name"], foot["bears"]) for foot in legs["feet"]] == [(name, True) for name in FEET]
+    assert legs["slope"] == pytest.approx([0.0, 0.0], abs=0.02)
+    assert not any(foot["met_riser"] or foot["reaching"] for foot in legs["feet"])
     assert sum(foot["load"] for foot in legs["feet"]) == pytest.approx(9.81 * mass_of(Path(urdf).read_text()), rel=0.1)
 
 

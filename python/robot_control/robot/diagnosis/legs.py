@@ -19,7 +19,8 @@ def execution(facts: Facts) -> Answer:
     reasons, remedies = facts.reasons(facts.controller, "command"), facts.remedies(facts.controller, "command")
     if posture == "walking":
         known = [name for name in LIMITS if name in reasons]
-        why = "".join(f"; {reasons[name]}" for name in known)
+        ground = facts.value(facts.controller, "ground")
+        why = "".join((f" on ground that {ground}" if ground else "", *(f"; {reasons[name]}" for name in known)))
         actions = tuple(("operator", remedies[name]) for name in known if remedies.get(name))
         return Answer(Verdict.MOVING, f"Walking{_speed(facts)}{why}.", actions)
     for name, needed in REFUSALS.items():

@@ -65,10 +65,16 @@ def _can_problem(system: System, interface: str) -> Finding | None:
     return None
 
 
+def _drive_blocks(system: System) -> dict[str, dict[str, Any]]:
+    """The blocks of the drive file; none without a file."""
+    tree = system.robot.get("drive_file")
+    return {key: block for key, block in tree.items() if isinstance(block, dict)} if isinstance(tree, dict) else {}
+
+
 def _bus(system: System) -> tuple[str, int]:
     """Address and bit rate of the drive file; empty and 0 if they are unknown or the driver does not use CAN."""
-    bus = system.robot.get("drive_bus")
-    if system.robot.get("driver") != "can" or not isinstance(bus, dict):
+    bus = _drive_blocks(system).get("bus")
+    if system.robot.get("driver") != "can" or bus is None:
         return "", 0
     rate = bus.get("bit_rate")
     return str(bus.get("address") or ""), rate if isinstance(rate, int) else 0
@@ -108,12 +114,19 @@ def _not_ready(system: System, value: str, remedy: str, *commands: str) -> Findi
 
 
 def silence(system: System) -> Finding:
-    """Motors that have no timeout: none of their registers shows it, so the drive file alone is read."""
-    bus = system.robot.get("drive_bus")
-    if isinstance(bus, dict) and (bus.get("dialect") == "ak" or bus.get("on_silence") == "keeps"):
+    """The reaction of the drives to missing orders, as the drive file states it: no driver runs yet that could read it.
+
+    A drive whose watchdog the driver sets or reads needs no statement.
+    """
+    blocks = _drive_blocks(system).values()
+    stated = {str(block["on_silence"]) for block in blocks if "on_silence" in block}
+    if "keeps" in stated:
         value = "the motors keep their last order for ever when this computer is silent"
         return note(value, "use an emergency stop that cuts the supply of the motors")
-    return ok("no drive file names motors without a timeout")
+    if "unknown" in stated:
+        value = "what the drives do when this computer is silent is unknown to the drive file"
+        return note(value, "find it out with the robot on a stand, and state it as on_silence")
+    return ok(f"the drive file states: {', '.join(sorted(stated))}" if stated else "no drive file states a reaction")
 
 
 def serial_latency(system: System) -> Finding:
@@ -177,7 +190,7 @@ def device_files(system: System) -> Finding:
 
 CHECKS = (
     Check("can", "commands and samples of the drives go over this bus", can),
-    Check("silence", "a program that ends leaves the motors with their last order", silence),
+    Check("silence", "a program that ends leaves the drives to their own reaction", silence),
     Check("serial_latency", "an adapter holds received bytes back for so long", serial_latency),
     Check("usb_autosuspend", "a suspended adapter needs milliseconds to wake up", autosuspend),
     Check("device_files", "the driver opens its port as this user", device_files),

@@ -61,7 +61,7 @@ def _robot_block(given: str | None) -> dict[str, Any]:
         if isinstance(part, dict) and isinstance(drives := part.get("drives"), str) and drives:
             # The driver refuses a file that cannot be read.
             with contextlib.suppress(OSError, ValueError, RecursionError, yaml.YAMLError, AttributeError):
-                block["drive_bus"] = yaml.safe_load((Path(name).parent / drives).read_text()).get("bus")
+                block["drive_file"] = yaml.safe_load((Path(name).parent / drives).read_text())
     return block
 
 

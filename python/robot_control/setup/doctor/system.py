@@ -35,7 +35,7 @@ class System:
 
     root: Path = Path("/")
     robot: Mapping[str, Any] = field(default_factory=lambda: DEFAULTS)
-    """The block `robot:` of the parameters; `drive_bus` in it is the block `bus:` of the drive file."""
+    """The block `robot:` of the parameters; `drive_file` in it is the tree of the drive file."""
 
     @property
     def live(self) -> bool:

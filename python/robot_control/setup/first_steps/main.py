@@ -24,6 +24,8 @@ from robot_control.ui.table import table
 
 RECORDING = 10.0
 """s until the recorder has opened its bag"""
+STOPPED = "The robot is stopped, until rosservice call e_stop_reset."
+NOT_STOPPED = "THE STOP WAS NOT CONFIRMED: press the emergency stop."
 
 
 def parse_options(arguments: Sequence[str]) -> argparse.Namespace:
@@ -73,9 +75,10 @@ def main() -> None:
             try:
                 step, why = take(steps, context, results)
             finally:
-                print(f"\n{robot.stop()}")
+                stopped = robot.stop()
+                print(f"\n{STOPPED if stopped else NOT_STOPPED}")
     print("\n".join(table([("step", "result"), *results.items()])))
-    print(f"bag: {_bags(options.out, began)[0]}")
+    print(f"bag: {next(iter(_bags(options.out, began)), f'none in {options.out}, read record.log there')}")
     if why:
         raise StepError(f"{step}: {why}. To continue: rosrun robot_control first_steps.py --from {step}")
 

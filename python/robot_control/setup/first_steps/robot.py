@@ -3,7 +3,8 @@
 import math
 import time
 from collections.abc import Callable
-from typing import Any
+from statistics import mean
+from typing import Any, TypeVar
 
 import rospy
 from geometry_msgs.msg import Twist
@@ -17,11 +18,12 @@ from robot_control.robot.pose import pose_of, rotation, rpy
 from robot_control.robot.running_robot import RefusedError, await_all
 from robot_control.robot.safety_states import STOPPED
 from robot_control.robot.safety_watch import SafetyWatch, status_of
-from robot_control.robot.services import Answer, Services
+from robot_control.robot.services import E_STOP, Answer, Services
 from robot_control.robot.topic_sender import Sender, Signals
-from robot_control.setup.first_steps.checks import StepError
+from robot_control.setup.first_steps.checks import StepError, require
 from robot_control.srv import SetGait, SetPosture
 
+Found = TypeVar("Found")
 PERIOD = 0.05
 """s between two messages of a command, and between two looks"""
 SILENCE = 2.5
@@ -32,7 +34,24 @@ ARRIVAL = 0.3
 """s that a joint needs after the end of its path"""
 RAMP = 1.0
 """s until a walk has its speed"""
+RESET = "e_stop_reset"
+RESTS = STOPPED - {"STOPPING"}
+"""The states of a robot that a stop has brought to rest"""
 TOPICS = {"battery_state": BatteryState, "joint_states": JointState, "leg_state": LegState, "odom": Odometry}
+
+
+def speed_along(yaw: float, odometry: Odometry) -> float:
+    """m/s, in the time of the robot, towards the heading `yaw`, rad; negative if the robot walks backwards."""
+    v, turn = odometry.twist.twist.linear, pose_of(odometry).yaw - yaw
+    return float(v.x * math.cos(turn) - v.y * math.sin(turn))
+
+
+def _awaited(found: Callable[[], Found]) -> Found:
+    """The first result that counts as true, also after a signal; after ANSWER s whatever it is."""
+    end = time.monotonic() + ANSWER
+    while not (result := found()) and time.monotonic() < end:
+        time.sleep(PERIOD)
+    return result
 
 
 class WatchedRobot:
@@ -58,8 +77,7 @@ class WatchedRobot:
     def newest(self, topic: str) -> Any:  # noqa: ANN401 (of the topic)
         """The newest message of one of TOPICS."""
         message = self._topics[topic].fresh(time.monotonic(), SILENCE)
-        if message is None:
-            raise StepError(f"{topic} is silent: run why.py")
+        require(message is not None, f"{topic} is silent: run why.py")
         return message
 
     @property
@@ -94,8 +112,7 @@ class WatchedRobot:
         """Calls `act` until it is over, at most `limit` s; returns whether it is."""
         end = time.monotonic() + limit
         while not over():
-            if not self._signals.going_on():
-                raise StepError("interrupted")
+            require(self._signals.going_on(), "interrupted")
             if time.monotonic() > end:
                 return False
             act()
@@ -104,31 +121,26 @@ class WatchedRobot:
 
     def require_release(self) -> None:
         """Raises StepError where the robot may not move."""
-        if not self._watch.drivable():
-            status = status_of(self.safety)
-            raise StepError(f"{status.why()}: {status.remedy or 'run why.py'}")
+        status = status_of(self.safety)
+        require(bool(self._watch.drivable()), f"{status.why()}: {status.remedy or 'run why.py'}")
 
-    def stop(self) -> str:
-        """Brakes the robot until a reset; returns what came of it. Works after a signal, too."""
+    def stop(self) -> bool:
+        """Brakes the robot until a reset; returns whether it is stopped. Works after a signal, too."""
         self._services.e_stop()
-        answer = self._answer()
-        if answer and answer.accepted:
-            return "The robot is stopped, until rosservice call e_stop_reset."
-        return "THE STOP WAS NOT CONFIRMED: press the emergency stop."
+        answer = self._answer(E_STOP)
+        return answer is not None and answer.accepted and _awaited(lambda: self.safety.state_name in RESTS)
 
     def reset(self) -> None:
         """Ends a stop, as soon as the joints rest."""
-        answers: list[Answer | None] = []
-
-        def ask() -> None:
-            self._services.reset()
-            answers.append(self._answer())
+        answers: list[Answer | None] = [None]
 
         def released() -> bool:
-            return bool(answers) and answers[-1] is not None and answers[-1].accepted
+            self._services.reset()
+            answers.append(self._answer(RESET))
+            return answers[-1] is not None and answers[-1].accepted
 
-        if not self.wait(released, ANSWER, ask):
-            raise StepError(f"e_stop_reset: {answers[-1].text if answers[-1] else 'no answer, run why.py'}")
+        accepted, last = self.wait(released, ANSWER), answers[-1]
+        require(accepted, f"{RESET}: {last.text if last else 'no answer, run why.py'}")
         self.wait(self._watch.drivable, ANSWER)
         self.require_release()
         self._path.publish(JointTrajectory())
@@ -146,20 +158,22 @@ class WatchedRobot:
         self._move(seconds + ARRIVAL)
 
     def walk(self, gait: str, speed: float, seconds: float) -> tuple[str, float]:
-        """Walks straight ahead, then stands; returns the gait in use and the mean speed, m/s."""
+        """Walks straight ahead, then stands; returns the gait in use and the mean speed towards its first heading, m/s.
+
+        It is the mean of the speeds of odom: a simulation that is late has less time than this clock and the stamps.
+        """
         self._call("set_gait", SetGait, gait)
         twist = Twist()
         twist.linear.x = speed
         self._move_until("walking", twist)
         self._move(RAMP, twist)
-        begin, began = pose_of(self.newest("odom")), time.monotonic()
-        self._move(seconds, twist)
-        end, took = pose_of(self.newest("odom")), time.monotonic() - began
-        used = self.newest("leg_state").gait
+        walk = [self.newest("odom")]
+        self._move(seconds, twist, lambda: walk.append(self.newest("odom")))
+        used, yaw = self.newest("leg_state").gait, pose_of(walk[0]).yaw
         self._move_until("standing", Twist())
-        return used, math.hypot(end.x - begin.x, end.y - begin.y) / took
+        return used, mean(speed_along(yaw, each) for each in walk)
 
-    def _move(self, seconds: float, twist: Twist | None = None, over: Callable[[], bool] = lambda: False) -> bool:
+    def _move(self, seconds: float, twist: Twist | None = None, over: Callable[[], object] = lambda: False) -> bool:
         def act() -> None:
             self.require_release()
             if twist is not None:
@@ -173,16 +187,13 @@ class WatchedRobot:
             why = "; ".join(state.sentences) or "run why.py"
             raise StepError(f"the posture is '{state.posture}' after {ANSWER:g} s, ordered '{posture}': {why}")
 
-    def _answer(self) -> Answer | None:
-        end = time.monotonic() + ANSWER
-        while not (answers := self._services.poll()) and time.monotonic() < end:
-            time.sleep(PERIOD)
-        return answers[-1] if answers else None
+    def _answer(self, service: str) -> Answer | None:
+        """The answer of this service; one of another service came late, and is dropped."""
+        return _awaited(lambda: next((each for each in self._services.poll() if each.service == service), None))
 
     def _call(self, name: str, kind: type, word: str) -> None:
         try:
             answer = rospy.ServiceProxy(name, kind)(word)
         except rospy.ServiceException as error:
             raise StepError(f"{name}: {error}") from None
-        if not answer.success:
-            raise StepError(f"{name} '{word}' is {answer.message}")
+        require(answer.success, f"{name} '{word}' is {answer.message}")

@@ -54,8 +54,7 @@ class Context:
 
     def confirm(self, question: str, remedy: str = "begin again once you can type y") -> None:
         """Raises StepError unless the person types y."""
-        if not self.ask.yes(f"  {question}"):
-            raise StepError(f"you typed n to: {question} Remedy: {remedy}")
+        checks.require(self.ask.yes(f"  {question}"), f"you typed n to: {question} Remedy: {remedy}")
 
     def release(self) -> None:
         """Ends a stop, if the person agrees."""
@@ -101,15 +100,13 @@ def _e_stop(at: Context) -> None:
     at.robot.wait(lambda: at.robot.safety.first_cause, PATIENCE)
     checks.pressed(at.robot.safety.first_cause)
     print(f"  {at.robot.safety.first_cause} is latched. Release the emergency stop within {PATIENCE:g} s.")
-    if not at.robot.wait(lambda: not at.robot.safety.active, PATIENCE):
-        raise StepError(f"{at.robot.safety.active[0]} is still active after {PATIENCE:g} s: release it")
+    free = at.robot.wait(lambda: not at.robot.safety.active, PATIENCE)
+    checks.require(free, f"{', '.join(at.robot.safety.active)} is still active after {PATIENCE:g} s: release it")
     at.robot.reset()
 
 
 def _damping(at: Context) -> None:
-    at.robot.stop()
-    if not at.robot.wait(lambda: at.robot.stopped, PATIENCE):
-        raise StepError("the robot is not stopped after e_stop_trigger: check the safety monitor (why.py)")
+    checks.require(at.robot.stop(), "the robot is not stopped after e_stop_trigger: check the safety monitor (why.py)")
     at.ask.line("  The robot brakes. Move each leg slowly by hand, then let go of all legs. Press Enter.")
     before = at.robot.newest("joint_states").position
     at.robot.wait(lambda: False, LET_GO)

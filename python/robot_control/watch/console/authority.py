@@ -146,8 +146,9 @@ class Authority:
         self._zeros_until = now + ZEROS
 
     def rest(self, until: float) -> None:
-        """Sends zeros until then, s: one that arrived after the last late cycle is what a reset waits for; silence has to
-        last for cmd_vel_timeout without such a cycle (safety/latch/motion_release.h).
+        """Sends zeros until then, s. A reset waits for one that arrives after the last late cycle.
+
+        Silence has to last for cmd_vel_timeout without such a cycle (safety/latch/motion_release.h).
         """
         self._zeros_until = until
 

@@ -177,14 +177,16 @@ def six_of(odometry: Odometry) -> tuple[float, ...]:
 
 
 def legs_of(message: LegState) -> Values:
-    """Posture, gait and feet."""
-    feet = zip(message.foot, message.bears, message.load, strict=False)
+    """Posture, gait, ground and feet."""
+    names = ("name", "bears", "load", "met_riser", "reaching")
+    feet = zip(message.foot, message.bears, message.load, message.met_riser, message.reaching, strict=False)
     return {
+        "slope": (message.slope_ahead, message.slope_left),
         "posture": message.posture,
         "gait": message.gait,
         "chosen": message.chosen_gait,
         "gaits": list(message.gaits),
-        "feet": [{"name": name, "bears": bool(bears), "load": load} for name, bears, load in feet],
+        "feet": [dict(zip(names, foot, strict=True)) for foot in feet],
     }
 
 

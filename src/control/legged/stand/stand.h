@@ -77,7 +77,7 @@ class Stand : public Stance {
   /// Height above the nominal one in m, roll and pitch in rad.
   std::array<TrackedAxis, 3> lean(const State& state) const noexcept;
 
-  /// Fills the pose of the body from the nominal one.
+  /// Fills the pose of the body from the nominal one, and the slope of the ground.
   void report(const State& state, LeggedCommand& out) const noexcept;
 
   double rise_time() const noexcept { return tuning_.rise_time; }

@@ -112,6 +112,7 @@ bool Walker::step(State& state, const WalkInput& input, CommandFrame& out) noexc
   const Gait& gait = this->gait(state);
   out.legged.gait = state.gait;
   out.legged.gait_phase = state.phase;
+  out.legged.slope = {state.ground[1], state.ground[2]};
   for (std::size_t leg = 0; leg < kLegs; ++leg) {
     const bool bears = state.bears[leg] != 0;
     if (bears) {

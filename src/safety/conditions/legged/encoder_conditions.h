@@ -6,7 +6,7 @@
 ///   stuck  |c − c₀| > limit, while the robot is on its feet. c is the angle that q can show: the command demanded it
 ///          kAnswer cycles ago. c₀ was this angle when q changed for the last time. A joint that is blocked looks the
 ///          same. The command of a robot that walks demands angles of feet in the air alone. Its limit is kSwingFactor
-///          larger. q has to stay for kRepeatTime, and for two cycles: a noisy gyro moves the command at once, and no joint
+///          larger. q has to stay within kSame for kRepeatTime, and kFewest samples: a noisy gyro moves the command at once
 ///
 /// Only a new sample shows that q stays, or that it was possible: a drive that sent nothing repeats its last one.
 ///
@@ -57,11 +57,13 @@ class EncoderStuck {
  public:
   static constexpr double kSwingFactor = 1.8;  ///< a foot leaves the ground late (docs/evidence/derivations.md)
   static constexpr double kRepeatTime = 0.01;  ///< s
+  static constexpr double kSame = 2e-5;        ///< rad: a driver adds the velocity times an age that jitters
+  static constexpr std::uint64_t kFewest = 2;  ///< new samples
   static constexpr std::size_t kAnswer = 2;    ///< cycles: command k − 1 moves the joint from cycle k to k + 1
 
   /// `period` s.
   EncoderStuck(const SafetyParameters&, const LegModel&, double period) noexcept
-      : stays_(std::max<std::uint64_t>(2, static_cast<std::uint64_t>(std::lround(kRepeatTime / period)))) {}
+      : stays_(static_cast<std::uint64_t>(std::lround(kRepeatTime / period))) {}
   void enter_run() noexcept { joints_ = {}; }
 
   ConditionMeasurement measure(const LeggedMeasurements& now, const ConditionWatch& watch) noexcept {
@@ -76,9 +78,12 @@ class EncoderStuck {
     std::array<double, kAnswer> demands{};  ///< rad, of the last commands, the oldest first
     std::size_t demand_count = 0;           ///< of `demands`
     bool demanded = false;                  ///< c₀ is known
-    double reported = 0;                    ///< rad, the last q
-    std::uint64_t stays = 0;                ///< cycles with a new sample since it changed
+    double reported = 0;                    ///< rad, q where it changed last
+    std::uint64_t cycles = 0;               ///< since the last new sample
+    std::uint64_t stays = 0;                ///< cycles since q changed, up to the last new sample
+    std::uint64_t samples = 0;              ///< new ones since then
     double demand = 0;                      ///< rad, c₀
+    double moved = 0;                       ///< rad, |c − c₀| at the last new sample
   };
 
   /// The command demands an angle of this joint while the robot is on its feet.
@@ -93,20 +98,24 @@ class EncoderStuck {
   double command_moved(const LeggedMeasurements& now, std::size_t i) noexcept {
     Joint& joint = joints_[i];
     const double position = now.joint(i).position;
-    const bool stays = position == joint.reported, commanded = demands(now, i);
-    double moved = 0;
-    if (now.new_samples[i]) joint.stays = stays ? joint.stays + now.elapsed : 0;
-    if (joint.demand_count == kAnswer && commanded) {
-      if (!joint.demanded || !stays) joint.demand = joint.demands.front();
-      joint.demanded = true;
-      if (joint.stays >= stays_ && now.new_samples[i]) moved = std::abs(joint.demands.front() - joint.demand);
+    const bool changed = now.new_samples[i] && !(std::abs(position - joint.reported) <= kSame);
+    const bool commanded = demands(now, i), judged = joint.demand_count == kAnswer && commanded;
+    joint.cycles += now.elapsed;
+    if (now.new_samples[i]) {
+      joint.stays = changed ? 0 : joint.stays + joint.cycles;
+      joint.samples = changed ? 0 : joint.samples + 1;
+      joint.cycles = 0;
     }
-    joint.reported = position;
+    if (changed) joint.reported = position;
+    if (judged && (!joint.demanded || changed)) joint.demand = joint.demands.front();
+    joint.demanded = joint.demanded || judged;
+    const bool stuck = judged && joint.stays >= stays_ && joint.samples >= kFewest;
+    if (now.new_samples[i] || !stuck) joint.moved = stuck ? std::abs(joint.demands.front() - joint.demand) : 0;
     joint.demanded = joint.demanded && commanded;
     joint.demand_count = commanded ? std::min(joint.demand_count + 1, kAnswer) : 0;
     std::rotate(joint.demands.begin(), joint.demands.begin() + 1, joint.demands.end());
     if (commanded) joint.demands.back() = now.command(i).position;
-    return moved;
+    return joint.moved;
   }
 
   std::uint64_t stays_;  ///< cycles

@@ -110,6 +110,7 @@ TEST_F(SwingingWalkerTest, AFootThatMeetsARiserIsLiftedAgainFromThere) {
   EXPECT_LT(state.departs[1][0], ahead - 0.01) << "and backs off";
   EXPECT_EQ(state.departed[2], 0) << "the other foot swings on";
   EXPECT_EQ(out.reasons, kReasonMetRiser);
+  EXPECT_EQ(out.legged.risers, 2u);
 }
 
 TEST_F(SwingingWalkerTest, APushThatMovesThePathsAwayFromTheFeetIsNoRiser) {

@@ -30,10 +30,12 @@ from robot_control.watch.console.replay.playback import Playback
 from robot_control.watch.console.replay.rows import (
     CONTACT,
     COVARIANCE,
+    FEET_BITS,
     MARK_CAUSES,
     MARK_TIMES,
     POSE,
     RATE,
+    SLOPE,
     SPEEDS,
     STATE,
     TRUTH,
@@ -234,13 +236,16 @@ class Replay:
         return self._number(f"{joint}_velocity_command", row) - self._number(f"{joint}_velocity_measured", row)
 
     def _legs(self, row: int) -> Values:
-        """Posture and feet; which gait a robot walks, its log names by a number of its own."""
+        """Posture, feet and ground; which gait a robot walks, its log names by a number of its own."""
         phase, feet = self._number("legged_phase", row), []
-        for foot, contact in zip(FEET, self._contacts, strict=False):
+        slope = [self._number(name, row) for name in SLOPE]
+        for leg, (foot, contact) in enumerate(zip(FEET, self._contacts, strict=False)):
             probability, load = (self._number(f"{contact}_{what}", row) for what in CONTACT)
-            feet.append({"name": foot, "bears": probability > BEARS, "load": load})
+            met_riser, reaching = (self._number(name, row) // 2**leg % 2 == 1 for name in FEET_BITS)
+            found = {"name": foot, "bears": probability > BEARS, "load": load}
+            feet.append(found | {"met_riser": met_riser, "reaching": reaching})
         posture = "" if math.isnan(phase) else names.states("LegPhase")[int(phase)]
-        return {"posture": posture, "gait": "", "chosen": "auto", "gaits": [], "feet": feet}
+        return {"posture": posture, "gait": "", "chosen": "auto", "gaits": [], "feet": feet, "slope": slope}
 
     def _safety(self, row: int) -> Safety | None:
         state, causes, active = (self._number(name, row) for name in STATE[:3])

@@ -22,6 +22,7 @@ STATE = ("supervisor_state", "permit_causes", "permit_active", "evidence_cause",
 COVARIANCE = ("estimate_x_variance", "estimate_xy_covariance", "estimate_y_variance")
 TRUTH = ("truth_x", "truth_y", "truth_yaw")
 CONTACT = ("estimate_contact_probability", "estimate_contact_load")
+SLOPE, FEET_BITS = ("slope_ahead", "slope_left"), ("legged_risers", "legged_reaches")
 STOPPED = ("STOPPING", "STOPPED", "FAULT")
 MARK_TIMES, MARK_CAUSES = "mark_times", "mark_causes"
 """s of each stop from the begin of the log, and the bits of its causes"""
@@ -35,6 +36,8 @@ def rows_of(path: Path) -> dict[str, np.ndarray[Any, Any]]:
         *STATE,
         *COVARIANCE,
         *TRUTH,
+        *SLOPE,
+        *FEET_BITS,
         "battery_voltage",
         "time",
         "legged_phase",
