@@ -56,7 +56,7 @@ TEST(BehindDrives, ItWalksOnWhileFramesAreLostAndLate) {
 
 /// Twelve samples, or 18 ms: five samples of 2 ms are lost in a row once in 20 s, on a bus that loses 5 % each way.
 TEST(BehindDrives, TheMonitorWaitsForSamplesAsLongAsADriveDoes) {
-  for (const auto& [rate, missing] : {std::pair{1000.0, 12U}, {500.0, 9U}, {250.0, 4U}}) {
+  for (const auto& [rate, missing] : {std::pair{1000.0, 12U}, std::pair{500.0, 9U}, std::pair{250.0, 4U}}) {
     Parameters parameters = behind_drives();
     parameters.loop.rate = rate;
     const LegModel robot = legged_robot("quadbot");
