@@ -152,7 +152,7 @@ def _odometry(bench: Any, given: argparse.Namespace, runner: Runner) -> Result: 
 def _devices(bench: Any, given: argparse.Namespace, runner: Runner) -> Result:  # noqa: ANN401 (a module)
     parts = _parts_of("devices", given)
     if given.robot == QUADBOT:
-        return walk_bench.bench(parts, given.first, given.runs, say, runner)
+        return walk_bench.bench(parts, given.first, given.runs, say, runner, can_rate=given.rate)
     result: Result = bench.bench(
         parts, given.first, given.runs or bench.ALL_RUNS, say, runner, program=programs_of(given)
     )
@@ -179,9 +179,7 @@ TRIALS: dict[str, tuple[str, Callable[[Any, argparse.Namespace, Runner], Result]
     "board_clock": ("devices.board_clock", lambda m, g, _: m.bench(programs_of(g), g.share, say)),
     "legs": (
         "legs",
-        lambda m, g, _: m.bench(
-            _parts_of("legs", g), g.first, g.runs, programs_of(g), say, rate=g.rate, delay=g.delay
-        ),
+        lambda m, g, _: m.bench(_parts_of("legs", g), g.first, g.runs, programs_of(g), say, rate=g.rate, delay=g.delay),
     ),
     "console": ("console.bench", lambda m, g, _: m.bench(g.share, say)),
     "realtime": (
@@ -310,7 +308,13 @@ def parse(arguments: Sequence[str] | None = None) -> argparse.Namespace:
     parser.add_argument("--worlds", type=Path, help="navigation barn: folder of public worlds, N.json each")
     parser.add_argument("--map", choices=navigation.MAPS, default=navigation.MAPS[0], help="navigation barn: the map")
     parser.add_argument("--speed", type=float, choices=navigation.SPEEDS, default=0.5, help="navigation barn: m/s")
-    parser.add_argument("--rate", type=float, choices=legs.RATES, default=legs.RATES[0], help="legs: Hz of the loop")
+    parser.add_argument(
+        "--rate",
+        type=float,
+        choices=legs.RATES,
+        default=legs.RATES[0],
+        help="legs, devices --robot quadbot with motors on CAN: Hz of the loop",
+    )
     parser.add_argument("--delay", type=float, help="legs: s from sensor to torque, whole periods; default: one")
     parser.add_argument("--keep", type=Path, help="record: folder for the logs and their reports")
     cluster = parser.add_argument_group("cluster", f"{', '.join(ON_CLUSTERS)} run with the workers of a Dask scheduler")

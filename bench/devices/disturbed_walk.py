@@ -13,7 +13,7 @@ from robot_control.loop.drives import DRIVES
 from robot_control.loop.signal_names import causes_in
 
 from bench.devices.disturbed_drive import SEGMENT, rms, travel
-from bench.devices.walk_loss import KNEE, SPEED, walker_behind
+from bench.devices.walk_loss import CAN_RATE, KNEE, SPEED, walker_behind
 
 HOLD = 4  # cycles without a sample, beyond what the gate holds a command
 COLUMNS = (
@@ -31,6 +31,7 @@ class DisturbedWalk:
     state: str
     seconds: float
     seed: int
+    can_rate: float = CAN_RATE
 
 
 @dataclass(frozen=True)
@@ -48,7 +49,7 @@ class WalkFigures:
 
 def run_walk(walk: DisturbedWalk) -> WalkFigures:
     """Runs one walk, until a stop latches."""
-    loop = walker_behind(walk.drive, walk.seed)
+    loop = walker_behind(walk.drive, walk.seed, walk.can_rate)
     loop.run(1.0)
     loop.inject_fault("bus" if DRIVES[walk.drive].driver == "can" else "line", walk.state)
     causes: list[str] = []

@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from bench.devices.disturbed_walk import DisturbedWalk, WalkFigures, run_walk, together
-from bench.devices.walk_loss import LEANS, LOSSES, PHASES, WalkLoss, WalkOutcome, run_loss
+from bench.devices.walk_loss import CAN_RATE, LEANS, LOSSES, PHASES, WalkLoss, WalkOutcome, run_loss
 from bench.rows import Result, Row, Say, bounded, judged, plain
 from bench.runs.runner import Runner
 
@@ -21,7 +21,9 @@ STATES = ("ok", "disturbed")
 ODOMETRY = 1.5  # times the error of an undisturbed walk
 
 
-def bench(parts: Sequence[str], first: int, runs: int | None, say: Say, runner: Runner) -> Result:
+def bench(
+    parts: Sequence[str], first: int, runs: int | None, say: Say, runner: Runner, *, can_rate: float = CAN_RATE
+) -> Result:
     """The table, and whether every figure keeps its bound.
 
     Args:
@@ -30,20 +32,21 @@ def bench(parts: Sequence[str], first: int, runs: int | None, say: Say, runner: 
         runs: phases of each loss, and the share of `WALKS` in `PHASES`. None: all.
         say: receives progress and every broken rule.
         runner: where the trials run.
+        can_rate: Hz of the loop with motors on CAN.
     """
     phases = runs or PHASES
     rows: list[Row] = []
     if "losses" in parts:
-        rows += loss_rows(first, phases, say, runner)
+        rows += loss_rows(first, phases, say, runner, can_rate)
     if "disturbed" in parts:
-        rows += walk_rows(first, max(1, WALKS * phases // PHASES), say, runner)
+        rows += walk_rows(first, max(1, WALKS * phases // PHASES), say, runner, can_rate)
     return judged("devices", rows)
 
 
-def loss_rows(first: int, phases: int, say: Say, runner: Runner) -> list[Row]:
+def loss_rows(first: int, phases: int, say: Say, runner: Runner, can_rate: float) -> list[Row]:
     """Per drive and kind of loss: those that broke a rule, and the latest name; per drive the greatest tilt."""
     kinds = [(drive, kind) for drive, losses in LOSSES.items() for kind in losses]
-    trials = [WalkLoss(*of, seed) for of in kinds for seed in range(first, first + phases)]
+    trials = [WalkLoss(*of, seed, can_rate) for of in kinds for seed in range(first, first + phases)]
     outcomes: dict[tuple[str, str], list[WalkOutcome]] = {of: [] for of in kinds}
     for trial, outcome in zip(trials, runner.outcomes(run_loss, trials, say, chunk=5), strict=True):
         outcomes[trial.drive, trial.kind].append(outcome)
@@ -63,10 +66,12 @@ def loss_rows(first: int, phases: int, say: Say, runner: Runner) -> list[Row]:
     return rows
 
 
-def walk_rows(first: int, count: int, say: Say, runner: Runner) -> list[Row]:
+def walk_rows(first: int, count: int, say: Say, runner: Runner, can_rate: float) -> list[Row]:
     """Per drive: walks that a stop latched, gaps beyond the hold, and the error of the odometry."""
     seeds = range(first, first + count)
-    walks = [DisturbedWalk(drive, state, WALK_TIME, seed) for drive in LOSSES for state in STATES for seed in seeds]
+    walks = [
+        DisturbedWalk(drive, state, WALK_TIME, seed, can_rate) for drive in LOSSES for state in STATES for seed in seeds
+    ]
     figures: dict[tuple[str, str], list[WalkFigures]] = {}
     for walk, found in zip(walks, runner.outcomes(run_walk, walks, say), strict=True):
         figures.setdefault((walk.drive, walk.state), []).append(found)

@@ -86,11 +86,12 @@ LOSSES = {
 
 @dataclass(frozen=True)
 class WalkLoss:
-    """A loss of this kind at the phase `seed`/`PHASES` of a stride."""
+    """A loss of this kind at the phase `seed`/`PHASES` of a stride; motors on CAN at `can_rate`."""
 
     drive: str
     kind: str
     seed: int
+    can_rate: float = CAN_RATE
 
 
 @dataclass(frozen=True)
@@ -102,10 +103,10 @@ class WalkOutcome:
     broken: tuple[str, ...]
 
 
-def walker_behind(drive: str, seed: int) -> ClosedLoop:
-    """Quadbot behind these drives, at the rate for which its drive file is made."""
+def walker_behind(drive: str, seed: int, can_rate: float = CAN_RATE) -> ClosedLoop:
+    """Quadbot behind these drives, at the rate of its robot, or at that of the CAN buses."""
     driver = DRIVES[drive].driver
-    robot = {"driver": driver, "rate": CAN_RATE if driver == "can" else DATAGRAM_RATE}
+    robot = {"driver": driver, "rate": can_rate if driver == "can" else DATAGRAM_RATE}
     drives = share_file(f"config/drives/{drive}.yaml")
     return ClosedLoop({"robot": robot}, seed=seed, urdf=share_file("urdf/quadbot.urdf"), drives=drives)
 
@@ -113,7 +114,7 @@ def walker_behind(drive: str, seed: int) -> ClosedLoop:
 def run_loss(trial: WalkLoss) -> WalkOutcome:
     """Runs one trial."""
     loss = LOSSES[trial.drive][trial.kind]
-    loop = walker_behind(trial.drive, trial.seed)
+    loop = walker_behind(trial.drive, trial.seed, trial.can_rate)
     loop.run(1.0, columns=COLUMNS)
     loop.run(RISE_TIME + STRIDE * trial.seed / PHASES, (SPEED, 0.0), COLUMNS)
     joints = [joint["name"] for joint in loop.robot["joints"]]

@@ -1,7 +1,8 @@
-/// bench_legs_loop ROW FIRST SEEDS RATE LATE URDF…: measures robots on legs in the closed loop, on the simulated machine.
+/// bench_legs_loop ROW FIRST SEEDS RATE LATE URDF…: measures robots on legs in the closed loop, on the simulated
+/// machine.
 ///
-/// RATE is that of the loop in Hz. Each command is late by LATE cycles, in addition to the one of the bus. The rows of the
-/// cost are those of 1000 Hz alone.
+/// RATE is that of the loop in Hz. Each command is late by LATE cycles, in addition to the one of the bus. The rows of
+/// the cost are those of 1000 Hz alone.
 ///
 /// ROW is the name of one of kRows. A value is the worst one of SEEDS seeds from FIRST on. bench/legs.py judges it.
 

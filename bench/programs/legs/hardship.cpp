@@ -134,7 +134,7 @@ void disturbances(const LegModel& model, std::uint64_t seed, WorstValues& worst)
   disturbed(model, payload, "payload", worst);
   ice.plant.ground_friction = 0.3;
   disturbed(model, ice, "friction 0.3", worst);
-  late.plant.actuator_delay = 5;
+  late.plant.actuator_delay = static_cast<std::uint64_t>(std::lround(0.005 * late.loop.rate));
   disturbed(model, late, "motors 5 ms late", worst);
   const Parameters usual = walking_parameters(seed);
   disturbed(model, usual, "motors at 0.8 of their torque", worst, 1 / 0.8);

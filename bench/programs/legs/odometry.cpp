@@ -206,7 +206,7 @@ void odometry(const LegModel& model, std::uint64_t seed, WorstValues& worst) {
 
 void contact(const LegModel& model, std::uint64_t seed, WorstValues& worst) {
   constexpr double kAir = 0.04, kInTime = 0.015, kBounce = 0.01;  // s; a foot that lands bounces for less
-  constexpr double kTouches = 1;                        // N
+  constexpr double kTouches = 1;                                  // N
   constexpr double kSeconds = 10;
   struct Walk {
     std::uint64_t gait;

@@ -65,7 +65,8 @@ void body_pose(const LegModel& model, std::uint64_t seed, WorstValues& worst) {
       robot.step();
       sum += std::pow(pose(robot)[axis] - begin[axis] - *values[axis], 2);
     }
-    worst.add(axis < 3 ? "RMS of the place" : "RMS of the angle", std::sqrt(sum / static_cast<double>(cycles)), axis < 3 ? "m" : "rad");
+    worst.add(axis < 3 ? "RMS of the place" : "RMS of the angle", std::sqrt(sum / static_cast<double>(cycles)),
+              axis < 3 ? "m" : "rad");
     worst.add("slip of a foot", *std::max_element(robot.slipped.begin(), robot.slipped.end()), "m");
   }
   worst.add("stops", robot.permit().causes == 0 ? 0 : 1, "runs");

@@ -8,7 +8,8 @@ constexpr double kPush = 0.02;  // s
 
 void sway(QuadrupedLoop& robot, double size, std::uint64_t cycle) {
   Request request;
-  request.posture.y = size * robot.robot().leg_length() * std::sin(2 * kPi * kSway * robot.period() * static_cast<double>(cycle));
+  request.posture.y =
+      size * robot.robot().leg_length() * std::sin(2 * kPi * kSway * robot.period() * static_cast<double>(cycle));
   robot.loop.request(request);
   robot.step();
 }

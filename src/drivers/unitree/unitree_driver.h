@@ -13,10 +13,10 @@
 /// The effort is clamped to torque_limit; the motor limits the sum. `stop` sends the brake as the last datagram.
 ///
 /// `read` takes all states that arrived and uses the one with the newest tick. Its arrival counts as the time of the
-/// sample. In a cycle without a new state each joint moves on with its velocity: an angle that is held would show a
-/// foot that stands while the body stops (docs/evidence/leg_drives.md). The frame has the robot's IMU, the temperatures of its motors, and its battery with the sum of the cells. It
-/// has the emergency stop while L2 and B of the remote are pressed. The raw numbers of the feet's sensors are not
-/// newton, so the frame has no contacts.
+/// sample. In a cycle without a new state each joint moves on with its velocity. An angle that is held would
+/// show that the body stops (docs/evidence/leg_drives.md). The frame has the robot's IMU, the temperatures of its
+/// motors, and its battery with the sum of the cells. It has the emergency stop while L2 and B of the remote are
+/// pressed. The raw numbers of the feet's sensors are not newton, so the frame has no contacts.
 ///
 /// kStarting lasts until the first state, or kFewest datagrams that are none. Faults stay until the operator's reset.
 /// After max_silence without a new state the cause is what came instead, in the second half of that time:

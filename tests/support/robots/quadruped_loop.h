@@ -27,7 +27,7 @@ struct QuadrupedLoop {
     loop_->record();
   }
 
-  /// What bench_legs_loop is called with: Hz of the loop, and cycles that a command is late.
+  /// bench_legs_loop sets these two: Hz of the loop, and cycles that a command is late.
   static inline double given_rate = 1000;
   static inline std::uint64_t given_lateness = 0;
 

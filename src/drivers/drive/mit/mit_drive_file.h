@@ -30,9 +30,7 @@ class MitFile : public CanFileOf<Joint> {
   double max_load() const override { return 0.85; }
 
   /// A bus that loses 5 % of the frames each way, with twelve motors at 500 Hz, reaches it once in 50 hours.
-  double tolerated_silence() const override {
-    return static_cast<double>(max_missing()) * this->request().period();
-  }
+  double tolerated_silence() const override { return static_cast<double>(max_missing()) * this->request().period(); }
 
  protected:
   void check(const Joint& joint, JointValues& values) const override {
@@ -53,7 +51,8 @@ class MitFile : public CanFileOf<Joint> {
 
  private:
   std::uint64_t max_missing() const {
-    return static_cast<std::uint64_t>(std::clamp(std::floor(kMitSilence * this->request().rate + 1.0e-9), 3.0, kMaxMissing));
+    return static_cast<std::uint64_t>(
+        std::clamp(std::floor(kMitSilence * this->request().rate + 1.0e-9), 3.0, kMaxMissing));
   }
   double min_timeout() const { return kMinTimeoutPeriods * this->request().period(); }
 };
