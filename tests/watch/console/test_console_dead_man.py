@@ -100,6 +100,7 @@ def test_without_a_held_key_nothing_is_sent_after_a_second(page):
 def test_a_page_at_rest_sends_zeros_for_as_long_as_a_reset_may_need_them(page):
     page.run(ZEROS)
     page.authority.rest(page.now + 5.0)
+    page.authority.refuse(page.now)
     assert set(page.run(5.0 - PERIOD)) == {Command()}
     assert page.run(0.2)[-1] is None
 

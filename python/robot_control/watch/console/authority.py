@@ -143,7 +143,7 @@ class Authority:
         """Notes that the controller refuses motion until it has received a zero."""
         for page in self.pages.values():
             page.dead_man.pad.refuse(now)
-        self._zeros_until = now + ZEROS
+        self._zeros_until = max(self._zeros_until, now + ZEROS)
 
     def rest(self, until: float) -> None:
         """Sends zeros until then, s. A reset waits for one that arrives after the last late cycle.
