@@ -28,10 +28,10 @@ from robot_control.robot.pose import Pose, pose_of
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Bool
 from std_srvs.srv import Trigger, TriggerResponse
-from system import rosunit_skips
+from system import rosunit_results
 from system.stall_witness import StallWitness
 
-rosunit_skips.record()
+rosunit_results.record()
 
 Case = TypeVar("Case", bound=Callable[..., None])
 

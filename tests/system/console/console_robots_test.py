@@ -7,13 +7,13 @@ import unittest
 from pathlib import Path
 
 import rospy
-from system import rosunit_skips
+from system import rosunit_results
 from system.system_support import repository, wait_for
 
 from bench.console.browser import Browser, missing
 from bench.console.process import Console
 
-rosunit_skips.record()
+rosunit_results.record()
 
 SCRIPT = "<img src=x onerror=window.hacked=1><script>window.hacked=1</script>"
 SPOKEN = SCRIPT.replace("<", "&lt;").replace(">", "&gt;")

@@ -16,7 +16,7 @@ from nav_msgs.msg import Odometry
 from robot_control.fleet.master import Master
 from robot_control.msg import FollowPathAction, FollowPathGoal
 from robot_control.robot.pose import Pose, pose_of
-from system import rosunit_skips
+from system import rosunit_results
 from system.fake_pad import ENABLE, FakePad
 from system.legs.legs_support import LegsTestCase
 from system.pseudo_terminal import PseudoTerminal
@@ -27,7 +27,7 @@ from bench.console.process import Console
 from bench.fleet import broker
 from bench.fleet.messages import order
 
-rosunit_skips.record()
+rosunit_results.record()
 
 CROSS_TRACK = 0.1
 """m, admitted on legs"""

@@ -1,5 +1,6 @@
-"""rosunit knows no skips: in its result file a skipped case is a passed one. After `record` the file has it as skipped,
-with its reason, in the form of pytest and gtest.
+"""rosunit knows neither skips nor subtests. In its result file a skipped case is a passed one, and a failed subtest is
+counted without its name and text. `record` adds both: the reason of the skip in the form of pytest and gtest, the
+failure of the subtest to its case.
 """
 
 import unittest
@@ -20,6 +21,11 @@ def record() -> None:
         unittest.TestResult.addSkip(self, test, reason)
         self.skip_reason = reason
 
+    def add_subtest(self: Any, test: unittest.TestCase, subtest: unittest.TestCase, error: Any) -> None:
+        unittest.TestResult.addSubTest(self, test, subtest, error)
+        if error is not None:
+            self._failure = (error[0], f"{subtest}: {error[1]}", error[2])
+
     def stop_and_note(self: Any, test: unittest.TestCase) -> None:
         stop_test(self, test)
         reason = self.__dict__.pop("skip_reason", None)
@@ -27,6 +33,7 @@ def record() -> None:
             note_skip(self._tests[-1], reason)
 
     result.addSkip = add_skip
+    result.addSubTest = add_subtest
     result.stopTest = stop_and_note
 
 
