@@ -24,8 +24,8 @@ inline constexpr std::uint32_t kValidKinematics = kValidPosition | kValidVelocit
 /// The bits of a drive with an encoder and a measurement of its torque.
 inline constexpr std::uint32_t kValidMotion = kValidPosition | kValidVelocity | kValidEffort;
 
-/// A drive that sends no sample in a cycle leaves the last one in force, and its age grows. Its position is moved on by
-/// the driver.
+/// A drive that sends no sample in a cycle leaves the last one in force, and its age grows. The driver moves the
+/// position on with the velocity.
 struct JointSample {
   double position = 0;  ///< rad or m, at t_k: at t_k − age, plus velocity · age
   double velocity = 0;  ///< rad/s or m/s, at t_k − age

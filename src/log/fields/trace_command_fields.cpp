@@ -35,9 +35,9 @@ void add_legs(TraceFields& to) {
   field<C, f64>(to, "legged_gait_phase", "0 to 1", MEMBER(command.legged.gait_phase)).shown();
   field<C, f32>(to, "legged_slope", "m/m: rise of the ground to the front and left", MEMBER(command.legged.slope))
       .shown({"slope_ahead", "slope_left"});
-  field<C, u8>(to, "legged_risers", "bit per leg: it is lifted over an obstacle", MEMBER(command.legged.risers))
+  field<C, u8>(to, "legged_risers", "bit per leg: its foot is lifted over an obstacle", MEMBER(command.legged.risers))
       .shown();
-  field<C, u8>(to, "legged_reaches", "bit per leg: it finds no ground", MEMBER(command.legged.reaches)).shown();
+  field<C, u8>(to, "legged_reaches", "bit per leg: its foot finds no ground", MEMBER(command.legged.reaches)).shown();
   field<C, f64>(to, "contact_schedule", "by contact: part of its time on the ground; 0: it shall not bear",
                 MEMBER(command.contact_schedule))
       .shown({"front_left_stance", "front_right_stance", "rear_left_stance", "rear_right_stance"});

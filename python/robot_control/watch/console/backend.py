@@ -19,7 +19,7 @@ from robot_control.robot.safety_watch import SafetyWatch
 from robot_control.robot.server_values import server_description
 from robot_control.robot.services import AGAIN, E_STOP, Answer, Services, in_words
 from robot_control.watch.console.authority import Authority, Page, RefusedError
-from robot_control.watch.console.calls import CALLS, Calls, against
+from robot_control.watch.console.calls import CALLS, RESET_WINDOW, Calls, against
 from robot_control.watch.console.settings import Settings
 from robot_control.watch.console.view import View, rounded
 
@@ -87,6 +87,7 @@ class Backend:
     def reset(self) -> None:
         """Requests the reset; the answer comes in `said`."""
         self._e_stop_at = -math.inf
+        self.authority.rest(time.monotonic() + RESET_WINDOW)
         self._services.reset()
 
     def fast(self) -> dict[str, Any]:

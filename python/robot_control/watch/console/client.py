@@ -181,7 +181,6 @@ class Client:
                     raise RefusedError(why)
                 if name == "reset":
                     backend.calls.confirm_reset(self.page, arguments["key"])
-                    backend.authority.rest(time.monotonic() + RESET_WINDOW)
                     backend.reset()
                     text = "the reset was requested"
                 else:

@@ -125,6 +125,8 @@ bool Walker::step(State& state, const WalkInput& input, CommandFrame& out) noexc
     const double done = gait.duty >= 1 ? 0.5 : early ? 0 : part;
     out.contact_schedule[leg] = bears ? std::max(done, period_) : 0;
   }
+  if (out.legged.risers != 0) out.reasons |= kReasonMetRiser;
+  if (out.legged.reaches != 0) out.reasons |= kReasonReaching;
   if (state.failures > 0) out.reasons |= kReasonNoPlan;
   return state.failures <= kFailures;
 }

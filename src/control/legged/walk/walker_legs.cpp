@@ -37,10 +37,7 @@ void Walker::bear(const State& state, const WalkingBody& body, std::size_t leg, 
   const Eigen::Map<const Eigen::Vector3d> rates(&body.rates[kLegJoints * leg]);
   const double falls =
       -body.turned.row(2).dot(body.jacobians[leg] * rates) / (kReachSpeed * std::sqrt(length_ / kReferenceLeg));
-  if (falls > 1) {
-    out.reasons |= kReasonReaching;
-    out.legged.reaches |= 1U << leg;
-  }
+  if (falls > 1) out.legged.reaches |= 1U << leg;
   double part = std::clamp(2 - falls, 0.0, 1.0);
   for (std::size_t i = 0; i < kLegJoints; ++i) {
     const double room = effort_limits_[kLegJoints * leg + i] - std::copysign(own[i], own[i] * load[i]);
@@ -89,10 +86,7 @@ void Walker::lift_again(State& state, const WalkInput& input, const WalkingBody&
 
 void Walker::swing(const State& state, const WalkInput& input, const WalkingBody& body, std::size_t leg,
                    CommandFrame& out) const noexcept {
-  if (state.departed[leg] > kFirstLift) {
-    out.reasons |= kReasonMetRiser;
-    out.legged.risers |= 1U << leg;
-  }
+  if (state.departed[leg] > kFirstLift) out.legged.risers |= 1U << leg;
   const SwingPoint point = path(state, input, body, leg);
   const LegKinematics& kinematics = legs_[leg].kinematics;
   const Eigen::Matrix3d back = body.turned.transpose();
