@@ -52,18 +52,17 @@ void CommandInput::receive(const ArrivedCommand& arrived, const ArrivalTime& tim
   }
   reported_stamps_.erase(arrived.sender.name);
   requests_.sent(arrived.sender, time.loop_ns);
-  update(time.loop_ns);
-  if (value_.many_senders != 0) {
-    ++value_.crowded;
-    requests_.request(arrived.sender, time.loop_ns);
-    return;
-  }
   Request content{.twist = arrived.twist, .posture = arrived.posture, .mode = arrived.mode, .joints = arrived.joints};
   if (arrived.part == StatedPart::kTwist && !zero(content.twist)) content.mode = mode_;
   if (parts_of(content) == 0) {
     requests_.end(arrived.sender);
   } else {
     requests_.request(arrived.sender, time.loop_ns, arrived.stamp_ns == 0 ? 0 : time.ros_ns - arrived.stamp_ns);
+  }
+  update(time.loop_ns);
+  if (value_.many_senders != 0) {
+    ++value_.crowded;
+    return;
   }
   if (requests_.revoked(arrived.sender)) {
     ++value_.revoked;
@@ -152,7 +151,7 @@ bool CommandInput::update(std::int64_t loop_ns) {
   report_senders(loop_ns);
   const bool over = !requests_.granted() && parts_of(value_.content) != 0 && !motion_requested(loop_ns);
   if (over) end_command(loop_ns);
-  const std::uint64_t many = one_sender_ && senders(loop_ns).size() > 1 ? 1 : 0;
+  const std::uint64_t many = one_sender_ && senders(loop_ns).size() > 1 && motion_requested(loop_ns) ? 1 : 0;
   return std::exchange(value_.many_senders, many) != many || over;
 }
 
@@ -209,7 +208,7 @@ void CommandInput::report_senders(std::int64_t loop_ns) {
   }
   if (std::ranges::includes(reported_senders_, names) || !may_report(joined(names), loop_ns)) return;
   const std::string consequence = one_sender_
-                                      ? "refused (one_sender), ramping down to standstill until one is left"
+                                      ? "motion is refused (one_sender), ramping down to standstill until one is left"
                                       : "each message overrides the previous one (one_sender: true refuses them)";
   lines_.push_back(
       {true, std::to_string(names.size()) + " nodes send commands: " + joined(names) + "; " + consequence});

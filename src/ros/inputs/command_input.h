@@ -6,8 +6,9 @@
 ///   1. its stamp (judge_stamp): a message that is too old or in the future is refused. The last command stays in
 ///      force until its timeout, and the sender of the refused message does not count as a sender;
 ///   2. its sender: with `one_sender`, two or more senders within cmd_vel_timeout, but at least
-///      within kSenderWindow, exclude each other: all their messages are refused, and the robot ramps to rest until one
-///      sender is left. Without `one_sender` each message overrides the previous one, and that is reported;
+///      within kSenderWindow, exclude each other while one of them requests motion: all their messages are refused. The
+///      robot ramps to rest until one sender is left, or none requests motion. Without `one_sender` each message
+///      overrides the previous one, and that is reported;
 ///   3. its numbers: NaN and infinity are refused. What this message would have replaced ends if it is its sender's, a
 ///      pose beside a twist alone; the command of another sender stays in force;
 ///   4. its connection (motion_requests.h): motion is refused while the connection is revoked.

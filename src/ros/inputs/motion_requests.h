@@ -1,8 +1,8 @@
 #pragma once
 /// MotionRequests records which connections send, which of them request motion, and which are revoked. It is pure.
 ///
-/// A connection requests motion from a message that is refused or not of zero velocity until its next accepted zero
-/// velocity. A latched stop, a start of a node and the end of a pause withdraw the permission to move
+/// A connection requests motion from a message whose stamp is refused, or that is not of zero velocity, until its next
+/// zero velocity. A latched stop, a start of a node and the end of a pause withdraw the permission to move
 /// (Permit::withdrawals). A connection is revoked
 ///   - by a withdrawal, if it requests motion then or did so within `window` before;
 ///   - when permission is granted again, if it requests motion then: such a request was made during the stop. A request
@@ -10,10 +10,10 @@
 ///   - by a request whose stamp is older than the last grant by more than in_transit_ns: it was made before that grant;
 ///   - from the beginning, if this controller was restarted and the sender's process was present at its start
 ///     (EarlierController): its requests to the earlier controller are not known.
-/// It stays revoked until its own next accepted zero velocity. A new connection of a process (same_process) continues
-/// the state of one to its topic that the process has closed. A revoked one comes first. If there is none, it begins
-/// revoked where a closed one to another topic is. A restarted process begins without revocation. The state of the
-/// newest kMaxClosed closed connections is kept.
+/// It stays revoked until its own next zero velocity. A new connection of a process (same_process) continues the state
+/// of one to its topic that the process has closed. A revoked one comes first. If there is none, it begins revoked where
+/// a closed one to another topic is. A restarted process begins without revocation. The state of the newest kMaxClosed
+/// closed connections is kept.
 ///
 /// Time is that of the loop's frames.
 
@@ -81,7 +81,7 @@ class MotionRequests {
   /// Records a message that was refused or is not of zero velocity, of this age by its stamp (0 without one).
   void request(const Publisher& sender, std::int64_t now_ns, std::int64_t age_ns = 0);
 
-  /// Records an accepted zero velocity.
+  /// Records a zero velocity with a usable stamp.
   void end(const Publisher& sender);
 
   /// Applies the monitor's permission. Returns true if the command in force ends, because permission was withdrawn or
@@ -107,7 +107,7 @@ class MotionRequests {
     std::optional<std::int64_t> sent_ns;       ///< time of the last message with a usable stamp
     std::optional<std::int64_t> requested_ns;  ///< time of the last request
     bool requests = false;
-    bool zero_sent = false;  ///< a zero velocity was accepted since the last withdrawal
+    bool zero_sent = false;  ///< a zero velocity was received since the last withdrawal
     bool revoked = false;
   };
 

@@ -231,6 +231,23 @@ TEST_F(CommandInputTest, WithOneSenderMessagesOfAllAreRefusedUntilOneIsLeft) {
   EXPECT_EQ(reported(), "I one sender of commands is left: /teleop\n");
 }
 
+TEST_F(CommandInputTest, WithOneSenderZerosOfTwoAreAcceptedWhileNoneRequestsMotion) {
+  input_ = CommandInput(1.25, true);
+  input_.follow({.run = 7, .withdrawals = 0, .granted = true}, now_.loop_ns);
+  receive("/teleop", 0);
+  receive("/console", 0);
+  EXPECT_EQ(value().many_senders, 0u);
+  EXPECT_EQ(value().count, 2u);
+  EXPECT_EQ(value().contested, 0u) << "evidence for a reset";
+  receive("/teleop", 0.5);
+  receive("/console", 0);
+  EXPECT_EQ(value().many_senders, 1u);
+  EXPECT_EQ(value().crowded, 2u);
+  receive("/teleop", 0);
+  EXPECT_EQ(value().many_senders, 0u);
+  EXPECT_EQ(value().count, 3u);
+}
+
 TEST_F(CommandInputTest, ANewcomerToACrowdIsNamed) {
   receive("/a", 0);
   receive("/b", 0);
