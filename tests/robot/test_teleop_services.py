@@ -59,10 +59,10 @@ def wait_for(condition):
 
 def test_a_repeated_e_stop_is_one_request_and_one_after_a_reset_is_another(robot):
     services = Services(robot.watch)
-    services.e_stop()
-    services.e_stop()
+    assert services.e_stop()
+    assert not services.e_stop()
     services.reset()
-    services.e_stop()
+    assert services.e_stop()
     wait_for(lambda: len(robot.calls) == 3)
     assert robot.calls == ["e_stop_trigger", "e_stop_reset", "e_stop_trigger"]
 

@@ -71,14 +71,17 @@ class Services:
         self._last_e_stop = float("-inf")
         threading.Thread(target=self._work, daemon=True).start()
 
-    def e_stop(self) -> None:
-        """Calls the service: unlike the topic it leaves no level that a reset has to take back."""
+    def e_stop(self) -> bool:
+        """Calls the service: unlike the topic it leaves no level that a reset has to take back. Returns False for a
+        request that repeats the last one: it has no answer of its own.
+        """
         now = time.monotonic()
         if now - self._last_e_stop < AGAIN:
-            return
+            return False
         self._last_e_stop = self._e_stop_at = now
         self._sent_at, self._refusal = None, ""
         self._wanted.put((E_STOP, now, 1))
+        return True
 
     def reset(self) -> None:
         """Takes back the topic's level if it was raised here. The service may overtake the topic: a reset that is then

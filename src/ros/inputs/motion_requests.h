@@ -11,9 +11,9 @@
 ///   - from the beginning, if this controller was restarted and the sender's process was present at its start
 ///     (EarlierController): its requests to the earlier controller are not known.
 /// It stays revoked until its own next zero velocity. A new connection of a process (same_process) continues the state
-/// of one to its topic that the process has closed. A revoked one comes first. If there is none, it begins revoked where
-/// a closed one to another topic is. A restarted process begins without revocation. The state of the newest kMaxClosed
-/// closed connections is kept.
+/// of one to its topic that the process has closed. A revoked one comes first. If there is none, it begins revoked
+/// where a closed one to another topic is. A restarted process begins without revocation. The state of the newest
+/// kMaxClosed closed connections is kept.
 ///
 /// Time is that of the loop's frames.
 

@@ -105,6 +105,15 @@ def test_a_page_at_rest_sends_zeros_for_as_long_as_a_reset_may_need_them(page):
     assert page.run(0.2)[-1] is None
 
 
+def test_the_zeros_for_a_reset_end_when_the_robot_may_drive_because_another_node_may_drive_it_then(page):
+    page.run(ZEROS)
+    page.authority.rest(page.now + 5.0)
+    page.authority.permit(True)
+    assert page.run(0.2)[-1] is None
+    page.authority.rest(page.now + 5.0)
+    assert page.run(0.2)[-1] is None
+
+
 def test_backwards_it_is_no_faster_than_the_robot_may(page):
     page.press(-1.0)
     assert page.run(0.5)[-1].linear == -0.3

@@ -126,7 +126,7 @@ class WatchedRobot:
 
     def stop(self) -> bool:
         """Brakes the robot until a reset; returns whether it is stopped. Works after a signal, too."""
-        self._services.e_stop()
+        _awaited(self._services.e_stop)
         answer = self._answer(E_STOP)
         return answer is not None and answer.accepted and _awaited(lambda: self.safety.state_name in RESTS)
 
@@ -135,6 +135,7 @@ class WatchedRobot:
         answers: list[Answer | None] = [None]
 
         def released() -> bool:
+            self._twist.send(Twist())  # evidence that no motion is requested; silence takes longer
             self._services.reset()
             answers.append(self._answer(RESET))
             return answers[-1] is not None and answers[-1].accepted

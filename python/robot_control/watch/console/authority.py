@@ -64,7 +64,8 @@ class Authority:
         self.pages: dict[int, Page] = {}
         self.commander: Page | None = None
         self._last_number = 0
-        self._zeros_until = -math.inf
+        self._zeros_until = self._rests_until = -math.inf
+        self._drivable: bool | None = None
 
     def join(self, user: str, role: Role) -> Page:
         """Adds a page."""
@@ -135,6 +136,9 @@ class Authority:
         """Sets whether the robot may drive by its safety monitor; None if there is no message of it. `legged`: it also
         moves sideways.
         """
+        if drivable:
+            self._rests_until = -math.inf
+        self._drivable = drivable
         for page in self.pages.values():
             page.dead_man.pad.legged = legged
             page.dead_man.pad.permit(drivable)
@@ -143,14 +147,14 @@ class Authority:
         """Notes that the controller refuses motion until it has received a zero."""
         for page in self.pages.values():
             page.dead_man.pad.refuse(now)
-        self._zeros_until = max(self._zeros_until, now + ZEROS)
+        self._zeros_until = now + ZEROS
 
     def rest(self, until: float) -> None:
-        """Sends zeros until then, s. A reset waits for one that arrives after the last late cycle.
-
-        Silence has to last for cmd_vel_timeout without such a cycle (safety/latch/motion_release.h).
+        """Sends zeros until then, s, and until the robot may drive. A reset waits for one that arrives after the last
+        late cycle. Silence has to last for cmd_vel_timeout without such a cycle (safety/latch/motion_release.h).
         """
-        self._zeros_until = until
+        if not self._drivable:
+            self._rests_until = until
 
     def command(self, limits: Limits, now: float) -> tuple[Command | None, float]:
         """The command to send now, or None if nothing is sent; and its age, s."""
@@ -159,7 +163,7 @@ class Authority:
         page = self.commander
         share = None if page is None else page.dead_man.share(now)
         if page is None or share is None or share == Command():
-            nothing = share is None and now >= self._zeros_until
+            nothing = share is None and now >= max(self._zeros_until, self._rests_until)
             return None if nothing else Command(), 0.0
         self._zeros_until = now + ZEROS
         linear, angular = min(page.chosen.linear, limits.linear), min(page.chosen.angular, limits.angular)

@@ -8,7 +8,6 @@ from typing import Any
 import rospy
 from std_msgs.msg import Empty
 
-from robot_control.drive.keys.operator import ZEROS
 from robot_control.drive.speed_limits import SpeedLimits
 from robot_control.robot.command import Pace
 from robot_control.robot.command_topic import CommandTopic
@@ -58,8 +57,6 @@ class Backend:
         for answer in answers:
             if answer.service == E_STOP:
                 self._e_stop, self._e_stop_at = answer, now
-            elif answer.accepted:
-                self.authority.rest(now + ZEROS)
         if why := self._watch.interrupted():
             self.authority.interrupt(now, why)
         if self.view.revoked(rospy.get_name()):
