@@ -269,6 +269,15 @@ def test_one_joint_that_keeps_its_last_order_is_named(tmp_path):
     assert rows(tmp_path, RT_ROBOT | {"drive_file": tree})["silence"].finding.verdict is Verdict.NOTE
 
 
+def test_a_reaction_that_the_file_accepts_without_knowing_it_and_an_unreadable_file_are_named(tmp_path):
+    write(tmp_path, preempt_rt())
+    tree = {"every_joint": {"on_silence": "coasts"}, "left_wheel_joint": {"accept_unknown_watchdog": True}}
+    assert rows(tmp_path, RT_ROBOT | {"drive_file": tree})["silence"].finding.verdict is Verdict.NOTE
+    for broken in ({}, {"drive_file": None}, {"drive_file": [1]}):
+        found = rows(tmp_path, RT_ROBOT | {"drives": "my.yaml"} | broken)["silence"].finding
+        assert (found.verdict, found.value) == (Verdict.WARNING, "the drive file my.yaml cannot be read")
+
+
 def test_an_ordinary_program_on_the_core_of_a_loop_with_privileges_is_no_alarm(tmp_path):
     write(tmp_path, preempt_rt() | task(800, "blender", ticks=900_000, core=3))
     assert rows(tmp_path, RT_ROBOT)["core_load"].finding.verdict is Verdict.NOTE

@@ -119,14 +119,17 @@ def silence(system: System) -> Finding:
     A drive whose watchdog the driver sets or reads needs no statement.
     """
     blocks = _drive_blocks(system).values()
+    if (path := system.robot.get("drives")) and not blocks:
+        return warning(f"the drive file {path} cannot be read", "set robot.drives to a drive file")
     stated = {str(block["on_silence"]) for block in blocks if "on_silence" in block}
     if "keeps" in stated:
         value = "the motors keep their last order for ever when this computer is silent"
         return note(value, "use an emergency stop that cuts the supply of the motors")
-    if "unknown" in stated:
+    if "unknown" in stated or any(block.get("accept_unknown_watchdog") for block in blocks):
         value = "what the drives do when this computer is silent is unknown to the drive file"
         return note(value, "find it out with the robot on a stand, and state it as on_silence")
-    return ok(f"the drive file states: {', '.join(sorted(stated))}" if stated else "no drive file states a reaction")
+    unstated = "no drive file states a reaction: a driver that can neither set nor read it refuses to start"
+    return ok(f"the drive file states: {', '.join(sorted(stated))}" if stated else unstated)
 
 
 def serial_latency(system: System) -> Finding:
