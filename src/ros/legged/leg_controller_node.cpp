@@ -85,6 +85,7 @@ class LegControllerNode final : public CommandedNode {
 
   void publish() override {
     const bool follows = follow_command();
+    if (follows) met_.add(reports_.risers, reports_.reaches, command_.head.stamp_ns);
     {
       const std::lock_guard lock(input_mutex_);
       if (follows) continue_trajectory();
@@ -96,7 +97,7 @@ class LegControllerNode final : public CommandedNode {
     process().states().at(command_.head.run, command_.head.cycle, state);
     CommandFrame plan;
     if (command_.head.cycle >= 2) process().output().at(command_.head.run, command_.head.cycle - 2, plan);
-    LegState message = leg_state({command_, plan, sensors, state, gaits_, std::exchange(since_message_, 0)},
+    LegState message = leg_state({command_, plan, sensors, state, gaits_, std::exchange(since_message_, 0), met_},
                                  leg_model_of(robot()), time().at(command_.head.stamp_ns));
     {
       const std::lock_guard lock(input_mutex_);
@@ -321,6 +322,7 @@ class LegControllerNode final : public CommandedNode {
   CommandInput input_;
   const Gaits gaits_ = all_gaits(parameters().leg_control.gaits);
   std::optional<Execution> execution_;  ///< protected by input_mutex_
+  MetGround met_;
   Pacer pace_;
 };
 

@@ -65,6 +65,14 @@ std::string gait_of_mode(const Mode& mode, const Gaits& gaits) {
   return mode.kind == ModeKind::kGait && mode.index < gaits.size() ? gaits[mode.index].name.data() : "auto";
 }
 
+void MetGround::add(std::uint64_t risers, std::uint64_t reaches, std::int64_t now_ns) noexcept {
+  now_ns_ = now_ns;
+  for (std::size_t leg = 0; leg < kLegs; ++leg) {
+    if ((risers >> leg & 1) != 0) risers_ns_[leg] = now_ns;
+    if ((reaches >> leg & 1) != 0) reaches_ns_[leg] = now_ns;
+  }
+}
+
 LegState leg_state(const LegReport& report, const LegModel& robot, ros::Time stamp) {
   const CommandFrame& command = report.command;
   LegState message;
@@ -96,8 +104,8 @@ LegState leg_state(const LegReport& report, const LegModel& robot, ros::Time sta
     message.bears.push_back(contact.probability > 0.5 ? 1 : 0);
     message.load.push_back(contact.load);
     message.slip.push_back(contact.slip);
-    message.met_riser.push_back(command.legged.risers >> leg & 1);
-    message.reaching.push_back(command.legged.reaches >> leg & 1);
+    message.met_riser.push_back(report.met.met_riser(leg) ? 1 : 0);
+    message.reaching.push_back(report.met.reaching(leg) ? 1 : 0);
   }
   for (std::size_t i = 0; i < robot.joints.size(); ++i) {
     const JointCommand& plan = report.plan.joints[i];

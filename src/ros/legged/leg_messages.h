@@ -47,6 +47,26 @@ std::string gait_of_mode(const Mode& mode, const Gaits& gaits);
 /// Returns the mode that walks with the gait of set_gait, the default one for "auto". Returns none for an unknown gait.
 std::optional<Mode> mode_of_gait(const std::string& gait, const Gaits& gaits);
 
+/// Keeps which feet were lifted over an obstacle or found no ground within the last kShown. A foot finds no ground for a
+/// few cycles, and a page shows every fiftieth one.
+class MetGround {
+ public:
+  static constexpr std::int64_t kShown = 200'000'000;  ///< ns
+
+  /// `risers` and `reaches` as in LeggedCommand, of cycles up to now.
+  void add(std::uint64_t risers, std::uint64_t reaches, std::int64_t now_ns) noexcept;
+
+  bool met_riser(std::size_t leg) const noexcept { return shown(risers_ns_[leg]); }
+  bool reaching(std::size_t leg) const noexcept { return shown(reaches_ns_[leg]); }
+
+ private:
+  bool shown(std::int64_t at_ns) const noexcept { return std::abs(now_ns_ - at_ns) <= kShown; }
+
+  static constexpr std::array<std::int64_t, kLegs> kNever{-kShown - 1, -kShown - 1, -kShown - 1, -kShown - 1};
+  std::array<std::int64_t, kLegs> risers_ns_ = kNever, reaches_ns_ = kNever;
+  std::int64_t now_ns_ = 0;
+};
+
 /// The inputs of a LegState. `plan` is the command two cycles before `command`; an ideal joint now has its angles.
 struct LegReport {
   const CommandFrame& command;
@@ -55,6 +75,7 @@ struct LegReport {
   const StateFrame& state;
   const Gaits& gaits;
   std::uint64_t reasons;  ///< CommandReason bits
+  const MetGround& met;
 };
 
 /// Fills everything but the senders and the chosen gait.

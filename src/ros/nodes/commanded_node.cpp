@@ -72,9 +72,9 @@ bool CommandedNode::follow_command() {
   if (process().sensors().newest(sensors) != Lookup::kFrame || !process().is_current(sensors.head)) return false;
   look_at_senders();
   if (process().output().newest(command_) != Lookup::kFrame || command_.head.run != sensors.head.run) return false;
-  const std::uint64_t reasons = history_.collect(process().output(), command_);
-  since_message_ |= reasons;
-  since_report_ |= reasons;
+  reports_ = history_.collect(process().output(), command_);
+  since_message_ |= reports_.reasons;
+  since_report_ |= reports_.reasons;
   time().follow(sensors);
   return true;
 }

@@ -15,21 +15,34 @@
 
 namespace robot_control {
 
-/// A ReasonHistory collects the CommandReason bits of every cycle for a slower thread.
-class ReasonHistory {
+/// The reports of any of several commands.
+struct CommandReports {
+  std::uint64_t reasons = 0;              ///< CommandReason bits
+  std::uint64_t risers = 0, reaches = 0;  ///< as in LeggedCommand
+
+  void add(const CommandFrame& command) noexcept {
+    reasons |= command.reasons;
+    risers |= command.legged.risers;
+    reaches |= command.legged.reaches;
+  }
+};
+
+/// A CommandHistory collects the reports of every cycle for a slower thread.
+class CommandHistory {
  public:
-  /// Returns the bits of all cycles after that of the last call up to `newest`, as far as the channel still has them.
-  /// In a new run it returns those of `newest` alone.
-  std::uint64_t collect(const FrameReader<CommandFrame>& channel, const CommandFrame& newest) noexcept {
+  /// Returns the reports of all cycles after that of the last call up to `newest`, as far as the channel still has
+  /// them. In a new run it returns those of `newest` alone.
+  CommandReports collect(const FrameReader<CommandFrame>& channel, const CommandFrame& newest) noexcept {
     const bool same_run = newest.head.run == run_;
-    std::uint64_t bits = newest.reasons;
+    CommandReports reports;
+    reports.add(newest);
     CommandFrame frame;
     for (std::uint64_t back = 1; same_run && back < kFrameSlots && cycle_ + back < newest.head.cycle; ++back) {
-      if (channel.at(run_, newest.head.cycle - back, frame) == Lookup::kFrame) bits |= frame.reasons;
+      if (channel.at(run_, newest.head.cycle - back, frame) == Lookup::kFrame) reports.add(frame);
     }
     run_ = newest.head.run;
     cycle_ = newest.head.cycle;
-    return bits;
+    return reports;
   }
 
  private:
@@ -63,6 +76,7 @@ class CommandedNode : public ProcessNode<ControllerProcess> {
 
   std::mutex input_mutex_;  ///< protects the intake
   CommandFrame command_;
+  CommandReports reports_;           ///< since the last call of follow_command
   std::uint64_t since_message_ = 0;  ///< CommandReason bits since the last message about them
   std::uint64_t since_report_ = 0;   ///< CommandReason bits since the last /diagnostics
 
@@ -74,7 +88,7 @@ class CommandedNode : public ProcessNode<ControllerProcess> {
   CommandIntake* intake_;
   std::int64_t loop_ns_ = 0;
   bool dropped_reported_ = false;
-  ReasonHistory history_;
+  CommandHistory history_;
 };
 
 }  // namespace robot_control

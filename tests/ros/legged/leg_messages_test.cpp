@@ -55,8 +55,8 @@ TEST(LegMessages, TheStateNamesPostureFootAndReasons) {
   CommandFrame command;
   command.legged = {.phase = LegPhase::kStanding, .lifted = 4, .body = {0.01, 0.02, 0.03, 0.1, 0.2, 0.3}};
   command.legged.slope = {0.1, -0.2};
-  command.legged.risers = 1;
-  command.legged.reaches = 8;
+  MetGround met;
+  met.add(1, 8, 0);
   CommandFrame plan;
   plan.joints[1] = {.mode = JointMode::kImpedance, .position = 0.7};
   StateFrame state;
@@ -65,7 +65,7 @@ TEST(LegMessages, TheStateNamesPostureFootAndReasons) {
   robot.joints.resize(2);
   robot.joints[1].name = "knee";
   const LegState message =
-      leg_state({command, plan, {}, state, all_gaits({}), kReasonOutOfReach}, robot, ros::Time(1, 2));
+      leg_state({command, plan, {}, state, all_gaits({}), kReasonOutOfReach, met}, robot, ros::Time(1, 2));
   EXPECT_EQ(message.posture, "standing");
   EXPECT_EQ(message.lifted, "rear_right");
   EXPECT_EQ(message.body.yaw, 0.3);
@@ -78,6 +78,17 @@ TEST(LegMessages, TheStateNamesPostureFootAndReasons) {
   EXPECT_THAT(message.reaching, ElementsAre(0, 0, 0, 1));
   EXPECT_TRUE(std::isnan(message.wanted[0]));
   EXPECT_EQ(message.wanted[1], 0.7);
+}
+
+TEST(MetGroundTest, AnEventOfOneCycleIsShownForAFifthOfASecond) {
+  MetGround met;
+  EXPECT_FALSE(met.met_riser(2) || met.reaching(2));
+  met.add(0, 4, 1'000'000'000);
+  met.add(0, 0, 1'200'000'000);
+  EXPECT_TRUE(met.reaching(2));
+  EXPECT_FALSE(met.met_riser(2) || met.reaching(1));
+  met.add(0, 0, 1'201'000'000);
+  EXPECT_FALSE(met.reaching(2));
 }
 
 TEST(LegMessages, ARefusalSaysWhoHoldsThePermission) {

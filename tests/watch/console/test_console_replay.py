@@ -9,6 +9,7 @@ import threading
 import time
 from pathlib import Path
 
+import numpy as np
 import pytest
 import rosbag
 import rospy
@@ -20,6 +21,7 @@ from robot_control.data.report.drive import mass_of
 from robot_control.data.run_log import LogError, read_run
 from robot_control.watch.console.navigation import NoGridError
 from robot_control.watch.console.replay.playback import Playback
+from robot_control.watch.console.replay.rows import held
 from robot_control.watch.console.settings import Settings
 from tf2_msgs.msg import TFMessage
 
@@ -266,3 +268,8 @@ def test_a_page_of_a_robot_does_not_play():
 
     with pytest.raises(RefusedError):
         Backend.play(object.__new__(Backend), 0.0, 1.0)
+
+
+def test_an_event_of_a_foot_that_lasted_one_cycle_is_held_for_the_page():
+    bits = np.array([0.0, math.nan, 4.0, 0.0, 1.0, 0.0, 0.0])
+    assert held(bits, 2).tolist() == [0, 0, 4, 4, 5, 1, 1]

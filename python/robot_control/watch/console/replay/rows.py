@@ -23,6 +23,8 @@ COVARIANCE = ("estimate_x_variance", "estimate_xy_covariance", "estimate_y_varia
 TRUTH = ("truth_x", "truth_y", "truth_yaw")
 CONTACT = ("estimate_contact_probability", "estimate_contact_load")
 SLOPE, FEET_BITS = ("slope_ahead", "slope_left"), ("legged_risers", "legged_reaches")
+SHOWN = 0.2
+"""s for which an event of a foot is shown, as in LegState"""
 STOPPED = ("STOPPING", "STOPPED", "FAULT")
 MARK_TIMES, MARK_CAUSES = "mark_times", "mark_causes"
 """s of each stop from the begin of the log, and the bits of its causes"""
@@ -52,11 +54,22 @@ def rows_of(path: Path) -> dict[str, np.ndarray[Any, Any]]:
     state, causes = run.columns["supervisor_state"], np.nan_to_num(run.columns["permit_causes"]).astype(np.int64)
     stopped = np.isin(state, [names.number_of("SupervisorState", name) for name in STOPPED]) & (causes != 0)
     begins = [begin for begin, _ in intervals(stopped, state)]
+    for name in set(FEET_BITS) & set(run.columns):
+        run.columns[name] = held(run.columns[name], round(SHOWN / float(run.header["period"])))
     every = max(1, round(1 / (RATE * float(run.header["period"]))))
     rows = {name: values[::every].copy() for name, values in (run.columns | {"time": seconds}).items()}
     begin, end = (float(run.ros_time[row]) for row in (0, -1))
     maps = maps_beside(path, begin, end, odom_frame(header["parameters"]))
     return rows | maps | {MARK_TIMES: seconds[begins], MARK_CAUSES: causes[begins].astype(float)}
+
+
+def held(bits: np.ndarray[Any, Any], rows: int) -> np.ndarray[Any, Any]:
+    """The bits of each row, of four feet, with those of so many rows before it."""
+    number, found = np.arange(len(bits)), np.zeros(len(bits))
+    for leg in range(4):
+        at = np.maximum.accumulate(np.where(np.nan_to_num(bits).astype(int) >> leg & 1, number, -rows - 1))
+        found += (number - at <= rows) * 2.0**leg
+    return found
 
 
 def contacts_of(header: Mapping[str, Any]) -> Sequence[str]:

@@ -5,23 +5,23 @@
 namespace robot_control::tests {
 
 /// A controller that publishes every cycle, and a thread that reads now and then.
-struct ReasonHistoryTest : testing::Test {
+struct CommandHistoryTest : testing::Test {
   void publish(std::uint64_t reasons, std::uint64_t run = 7) {
     newest_.head = {.run = run, .cycle = cycle_++};
     newest_.reasons = reasons;
     writer_.publish(newest_);
   }
 
-  std::uint64_t poll() { return history_.collect(FrameReader<CommandFrame>(memory_.get()), newest_); }
+  std::uint64_t poll() { return history_.collect(FrameReader<CommandFrame>(memory_.get()), newest_).reasons; }
 
   std::unique_ptr<LatestFrames<CommandFrame>> memory_ = std::make_unique<LatestFrames<CommandFrame>>();
   FrameWriter<CommandFrame> writer_{memory_.get(), Wake::kNone};
-  ReasonHistory history_;
+  CommandHistory history_;
   CommandFrame newest_;
   std::uint64_t cycle_ = 100;
 };
 
-TEST_F(ReasonHistoryTest, FindsAReasonOfOneCycleBetweenTwoLooks) {
+TEST_F(CommandHistoryTest, FindsAReasonOfOneCycleBetweenTwoLooks) {
   publish(0);
   EXPECT_EQ(poll(), 0u);
   publish(0);
@@ -33,7 +33,7 @@ TEST_F(ReasonHistoryTest, FindsAReasonOfOneCycleBetweenTwoLooks) {
   EXPECT_EQ(poll(), 0u) << "reported once";
 }
 
-TEST_F(ReasonHistoryTest, GoesBackAsFarAsTheChannelDoes) {
+TEST_F(CommandHistoryTest, GoesBackAsFarAsTheChannelDoes) {
   publish(0);
   poll();
   publish(kReasonRefused);
@@ -44,7 +44,7 @@ TEST_F(ReasonHistoryTest, GoesBackAsFarAsTheChannelDoes) {
   EXPECT_EQ(poll(), kReasonRefused);
 }
 
-TEST_F(ReasonHistoryTest, RestartsWithARun) {
+TEST_F(CommandHistoryTest, RestartsWithARun) {
   publish(0);
   poll();
   publish(kReasonRefused);
