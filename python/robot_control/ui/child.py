@@ -15,7 +15,7 @@ END_LIMIT = 20.0
 class Child:
     """A program of ours in a process group of its own, its output in a file.
 
-    It also gets SIGINT when the thread that started it ends, even by SIGKILL.
+    It also gets SIGINT when the thread that started it ends, even by SIGKILL: that thread has to live on.
     """
 
     def __init__(self, command: Sequence[str], output: Path, environment: Mapping[str, str] | None = None) -> None:

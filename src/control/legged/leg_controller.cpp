@@ -186,6 +186,8 @@ void LegController::report(CommandFrame& out) const noexcept {
   out.legged.lifted = state_.phase >= LegPhase::kStanding && stand.lifted != kLegs ? stand.lifted + 1 : 0;
   for (std::size_t leg = 0; leg < kLegs; ++leg) out.contact_schedule[leg] = stand.share[leg] > 0 ? 0.5 : 0;
   if (state_.phase == LegPhase::kStanding) stand_.report(stand, out.legged);
+  if (state_.phase == LegPhase::kRising || state_.phase == LegPhase::kStanding || state_.phase == LegPhase::kLowering)
+    out.legged.slope = {stand.up[0] / stand.up[2], stand.up[1] / stand.up[2]};
 }
 
 }  // namespace robot_control

@@ -47,8 +47,8 @@ std::string gait_of_mode(const Mode& mode, const Gaits& gaits);
 /// Returns the mode that walks with the gait of set_gait, the default one for "auto". Returns none for an unknown gait.
 std::optional<Mode> mode_of_gait(const std::string& gait, const Gaits& gaits);
 
-/// Keeps which feet were lifted over an obstacle or found no ground within the last kShown. A foot finds no ground for a
-/// few cycles, and a page shows every fiftieth one.
+/// Keeps which feet were lifted over an obstacle or found no ground within the last kShown. A foot finds no ground for
+/// a few cycles, and a page shows every fiftieth one.
 class MetGround {
  public:
   static constexpr std::int64_t kShown = 200'000'000;  ///< ns

@@ -328,6 +328,8 @@ def test_a_walk_is_motion_with_its_speeds_and_what_limits_them(legged):
     limited = judge(saying(walking, "leg_controller", command__leg_speed=said))
     assert limited.headline.endswith(f"0.20 rad/s; {said[0]}.")
     assert limited.actions == (("operator", said[1]),)
+    sloping = judge(saying(walking, "leg_controller", ground="rises 10.2 deg to the front"))
+    assert sloping.headline.endswith("0.20 rad/s. The ground rises 10.2 deg to the front.")
     assert "after limits 0.50 m/s, 0.10 m/s to the left, 0.20 rad/s" in " ".join(text(walking).split())
 
 

@@ -15,14 +15,13 @@ def execution(facts: Facts) -> Answer:
     """The answer by the posture and by the reasons why a request is not executed."""
     posture = facts.value(facts.controller, "posture")
     if posture in POSTURES:
-        return Answer(Verdict.MOVING, f"Moving: {POSTURES[posture]}.")
+        return Answer(Verdict.MOVING, f"Moving: {POSTURES[posture]}.{_ground(facts)}")
     reasons, remedies = facts.reasons(facts.controller, "command"), facts.remedies(facts.controller, "command")
     if posture == "walking":
         known = [name for name in LIMITS if name in reasons]
-        ground = facts.value(facts.controller, "ground")
-        why = "".join((f" on ground that {ground}" if ground else "", *(f"; {reasons[name]}" for name in known)))
+        why = "".join(f"; {reasons[name]}" for name in known)
         actions = tuple(("operator", remedies[name]) for name in known if remedies.get(name))
-        return Answer(Verdict.MOVING, f"Walking{_speed(facts)}{why}.", actions)
+        return Answer(Verdict.MOVING, f"Walking{_speed(facts)}{why}.{_ground(facts)}", actions)
     for name, needed in REFUSALS.items():
         if name in reasons:
             to_do = (("operator", remedies.get(name, "")),)
@@ -36,13 +35,18 @@ def execution(facts: Facts) -> Answer:
     requested += f"; {reasons['permit_slow']}" if "permit_slow" in reasons else ""
     silent = next((name for name in ("stale", "timed_out") if name in reasons and not senders), "")
     actions = (("operator", remedies[silent]),) if remedies.get(silent) else ()
-    return Answer(Verdict.IDLE, f"Ready{does}; {requested}.", actions)
+    return Answer(Verdict.IDLE, f"Ready{does}; {requested}.{_ground(facts)}", actions)
 
 
 def _speed(facts: Facts) -> str:
     if facts.limited is not None and not any(facts.limited):
         return " in place until its feet are in position, then standing"
     return "" if facts.measured is None else f": {speeds(facts.measured)}"
+
+
+def _ground(facts: Facts) -> str:
+    ground = facts.value(facts.controller, "ground")
+    return f" The ground {ground}." if ground else ""
 
 
 def _set_posture(facts: Facts, posture: str) -> tuple[str, ...]:

@@ -146,7 +146,6 @@ std::array<TrackedAxis, 3> Stand::lean(const State& state) const noexcept {
 void Stand::report(const State& state, LeggedCommand& out) const noexcept {
   const std::array<double, 3> nominal{state.home[0], state.home[1], nominal_};
   for (std::size_t i = 0; i < state.body.size(); ++i) out.body[i] = state.body[i].value - (i < kRoll ? nominal[i] : 0);
-  out.slope = {state.up[0] / state.up[2], state.up[1] / state.up[2]};
 }
 
 /// Returns the pose of the body to which the request adds.

@@ -98,8 +98,12 @@ TEST(GatheredLegs, MeasureTheSlopeInTheLyingPostureAlone) {
     legs.step(stance_of({ModeKind::kStand}));
     EXPECT_EQ(legs.out.legged.phase, LegPhase::kGathering);
     legs.estimate.base.attitude = uphill(kSlope);
+    run_until(legs, LegPhase::kRising);
+    const std::array<double, 2> rising = legs.out.legged.slope;
     run_until(legs, LegPhase::kStanding);
+    EXPECT_EQ(rising, legs.out.legged.slope);
     const Vector3& up = legs.state().stand.up;
+    EXPECT_EQ(rising, (std::array{up[0] / up[2], up[1] / up[2]}));
     EXPECT_NEAR(std::atan2(std::hypot(up[0], up[1]), up[2]), kSlope + std::abs(legs.robot.lying_pitch),
                 0.01 + std::abs(legs.robot.lying_pitch));
   }
