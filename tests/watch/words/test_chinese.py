@@ -148,8 +148,8 @@ def test_every_text_of_a_script_is_part_of_a_phrase(path):
             "left coasts（as stated），right coasts（as stated）；load at most 62 %",
         ),
         (
-            "Walking: 0.30 m/s; a foot hit an obstacle, and is lifted over it. The ground rises 10.2 deg to the rear left.",
-            "正在行走：0.30 m/s；有一只脚碰到障碍物，正被抬起越过。地面向左后升高 10.2 度。",
+            "Walking: 0.30 m/s; a foot hit an obstacle, and is lifted over it. The ground rises 9.9 deg to the left.",
+            "正在行走：0.30 m/s；有一只脚碰到障碍物，正被抬起越过。地面向左侧升高 9.9 度。",
         ),
         ("mujoco_plant, state_estimator MISSING", "mujoco_plant，state_estimator 缺失"),
         ("anna (page 2), watch", "anna（页面 2），只看（watch）"),
