@@ -1,7 +1,7 @@
 """Thousands of random fault sequences over random drives and robots, each judged by the truth.
 
     scripts/bench campaign --first 17 --runs 1     # repeats one and says what happened
-    scripts/bench campaign --robot quadbot         # the same on legs: random gaits and walks on flat ground
+    scripts/bench campaign --robot quadbot         # the same on legs: random gaits, walks and grounds
 
 A seed gives the same bits on the same build and robots, alone or among others, on however many processors.
 """

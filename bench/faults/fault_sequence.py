@@ -9,8 +9,10 @@ Drawing is a pure function of the seed and of the robots that are there.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import math
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 from robot_control.loop.signal_names import states
@@ -72,6 +74,7 @@ class FaultSequence:
     events: list[Event] = field(default_factory=list)
     wheel_command: str = "torque"  # one of WHEEL_COMMANDS
     gait: str = ""  # one of GAITS; empty: on wheels
+    ground: Mapping[str, Any] = field(default_factory=dict)  # parameters of mujoco_plant over the scene
 
     @property
     def rested(self) -> float:
@@ -89,6 +92,7 @@ class FaultSequence:
         silent = "then silence" if self.falls_silent else "then zero"
         drives = "" if self.wheel_command == "torque" else f" with drives of {self.wheel_command}"
         drives += f" in gait {self.gait}" if self.gait else ""
+        drives += "".join(f" on {name} {value}" for name, value in self.ground.items())
         return f"{self.robot}{drives} in {self.scene}, driven {self.driven:.2f} s, {silent}: {events or 'no fault'}"
 
 
@@ -114,7 +118,7 @@ def draw_sequence(seed: int, robots: Sequence[str], wheel_command: str = "torque
 
 
 def draw_walk(seed: int) -> FaultSequence:
-    """The sequence of this seed for quadbot, which stands up and walks on flat ground."""
+    """The sequence of this seed for quadbot, which stands up and walks; on every second seed the ground is flat."""
     random = np.random.default_rng(seed)
     driven = random.uniform(5.0, 9.0)
     joints = [joint["name"] for joint in describe(urdf_of(QUADBOT))["joints"]]
@@ -132,7 +136,24 @@ def draw_walk(seed: int) -> FaultSequence:
         faults_end=bool(random.random() < 0.5),
         events=sorted(events, key=lambda event: event.time),
         gait=str(random.choice(GAITS)),
+        ground=_ground(np.random.default_rng([seed, 1])),
     )
+
+
+def _ground(random: np.random.Generator) -> dict[str, Any]:
+    """Its random numbers are its own, so that the rest of a sequence is the one of the seed on flat ground."""
+
+    def between(low: float, high: float) -> float:
+        return float(random.uniform(low, high))
+
+    begins = {"distance": 0.5, "heading": between(-0.5, 0.5)}
+    grounds: dict[str, dict[str, Any]] = {
+        "slope": {"slope": between(0.05, 0.175), "slope_heading": between(-math.pi, math.pi)},
+        "step": {"terrain": {"kind": "stairs", "count": 1, "height": between(0.02, 0.1), **begins}},
+        "rough": {"terrain": {"kind": "rough", "count": 20, "length": 0.2, "height": 0.03, **begins}},
+        "ice": {"terrain": {"kind": "ice", "length": 1.0, **begins}},
+    }
+    return grounds.get(str(random.choice(["flat"] * len(grounds) + list(grounds))), {})
 
 
 def _faults(random: np.random.Generator, driven: float, components: Sequence[str] = COMPONENTS) -> list[Event]:

@@ -38,7 +38,7 @@ JOINT_COLUMNS = ("_injected_encoder", "_injected_motor")
 def loop_arguments(sequence: FaultSequence) -> dict[str, Any]:
     """Arguments for the robot of this sequence in its scene; its sensors err as the seed says."""
     params = {
-        "mujoco_plant": {"sensor_errors": "data_sheet", "battery_voltage": BATTERY_VOLTAGE},
+        "mujoco_plant": {"sensor_errors": "data_sheet", "battery_voltage": BATTERY_VOLTAGE, **sequence.ground},
         "safety_monitor": {"stop_deceleration": stop_deceleration_of(sequence.robot)},
     }
     return {
