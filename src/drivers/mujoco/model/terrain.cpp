@@ -31,7 +31,7 @@ void Terrain::lay(const TerrainParameters& course, std::uint64_t seed) {
       return;
     case TerrainKind::kRough: {
       std::mt19937_64 random(seed);
-      const auto columns = static_cast<std::uint64_t>(kWidth / length);
+      const auto columns = static_cast<std::uint64_t>(kTiles / length);
       for (double row = 0; row < count; ++row) {
         for (std::uint64_t column = 0; column < columns; ++column) {
           const double right = length * (static_cast<double>(column) - static_cast<double>(columns) / 2);

@@ -22,7 +22,8 @@ namespace robot_control {
 
 class Terrain {
  public:
-  static constexpr double kWidth = 4;           ///< m
+  static constexpr double kWidth = 8;           ///< m
+  static constexpr double kTiles = 4;           ///< m, width of all tiles
   static constexpr double kLanding = 1.5;       ///< m
   static constexpr double kPlatform = 4;        ///< m, length of each platform beside a gap
   static constexpr double kDepth = 0.3;         ///< m

@@ -181,9 +181,14 @@ void StandingFeet::compare(const Sample& now, const CommandFrame& command, const
   for_each_pair([&](std::size_t a, std::size_t b) {
     const std::size_t samples = std::min({counts_[a], counts_[b], kSamplesInWindow});
     if (samples < kFewestSamples) return;
-    const Eigen::Vector3d first = between(ago(samples).feet, a, b), last = between(now.feet, a, b);
-    const double along = std::abs(last.norm() - first.norm());
+    const std::size_t later = (samples + 1) / 2;
+    const Eigen::Vector3d last = between(now.feet, a, b);
+    const auto slides = [&](std::size_t within) {
+      const double change = std::abs(last.norm() - between(ago(within).feet, a, b).norm());
+      return change * static_cast<double>(samples) / static_cast<double>(within);
+    };
     if (samples == kSamplesInWindow) {
+      const double along = std::min(slides(samples), slides(later));
       slip = std::max(slip, along);
       slips[a] += along;
       slips[b] += along;
@@ -191,10 +196,14 @@ void StandingFeet::compare(const Sample& now, const CommandFrame& command, const
     if (!walks || unbraked_ <= kWindow ||
         std::max(command.contact_schedule[a], command.contact_schedule[b]) > 1 - kEdge)
       return;
-    const Eigen::Vector3d middle = (first + last) / 2, change = last - first + turn_within(samples).cross(middle);
-    const double rise = std::abs(change.dot(up)), yaw = std::abs(change.dot(up.cross(middle).normalized()));
-    turn = std::max(turn,
-                    (std::max(rise, kYawShare * yaw) - kSlipFactor * along - kUnevenShare * uneven_) / middle.norm());
+    const auto turns = [&](std::size_t within) {
+      const Eigen::Vector3d first = between(ago(within).feet, a, b), middle = (first + last) / 2;
+      const Eigen::Vector3d change = (last - first + turn_within(within).cross(middle)) * static_cast<double>(samples) /
+                                     static_cast<double>(within);
+      const double rise = std::abs(change.dot(up)), yaw = std::abs(change.dot(up.cross(middle).normalized()));
+      return (std::max(rise, kYawShare * yaw) - kSlipFactor * slides(within) - kUnevenShare * uneven_) / middle.norm();
+    };
+    turn = std::max(turn, std::min(turns(samples), turns(later)));
   });
   const auto foot = static_cast<std::size_t>(std::ranges::max_element(slips) - slips.begin());
   measured_.foot_slip = beyond(knee_of(foot), slip / window_, (walks ? kStepShare : 1) * slip_limit_);

@@ -14,6 +14,9 @@
 /// that within kWindow, or since both stand, but within kFewestSamples at least. The last kEdge of both stances is left
 /// out, and kWindow after the driver braked.
 ///
+/// Each of these changes continues. It is the smaller of that within its time, and that within the second half of this
+/// time, scaled to the whole. A foot that lands late moves once, and then rests.
+///
 /// foot load: F is the measured force of a foot, w an equal share of the weight. While it walks, the load of a foot is
 /// the largest of its present or last step. Without contact sensors it is not evaluated.
 ///
