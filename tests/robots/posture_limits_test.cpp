@@ -48,6 +48,16 @@ TEST_P(PostureLimits, HipsThatCarryTheWeightLimitTheTwist) {
   }
 }
 
+/// The load holds its joints while their commands move by 0.057 rad.
+TEST(QuadbotPostureLimits, APayloadOnASlopeIsNoStuckEncoder) {
+  const LegModel robot = legged_robot("quadbot");
+  Parameters parameters = field_parameters(0);
+  parameters.plant.payload = 0.7 * robot.mass;
+  const SlopeTrial trial = stand_up_on(robot, parameters, std::numbers::pi / 9, 0);
+  EXPECT_TRUE(trial.stands);
+  EXPECT_FALSE(trial.stopped) << trial.causes;
+}
+
 INSTANTIATE_TEST_SUITE_P(Robots, PostureLimits, testing::ValuesIn(legged_robots(true)), robot_name);
 INSTANTIATE_TEST_SUITE_P(Nightly, PostureLimits, testing::ValuesIn(legged_robots(false)), robot_name);
 

@@ -87,9 +87,8 @@ constexpr double kImpossibleSpeed = 10;  // times the limit: a number that no jo
 }  // namespace
 
 void Drive::accept_position(double position, double velocity, std::int64_t now_ns) noexcept {
-  if (accept_motion(position, velocity, now_ns)) {
-    sample_.joint.position = position_.step(sample_.joint.position, to_joint_ * velocity, now_ns);
-  }
+  if (!accept_motion(position, velocity, now_ns) || drive_.max_stiffness > 0) return;
+  sample_.joint.position = position_.step(sample_.joint.position, to_joint_ * velocity, now_ns);
 }
 
 void Drive::accept_position(double position, std::int64_t now_ns) noexcept {

@@ -111,6 +111,23 @@ TEST_F(DamiaoDriveTest, TheAnswerToAnotherProgramThatReadsARegisterIsNoSample) {
   EXPECT_NEAR(rig_.drive().sample().joint.position, position, 0.1);
 }
 
+/// The second frame comes 1 ms too early, so the first one was late.
+TEST_F(DamiaoDriveTest, ThePositionOfALateFrameIsTakenAsItArrives) {
+  add_motor();
+  ASSERT_TRUE(rig_.runs());
+  const double position = rig_.drive().sample().joint.position;
+  const damiao::Feedback feedback{.node = 1,
+                                  .state = damiao::State::kOn,
+                                  .position = rig_.motor().position - pair_.device.zero,
+                                  .velocity = 10,
+                                  .transistors = 20,
+                                  .rotor = 20};
+  for (const std::int64_t after_ns : {2'000'000, 3'000'000})
+    rig_.drive().receive(damiao::encode(static_cast<canid_t>(1 + damiao::kMaxNode + 1), pair_.device.ranges, feedback),
+                         rig_.now_ns() + after_ns);
+  EXPECT_NEAR(rig_.drive().sample().joint.position, position, 1.0e-3);
+}
+
 TEST_F(DamiaoDriveTest, AJointNearItsStartAngleRuns) {
   pair_.drive.drive.offset = 0.5;
   pair_.drive.start_angle = 0.4;

@@ -5,9 +5,10 @@
 ///          possible, t s ago, V the velocity limit
 ///   stuck  |c − c₀| > limit, while the robot is on its feet. c is the angle that q can show: the command demanded it
 ///          kAnswer cycles ago. c₀ was this angle when q changed for the last time. A joint that is blocked looks the
-///          same. The command of a robot that walks demands angles of feet in the air alone. Its limit is kSwingFactor
-///          larger. q has to stay within kSame for kRepeatTime and kFewest new samples, because a noisy gyro moves the
-///          command at once. What the last new sample showed holds until the next one
+///          same. The command of a robot that walks demands angles of feet in the air alone. The limit is kLateFactor
+///          larger for these, and while the robot rises: a load holds its joints at first. q has to stay within kSame
+///          for kRepeatTime and kFewest new samples, because a noisy gyro moves the command at once. What the last new
+///          sample showed holds until the next one
 ///
 /// Only a new sample shows that q stays, or that it was possible: a drive that sent nothing repeats its last one.
 ///
@@ -56,10 +57,9 @@ class EncoderJump {
 
 class EncoderStuck {
  public:
-  static constexpr double kSwingFactor = 1.8;  ///< a foot leaves the ground late (docs/evidence/derivations.md)
+  static constexpr double kLateFactor = 1.8;   ///< what leaves the ground is late (docs/evidence/derivations.md)
   static constexpr double kRepeatTime = 0.01;  ///< s
-  static constexpr double kSame =
-      2e-5;  ///< rad: a driver adds velocity · age; half a code of it, 0.01 rad/s, times 2 ms
+  static constexpr double kSame = 2.5e-5;      ///< rad: half a code of velocity of an AK, 0.0122 rad/s, times 2 ms
   static constexpr std::uint64_t kFewest = 2;  ///< new samples
   static constexpr std::size_t kAnswer = 2;    ///< cycles: command k − 1 moves the joint from cycle k to k + 1
 
@@ -69,7 +69,8 @@ class EncoderStuck {
   void enter_run() noexcept { joints_ = {}; }
 
   ConditionMeasurement measure(const LeggedMeasurements& now, const ConditionWatch& watch) noexcept {
-    const double limit = (now.walks() ? kSwingFactor : 1) * watch.limit();
+    const bool late = now.walks() || now.phase == LegPhase::kRising;
+    const double limit = (late ? kLateFactor : 1) * watch.limit();
     return worst_of(kLegsJoints, [&](std::size_t i) {
       return has_position(now.joint(i)) ? beyond(i, command_moved(now, i), limit) : kNothingMeasured;
     });
