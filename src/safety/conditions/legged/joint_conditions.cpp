@@ -12,7 +12,7 @@ ConditionMeasurement JointFollowing::measure(const LeggedMeasurements& now, cons
   if (now.walks() && judged) behind_[i] += std::min(1.0, now.dt / kMeanTime) * (left - behind_[i]);
   if (left > (now.phase == LegPhase::kStanding ? 1 : kFarTimes) * watch.limit())
     return weighed(beyond(i, left, watch.limit()));
-  return now.walks() ? weighed(beyond(i, behind_[i], kSwingShare * watch.limit())) : kNothingMeasured;
+  return now.walks() ? weighed(beyond(i, behind_[i], watch.limit())) : kNothingMeasured;
 }
 
 ConditionMeasurement JointMismatch::measure(const LeggedMeasurements& now, const ConditionWatch& watch) noexcept {

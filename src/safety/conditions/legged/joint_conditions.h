@@ -7,7 +7,7 @@
 ///   joint range   distance beyond the nearer end stop > limit: the zero of an encoder, or a stop that broke
 ///   following     |q − its command| > limit, while the robot stands. While it stands up, lies down or swings the leg,
 ///                 kFarTimes the limit counts
-///                 while it walks: the mean over kMeanTime, of the joints of feet in the air, > kSwingShare limit
+///                 while it walks: the mean over kMeanTime, of the joints of feet in the air, > limit
 ///                 while it walks, without a persistence: one of
 ///                   part of the last cycles in which the torque was wrong (motor_torque.h) > kWrongTorqueShare
 ///                   angle by which the joint moved against its command in this swing > kMaxOpposition
@@ -51,8 +51,7 @@ struct LegJointLaws {
 /// The angles between joints and commands.
 class JointFollowing {
  public:
-  static constexpr double kMeanTime = 0.2;     ///< s
-  static constexpr double kSwingShare = 0.45;  ///< docs/evidence/derivations.md
+  static constexpr double kMeanTime = 0.2;  ///< s
 
   JointFollowing(const SafetyParameters&, const LegModel&, double) noexcept {}
   void enter_run() noexcept { behind_ = {}; }
