@@ -97,7 +97,12 @@ class IdentifyTest(RobotTestCase):
     def in_motion(self) -> Iterator[Program]:
         """A block in which it drives."""
         with self.started() as program:
-            wait_for("motion", lambda: abs(self.robot.speed) > 0.1, limit=BEGINNING)
+
+            def moves() -> bool:
+                self.assertTrue(program.running, program.output)
+                return abs(self.robot.speed) > 0.1
+
+            wait_for("motion", moves, limit=BEGINNING)
             yield program
 
     @again_after_a_stall

@@ -516,7 +516,7 @@ TEST_F(WalkingConditionsTest, AnEncoderThatCountsBackwardsBrakesInItsSwing) {
 
 TEST_F(WalkingConditionsTest, AJointThatDoesNotFollowItsSwingsBrakes) {
   const double seen = walk(2, [&](double) {
-    if (command_.joints[8].stiffness > 0) command_.joints[8].position += 0.3;
+    if (command_.joints[8].stiffness > 0) command_.joints[8].position += 0.5;
   });
   EXPECT_LT(seen, 0.8);
   EXPECT_EQ(causes(Reaction::kBrake), "joint_following");
