@@ -32,7 +32,8 @@ void BodyMotion::enter_run() noexcept {
   rate_change_.reset();
   force_ = {};
   across_ = {};
-  shock_ = folded_ = 0;
+  shock_ = push_ = folded_ = 0;
+  unpushed_ = std::numeric_limits<double>::infinity();
   braked_ = 0;
   carried_ = 1;
 }
@@ -65,7 +66,7 @@ void BodyMotion::weigh(const SensorFrame& sensors) noexcept {
   if (std::isfinite(sum)) carried_ = sum / weight_;
 }
 
-void BodyMotion::shake() noexcept {
+void BodyMotion::shake(double dt) noexcept {
   const Eigen::Vector3d up = attitude_.up();
   across_[next_] = {};
   if (felt_) *across_[next_] = *force_ - (*force_).dot(up) * up;
@@ -73,6 +74,8 @@ void BodyMotion::shake() noexcept {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   for (std::size_t i = 0; i < window_; ++i) sum += *across_[i];
   shock_ = sum.norm() / static_cast<double>(window_);
+  push_ += std::min(1.0, dt / kPushTime) * (shock_ - push_);
+  unpushed_ = push_ > kGravity ? 0 : unpushed_ + dt;
 }
 
 void BodyMotion::step(const SensorFrame& sensors, std::uint64_t elapsed, double forward_speed, bool moving) noexcept {
@@ -87,7 +90,7 @@ void BodyMotion::step(const SensorFrame& sensors, std::uint64_t elapsed, double 
   constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
   *rate_ = turned_ ? rate : Eigen::Vector3d::Constant(kNone);
   along_z_ = felt_ ? (*force_).z() : kNone;
-  shake();
+  shake(static_cast<double>(elapsed) * period_);
   weigh(sensors);
   braked_ = sensors.gate.verdict == GateVerdict::kBrake ? braked_ + elapsed : 0;
   folded_ = braked_ >= window_ ? 0 : folded_ + static_cast<double>(elapsed) * period_;

@@ -16,6 +16,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 
 #include "machine/machine_model.h"
 #include "machine/stored.h"
@@ -66,6 +67,8 @@ class RateChange {
 class BodyMotion {
  public:
   static constexpr double kImpactWindow = 0.01;  ///< s
+  static constexpr double kPushTime = 0.02;      ///< s
+  static constexpr double kPushed = 0.25;        ///< s; a foot that slid is set anew within a period of a trot
 
   /// `point` is the one to which the forward speed belongs, m, base axes. `period` s. `force_time` is that of
   /// Attitude. `landing` s is 0 for a machine that does not fold.
@@ -79,7 +82,10 @@ class BodyMotion {
   void step(const SensorFrame& sensors, std::uint64_t elapsed, double forward_speed, bool moving) noexcept;
 
   const Attitude& attitude() const noexcept { return attitude_; }
-  double shock() const noexcept { return shock_; }            ///< m/s², |mean over kImpactWindow of a across u|
+  double shock() const noexcept { return shock_; }  ///< m/s², |mean over kImpactWindow of a across u|
+  /// Something besides the floor pushed the machine within the last kPushed: the low pass over kPushTime of `shock` was
+  /// above g, more than a floor of friction 1 pushes feet. What bears on the floor may slide then.
+  bool pushed() const noexcept { return unpushed_ < kPushed; }
   double carried() const noexcept { return carried_; }        ///< part of the weight on the contacts; 1 without sensors
   double along_z() const noexcept { return along_z_; }        ///< m/s², a_z; NaN without a sample
   bool felt() const noexcept { return felt_; }                ///< The accelerometer brought a sample.
@@ -109,7 +115,7 @@ class BodyMotion {
               Eigen::Ref<Eigen::Vector3d> base) const noexcept;
   void repeat(Repetition& device, bool good, const Vector3& axes, std::uint64_t elapsed, bool moving) const noexcept;
   void weigh(const SensorFrame& sensors) noexcept;
-  void shake() noexcept;
+  void shake(double dt) noexcept;
 
   double period_;
   double weight_;             ///< N
@@ -131,6 +137,8 @@ class BodyMotion {
   std::array<Stored<Eigen::Vector3d>, kMaxSamples> across_;  ///< m/s², the last ones
   double along_z_ = 0;
   double shock_ = 0;
+  double push_ = 0;                                            ///< m/s², low pass of shock_
+  double unpushed_ = std::numeric_limits<double>::infinity();  ///< s since push_ was above g
   double carried_ = 1;
 };
 

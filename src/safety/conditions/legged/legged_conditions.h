@@ -24,7 +24,8 @@ namespace robot_control {
 /// The ground pushes the feet and never pulls them, so that f is up, and 0 in free fall. An IMU whose axes turn round
 /// shows it downwards. The attitude (attitude.h) and the estimator would believe it. One sample is at most a quarter of
 /// f, so that none brings the f of a robot that stands to the default limit. A missing sample changes nothing. Without
-/// a command the driver folds the legs, which pulls the body down: f begins with 0 after it.
+/// a command the driver folds the legs, which pulls the body down: f begins with 0 after it. While the body is pushed
+/// (body_motion.h) the ground is not alone, and legs that catch it pull it down: f is 0.
 class DownwardForce {
  public:
   static constexpr double kTime = 0.02;             ///< s, a tenth of the stance of a trot
@@ -35,8 +36,9 @@ class DownwardForce {
 
   ConditionMeasurement measure(const LeggedMeasurements& now, const ConditionWatch& watch) noexcept {
     const bool on_feet = now.phase == LegPhase::kRising || now.phase == LegPhase::kStanding || now.walks();
-    if (!on_feet) force_ = 0;
-    if (!on_feet) return kNothingMeasured;
+    const bool measured = on_feet && !(now.walks() && now.body.pushed());
+    if (!measured) force_ = 0;
+    if (!measured) return kNothingMeasured;
     const double along_z = now.body.along_z(), weight = std::min(0.25, now.dt / kTime);
     if (std::isfinite(along_z)) force_ += weight * (std::clamp(along_z, -kLargest, kLargest) - force_);
     return beyond(kMaxJoints, -force_, watch.limit());

@@ -2,7 +2,9 @@
 /// A MotorTorque measures how often a motor gives another torque than its commands demand.
 ///
 /// Three commands demand torques at the measured angle and speed of this cycle and of the one before. They are those of
-/// now, of kMaxDelay and of 2 kMaxDelay ago, rounded to whole cycles but 0. They span a range. A torque is wrong if it
+/// now, of kMaxDelay and of 2 kMaxDelay ago, rounded to whole cycles but 0. They span a range. A sample that repeats
+/// itself is one that is late: it also counts moved on by its last change, and the one before it stays in force. After
+/// 2 kMaxDelay it is an encoder that is stuck. A torque is wrong if it
 /// is outside by more than kDemandShare of the range's end and kEffortShare of the effort limit. All of these torques
 /// are means over kMean, because measured speeds come in steps. The result w is the part of the last cycles in which
 /// the torque was wrong:
@@ -41,8 +43,8 @@ class MotorTorque {
   /// Compares the torque of `joint` with the commands before, and remembers the one that follows. All numbers are
   /// finite. `limit` N·m, `period` s.
   void step(const JointSample& joint, const JointCommand& command, double limit, double period) noexcept {
+    follow({joint.position, joint.velocity}, period);
     compare(joint, limit, period);
-    before_ = {joint.position, joint.velocity};
     commands_[next_] = command;
     next_ = (next_ + 1) % kCommands;
     known_ = std::min(known_ + 1, kCommands);
@@ -54,6 +56,17 @@ class MotorTorque {
  private:
   using Motion = std::array<double, 2>;  ///< rad, rad/s
 
+  void follow(const Motion& sampled, double period) noexcept {
+    repeats_ = sampled == motions_[0] ? repeats_ + period : 0;
+    if (repeats_ > 2 * kMaxDelay) {
+      motions_.fill(sampled);
+    } else if (repeats_ == 0) {
+      motions_ = {sampled, motions_[0], sampled};
+    } else {
+      for (std::size_t i = 0; i < sampled.size(); ++i) motions_[2][i] = 2 * sampled[i] - motions_[1][i];
+    }
+  }
+
   void compare(const JointSample& joint, double limit, double period) noexcept {
     const auto late = static_cast<std::size_t>(std::max(1.0, std::round(kMaxDelay / period)));  // cycles
     if (known_ <= 2 * late) {
@@ -64,8 +77,8 @@ class MotorTorque {
     const double part = std::min(1.0, period / kMean);
     given_ += part * (joint.effort - given_);
     for (std::size_t i = 0; i < demanded_.size(); ++i) {
-      const Motion& motion = i % 2 == 0 ? Motion{joint.position, joint.velocity} : before_;
-      const double demand = std::clamp(demanded(i / 2 * late, motion), -limit, limit);
+      const double demand =
+          std::clamp(demanded(i / motions_.size() * late, motions_[i % motions_.size()]), -limit, limit);
       demanded_[i] += part * (demand - demanded_[i]);
     }
     const auto [lower, upper] = std::ranges::minmax(demanded_);
@@ -81,9 +94,10 @@ class MotorTorque {
 
   std::array<JointCommand, kCommands> commands_{};  ///< of the last cycles, a ring
   std::size_t next_ = 0, known_ = 0;                ///< index of the oldest one, how many there are
-  Motion before_{};                                 ///< of the cycle before
+  std::array<Motion, 3> motions_{};                 ///< the last sample, the one before that differs, moved on
+  double repeats_ = 0;                              ///< s for which the last sample has been the same
   double given_ = 0;                                ///< N·m, the mean
-  std::array<double, 6> demanded_{};                ///< N·m, the means: of three commands, each at both motions
+  std::array<double, 9> demanded_{};                ///< N·m, the means: of three commands, each at three motions
   double wrong_ = 0;
 };
 

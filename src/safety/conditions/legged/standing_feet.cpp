@@ -106,6 +106,7 @@ FootMeasurements StandingFeet::step(const MonitorInput& input, const BodyMotion&
     waited_ = 0;
   }
   if (!placed()) ground_ = body.attitude().vertical();
+  if (walks && body.pushed()) measured_.foot_slip = measured_.body_turn = kNothingMeasured;
   const double share = weight_ / static_cast<double>(stands && command.legged.lifted != 0 ? kLegs - 1 : kLegs);
   measured_.foot_load = stands || walks ? lightest(sensors, up, judged, share, walks) : kNothingMeasured;
   return measured_;

@@ -14,6 +14,8 @@
 /// that within kWindow, or since both stand, but within kFewestSamples at least. The last kEdge of both stances is left
 /// out, and kWindow after the driver braked.
 ///
+/// While the body is pushed (body_motion.h), a robot that walks slides and catches itself: neither is measured.
+///
 /// Each of these changes continues. It is the smaller of that within its time, and that within the second half of this
 /// time, scaled to the whole. A foot that lands late moves once, and then rests.
 ///

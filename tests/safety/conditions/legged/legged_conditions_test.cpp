@@ -415,6 +415,30 @@ TEST_F(LeggedConditionsTest, AFootThatCarriesNothingIsAWarning) {
   EXPECT_EQ(run(1), 1) << "a load that is not measured is not judged";
 }
 
+/// A motor that damps a motion of 5 rad/s, 6 Hz. Its samples arrive every `every` s, and `part` of its torque acts.
+double wrong_share(double every, double part) {
+  constexpr double kPeriod = 0.001, kLimit = 20;
+  MotorTorque torque;
+  double most = 0;
+  for (int k = 0; k < 2000; ++k) {
+    const double t = kPeriod * k, seen = every * std::floor(t / every + 1e-6);
+    const JointCommand command{.mode = JointMode::kImpedance, .damping = 3};
+    const JointSample sample{.position = 5 / 37.7 * std::sin(37.7 * seen),
+                             .velocity = 5 * std::cos(37.7 * seen),
+                             .effort = -part * command.damping * 5 * std::cos(37.7 * t)};
+    torque.step(sample, command, kLimit, kPeriod);
+    most = std::max(most, torque.wrong());
+  }
+  return most;
+}
+
+TEST(MotorTorqueTest, SamplesThatAreLateAreNoMotorThatFails) {
+  for (const double every : {0.001, 0.002, 0.01}) {
+    EXPECT_LT(wrong_share(every, 1), JointMismatch::kWrongTorqueShare / 2) << every;
+    EXPECT_GT(wrong_share(every, 0), 0.8) << every;
+  }
+}
+
 /// Quadbot trots on the spot: each pair of feet bears for 0.2 s, and lifts its knees by 0.3 rad in its swing.
 struct WalkingConditionsTest : LeggedConditionsTest {
   WalkingConditionsTest() { command_.legged.phase = LegPhase::kWalking; }
@@ -483,6 +507,41 @@ TEST_F(WalkingConditionsTest, AFootThatSlipsInItsStanceBrakes) {
   EXPECT_EQ(causes(Reaction::kBrake), "foot_slip");
 }
 
+// The rear right foot moves by 0.04 m in 20 ms of each of its stances: 1.7 times the limit within the window.
+TEST_F(WalkingConditionsTest, AFootThatMovesOnceInItsStanceAndThenRestsIsNone) {
+  const double seen = walk(4, [&](double t) {
+    std::array<Eigen::Vector3d, kLegs> feet = stand_;
+    const double since = std::fmod(t + 0.2, 0.4);
+    feet[3].x() -= 0.04 * std::clamp(std::min((since - 0.08) / 0.02, (0.4 - since) / 0.1), 0.0, 1.0);
+    if (t > 0.6) place(feet);
+    follow();
+  });
+  EXPECT_EQ(seen, 4) << causes(Reaction::kBrake);
+}
+
+TEST_F(WalkingConditionsTest, AFootThatSlidesAndABodyThatTurnsWhileAPushLastsAreNone) {
+  const auto slide = [&](double force, double since_push) {
+    return [&, force, since_push](double t) {
+      std::array<Eigen::Vector3d, kLegs> feet = stand_;
+      const double since = std::fmod(t + 0.2, 0.4);
+      feet[3].x() -= 0.8 * robot_.leg_length() * std::min(since, 0.4 - since);
+      sensors_.imu.linear_acceleration[1] = t > since_push && t < since_push + 0.1 ? force : 0;
+      if (t > since_push) place(feet);
+      follow();
+    };
+  };
+  walk(0.6);
+  const double held = walk(2, slide(9, 0.2));
+  EXPECT_EQ(causes(Reaction::kBrake), "foot_slip") << "feet on a floor of friction 1 push so hard";
+  conditions_.enter_run();
+  place(stand_);
+  walk(0.6);
+  const double pushed = walk(2, slide(15, 0.2));
+  EXPECT_EQ(causes(Reaction::kBrake), "foot_slip") << "it goes on after the push";
+  EXPECT_GT(pushed, 0.2 + 0.1 + BodyMotion::kPushed);
+  EXPECT_LT(held, 0.5);
+}
+
 TEST_F(WalkingConditionsTest, AFootThatBearsInNoneOfItsStepsIsAWarning) {
   const double seen = walk(2, [&](double) { sensors_.contacts[1].force = {}; });
   EXPECT_GT(seen, 0.5) << "one step without load is none";
@@ -515,10 +574,13 @@ TEST_F(WalkingConditionsTest, AnEncoderThatCountsBackwardsBrakesInItsSwing) {
 }
 
 TEST_F(WalkingConditionsTest, AJointThatDoesNotFollowItsSwingsBrakes) {
-  const double seen = walk(2, [&](double) {
-    if (command_.joints[8].stiffness > 0) command_.joints[8].position += 0.5;
-  });
-  EXPECT_LT(seen, 0.8);
+  const auto away = [&](double angle) {
+    return [&, angle](double) {
+      if (command_.joints[8].stiffness > 0) command_.joints[8].position += angle;
+    };
+  };
+  EXPECT_EQ(walk(4, away(0.24)), 4) << "less than the limit of 0.25 rad is not noticed";
+  EXPECT_LT(walk(4, away(0.3)), 1.2);
   EXPECT_EQ(causes(Reaction::kBrake), "joint_following");
   EXPECT_EQ(joint(), 8u);
 }
