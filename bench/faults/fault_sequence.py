@@ -136,7 +136,7 @@ def draw_walk(seed: int) -> FaultSequence:
         faults_end=bool(random.random() < 0.5),
         events=sorted(events, key=lambda event: event.time),
         gait=str(random.choice(GAITS)),
-        ground=_ground(np.random.default_rng([seed, 1])),
+        ground=_ground(np.random.default_rng([seed, 1])) if seed % 2 else {},
     )
 
 

@@ -33,7 +33,7 @@ enum CommandReason : std::uint64_t {
   kReasonPermitSlow = 1u << 12,   ///< The permit's speed limit applies.
   kReasonJerkYielded = 1u << 13,  ///< The jerk limit was exceeded, so that the speed does not overshoot zero.
   kReasonStale = 1u << 14,        ///< The last message was refused for its stamp; the command before it stays in force.
-  kReasonManySenders = 1u << 15,  ///< More than one node sends, and one_sender forbids it.
+  kReasonManySenders = 1u << 15,  ///< Several nodes send, one requests motion, and one_sender forbids it.
   kReasonRevoked = 1u << 16,      ///< A sender requested motion before a withdrawal and has not sent zero since.
   kReasonPartIgnored = 1u << 17,  ///< The request has a part that this machine cannot execute (CommandFrame::ignored).
 };

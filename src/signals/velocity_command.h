@@ -128,7 +128,7 @@ struct VelocityCommand {
   std::uint64_t crowded = 0;       ///< grows with every message refused because another node sends
   std::uint64_t revoked = 0;       ///< grows with every message refused because its sender is revoked
   std::uint64_t not_finite = 0;    ///< grows with every message that was NaN or infinite and ended at most a pose
-  std::uint64_t many_senders = 0;  ///< 1: more than one node sends now, and one_sender forbids it
+  std::uint64_t many_senders = 0;  ///< 1: several nodes send, one requests motion, and one_sender forbids it
 
   /// 1 if, when the command arrived, another sender's newest message within silence_needed was refused or not of zero
   /// velocity. Then a zero velocity is no evidence that no motion is requested. The value is kNoMessage for the zero

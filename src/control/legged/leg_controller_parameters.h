@@ -8,7 +8,7 @@ namespace robot_control {
 
 struct LegControllerParameters {
   double request_timeout = 1.25;          ///< s, of cmd_vel, body_pose and foot_target; 0 = never
-  bool one_sender = false;                ///< No request is accepted while more than one node sends.
+  bool one_sender = false;                ///< No request is accepted while several nodes send, and one requests motion.
   double max_linear_speed = 1.5;          ///< m/s, to the front and back
   double max_lateral_speed = 0.5;         ///< m/s
   double max_angular_speed = 2;           ///< rad/s

@@ -33,11 +33,11 @@ struct DriveControllerParameters {
   std::optional<double> max_angular_jerk;                    ///< rad/s³; 0: no limit
   bool keep_curvature = true;                                ///< Both axes reach a new command in the same step.
   double cmd_vel_timeout = 1.25;                             ///< s; 0 = never
-  bool one_sender = false;                                   ///< No command is accepted while more than one node sends.
-  std::optional<double> pid_kp;                              ///< N·m·s/rad
-  std::optional<double> pid_ki;                              ///< N·m/rad
-  double pid_kd = 0.0;                                       ///< N·m·s²/rad
-  std::optional<double> tracking_bandwidth;                  ///< Hz, of the tracking loops of the wheel speeds
+  bool one_sender = false;                   ///< While several send and one requests motion, none is taken.
+  std::optional<double> pid_kp;              ///< N·m·s/rad
+  std::optional<double> pid_ki;              ///< N·m/rad
+  double pid_kd = 0.0;                       ///< N·m·s²/rad
+  std::optional<double> tracking_bandwidth;  ///< Hz, of the tracking loops of the wheel speeds
   FeedForwardParameters feed_forward;
 };
 

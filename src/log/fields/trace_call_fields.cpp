@@ -46,7 +46,7 @@ void add_velocity(TraceFields& to, const std::string& name, Get) {
   number("crowded", "refused because another node sends", OF(crowded));
   number("revoked", "refused because their sender owes a zero velocity", OF(revoked));
   number("not_finite", "refused as NaN or infinite beside a command in force", OF(not_finite));
-  number("many_senders", "1: more than one node sends now", OF(many_senders));
+  number("many_senders", "1: several nodes send, one requests motion", OF(many_senders));
   number("contested",
          "1: another sender requested motion; 2: a zero velocity of no sender; 3, 4: in place of NaN or infinity",
          OF(contested));

@@ -207,9 +207,9 @@ void CommandInput::report_senders(std::int64_t loop_ns) {
     return;
   }
   if (std::ranges::includes(reported_senders_, names) || !may_report(joined(names), loop_ns)) return;
-  const std::string consequence = one_sender_
-                                      ? "motion is refused (one_sender), ramping down to standstill until one is left"
-                                      : "each message overrides the previous one (one_sender: true refuses them)";
+  const std::string consequence =
+      one_sender_ ? "refused while one of them requests motion (one_sender), ramping down to standstill"
+                  : "each message overrides the previous one (one_sender: true refuses them)";
   lines_.push_back(
       {true, std::to_string(names.size()) + " nodes send commands: " + joined(names) + "; " + consequence});
   reported_senders_ = names;

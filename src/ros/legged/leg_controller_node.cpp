@@ -85,7 +85,7 @@ class LegControllerNode final : public CommandedNode {
 
   void publish() override {
     const bool follows = follow_command();
-    if (follows) met_.add(reports_.risers, reports_.reaches, command_.head.stamp_ns);
+    if (follows) met_.add(reports_.risers, reports_.reaches, command_.head);
     {
       const std::lock_guard lock(input_mutex_);
       if (follows) continue_trajectory();

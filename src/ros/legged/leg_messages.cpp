@@ -65,11 +65,13 @@ std::string gait_of_mode(const Mode& mode, const Gaits& gaits) {
   return mode.kind == ModeKind::kGait && mode.index < gaits.size() ? gaits[mode.index].name.data() : "auto";
 }
 
-void MetGround::add(std::uint64_t risers, std::uint64_t reaches, std::int64_t now_ns) noexcept {
-  now_ns_ = now_ns;
+void MetGround::add(std::uint64_t risers, std::uint64_t reaches, const FrameHead& now) noexcept {
+  if (now.run != run_) risers_ns_ = reaches_ns_ = kNever;
+  run_ = now.run;
+  now_ns_ = now.stamp_ns;
   for (std::size_t leg = 0; leg < kLegs; ++leg) {
-    if ((risers >> leg & 1) != 0) risers_ns_[leg] = now_ns;
-    if ((reaches >> leg & 1) != 0) reaches_ns_[leg] = now_ns;
+    if ((risers >> leg & 1) != 0) risers_ns_[leg] = now_ns_;
+    if ((reaches >> leg & 1) != 0) reaches_ns_[leg] = now_ns_;
   }
 }
 

@@ -47,14 +47,14 @@ std::string gait_of_mode(const Mode& mode, const Gaits& gaits);
 /// Returns the mode that walks with the gait of set_gait, the default one for "auto". Returns none for an unknown gait.
 std::optional<Mode> mode_of_gait(const std::string& gait, const Gaits& gaits);
 
-/// Keeps which feet were lifted over an obstacle or found no ground within the last kShown. A foot finds no ground for
-/// a few cycles, and a page shows every fiftieth one.
+/// Keeps which feet of this run were lifted over an obstacle or found no ground within the last kShown. A foot finds no
+/// ground for a few cycles, and a page shows every fiftieth one.
 class MetGround {
  public:
   static constexpr std::int64_t kShown = 200'000'000;  ///< ns
 
   /// `risers` and `reaches` as in LeggedCommand, of cycles up to now.
-  void add(std::uint64_t risers, std::uint64_t reaches, std::int64_t now_ns) noexcept;
+  void add(std::uint64_t risers, std::uint64_t reaches, const FrameHead& now) noexcept;
 
   bool met_riser(std::size_t leg) const noexcept { return shown(risers_ns_[leg]); }
   bool reaching(std::size_t leg) const noexcept { return shown(reaches_ns_[leg]); }
@@ -64,6 +64,7 @@ class MetGround {
 
   static constexpr std::array<std::int64_t, kLegs> kNever{-kShown - 1, -kShown - 1, -kShown - 1, -kShown - 1};
   std::array<std::int64_t, kLegs> risers_ns_ = kNever, reaches_ns_ = kNever;
+  std::uint64_t run_ = 0;
   std::int64_t now_ns_ = 0;
 };
 

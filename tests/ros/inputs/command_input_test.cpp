@@ -222,7 +222,8 @@ TEST_F(CommandInputTest, WithOneSenderMessagesOfAllAreRefusedUntilOneIsLeft) {
   EXPECT_EQ(value().many_senders, 1u) << "/navigation was received 1.2 s ago";
   EXPECT_EQ(value().crowded, 13u);
   EXPECT_EQ(value().count, 1u);
-  EXPECT_THAT(reported(), HasSubstr("refused (one_sender), ramping down to standstill until one is left"));
+  EXPECT_THAT(reported(),
+              HasSubstr("refused while one of them requests motion (one_sender), ramping down to standstill"));
   pass(kSecond / 10);
   EXPECT_TRUE(input_.update(now_.loop_ns)) << "without any message, too";
   EXPECT_EQ(value().many_senders, 0u);

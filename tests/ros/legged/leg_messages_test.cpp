@@ -56,7 +56,7 @@ TEST(LegMessages, TheStateNamesPostureFootAndReasons) {
   command.legged = {.phase = LegPhase::kStanding, .lifted = 4, .body = {0.01, 0.02, 0.03, 0.1, 0.2, 0.3}};
   command.legged.slope = {0.1, -0.2};
   MetGround met;
-  met.add(1, 8, 0);
+  met.add(1, 8, {.run = 1});
   CommandFrame plan;
   plan.joints[1] = {.mode = JointMode::kImpedance, .position = 0.7};
   StateFrame state;
@@ -83,12 +83,14 @@ TEST(LegMessages, TheStateNamesPostureFootAndReasons) {
 TEST(MetGroundTest, AnEventOfOneCycleIsShownForAFifthOfASecond) {
   MetGround met;
   EXPECT_FALSE(met.met_riser(2) || met.reaching(2));
-  met.add(0, 4, 1'000'000'000);
-  met.add(0, 0, 1'200'000'000);
+  met.add(0, 4, {.run = 1, .stamp_ns = 1'000'000'000});
+  met.add(0, 0, {.run = 1, .stamp_ns = 1'200'000'000});
   EXPECT_TRUE(met.reaching(2));
   EXPECT_FALSE(met.met_riser(2) || met.reaching(1));
-  met.add(0, 0, 1'201'000'000);
+  met.add(0, 0, {.run = 1, .stamp_ns = 1'201'000'000});
   EXPECT_FALSE(met.reaching(2));
+  met.add(0, 0, {.run = 2, .stamp_ns = 1'000'000'000});
+  EXPECT_FALSE(met.reaching(2)) << "in another run";
 }
 
 TEST(LegMessages, ARefusalSaysWhoHoldsThePermission) {

@@ -271,8 +271,9 @@ def test_one_joint_that_keeps_its_last_order_is_named(tmp_path):
 
 def test_a_reaction_that_the_file_accepts_without_knowing_it_and_an_unreadable_file_are_named(tmp_path):
     write(tmp_path, preempt_rt())
-    tree = {"every_joint": {"on_silence": "coasts"}, "left_wheel_joint": {"accept_unknown_watchdog": True}}
-    assert rows(tmp_path, RT_ROBOT | {"drive_file": tree})["silence"].finding.verdict is Verdict.NOTE
+    for on_silence, verdict in (({}, Verdict.NOTE), ({"on_silence": "coasts"}, Verdict.OK)):
+        tree = {"every_joint": on_silence, "left_wheel_joint": {"accept_unknown_watchdog": True}}
+        assert rows(tmp_path, RT_ROBOT | {"drive_file": tree})["silence"].finding.verdict is verdict
     for broken in ({}, {"drive_file": None}, {"drive_file": [1]}):
         found = rows(tmp_path, RT_ROBOT | {"drives": "my.yaml"} | broken)["silence"].finding
         assert (found.verdict, found.value) == (Verdict.WARNING, "the drive file my.yaml cannot be read")

@@ -97,6 +97,12 @@ class NavigationInputsTest(unittest.TestCase):
         except AssertionError as error:
             raise AssertionError(f"{error}; the answers: {answers}") from None
 
+    def await_refusal(self, expected: str) -> None:
+        """Once the reason is there, the next goal has it, too, and moves nothing."""
+        self.await_answer(expected)
+        self.assertIn(expected, self.answer())
+        self.assertEqual(self.paths, [])
+
     def assert_driven(self) -> None:
         self.assertEqual(self.answer(), "driven")
 
@@ -156,7 +162,7 @@ class NavigationInputsTest(unittest.TestCase):
         }
         for reason, change in wrong.items():
             with self.subTest(reason), self.broken(change):
-                self.await_answer(reason)
+                self.await_refusal(reason)
         with self.broken(lambda scan: ranging(scan, [math.inf] * RAYS)):
             time.sleep(1.0)
             self.assert_driven()  # nothing is near
@@ -167,7 +173,7 @@ class NavigationInputsTest(unittest.TestCase):
         second.end()
         self.localised.silent = True
         try:
-            self.await_answer("not localised")
+            self.await_refusal("not localised")
         finally:
             self.localised.silent = False  # the tests after this one need the pose
         self.await_answer("driven")
@@ -187,7 +193,7 @@ class NavigationInputsTest(unittest.TestCase):
         state = GuardState(reason="scan is blind in part", trusted=False)
         state.obstacle.x = math.nan
         timer = rospy.Timer(rospy.Duration(0.1), lambda _event: guard.publish(state))
-        self.await_answer("scan is blind in part")
+        self.await_refusal("scan is blind in part")
         state.reason, state.trusted, state.obstacle.x = "an obstacle", True, 1.02
         state.obstacle.y = 0.02
         self.await_answer("driven")

@@ -151,6 +151,16 @@ def test_every_text_of_a_script_is_part_of_a_phrase(path):
             "Walking: 0.30 m/s; a foot hit an obstacle, and is lifted over it. The ground rises 9.9 deg to the left.",
             "正在行走：0.30 m/s；有一只脚碰到障碍物，正被抬起越过。地面向左侧升高 9.9 度。",
         ),
+        (
+            "Walking in place until its feet are in position, then standing; a foot hit an obstacle, and is lifted over"
+            " it. The ground rises 9.9 deg to the rear right.",
+            "原地踏步，足端到位后站住；有一只脚碰到障碍物，正被抬起越过。地面向右后升高 9.9 度。",
+        ),
+        (
+            "Walking: 0.30 m/s; a foot hit an obstacle, and is lifted over it; a foot finds no ground where it was to"
+            " land, and goes farther down.",
+            "正在行走：0.30 m/s；有一只脚碰到障碍物，正被抬起越过；有一只脚在落点处没有踩到地面，正继续下探。",
+        ),
         ("mujoco_plant, state_estimator MISSING", "mujoco_plant，state_estimator 缺失"),
         ("anna (page 2), watch", "anna（页面 2），只看（watch）"),
         ("a text of another program", "a text of another program"),

@@ -118,14 +118,17 @@ def silence(system: System) -> Finding:
 
     A drive whose watchdog the driver sets or reads needs no statement.
     """
-    blocks = _drive_blocks(system).values()
+    blocks = _drive_blocks(system)
     if (path := system.robot.get("drives")) and not blocks:
         return warning(f"the drive file {path} cannot be read", "set robot.drives to a drive file")
-    stated = {str(block["on_silence"]) for block in blocks if "on_silence" in block}
+    of_all = blocks.pop("every_joint", {})
+    joints = [of_all | block for name, block in blocks.items() if name != "bus"] or [of_all]
+    stated = {str(joint["on_silence"]) for joint in joints if "on_silence" in joint}
+    accepted = any(joint.get("accept_unknown_watchdog") and "on_silence" not in joint for joint in joints)
     if "keeps" in stated:
         value = "the motors keep their last order for ever when this computer is silent"
         return note(value, "use an emergency stop that cuts the supply of the motors")
-    if "unknown" in stated or any(block.get("accept_unknown_watchdog") for block in blocks):
+    if "unknown" in stated or accepted:
         value = "what the drives do when this computer is silent is unknown to the drive file"
         return note(value, "find it out with the robot on a stand, and state it as on_silence")
     unstated = "no drive file states a reaction: a driver that can neither set nor read it refuses to start"

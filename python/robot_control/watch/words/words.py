@@ -82,14 +82,17 @@ def _uses(sentence: str, remedy: str, other: str, other_remedy: str) -> Iterator
 
 
 def _generality(pair: Pair) -> tuple[int, int]:
-    """Patterns with more letters are tried first, then longer ones; those without letters fit most, in their order."""
+    """Patterns with more letters are tried first, then longer ones; lists fit most, and are the last, in their order."""
+    if pair[0].endswith("{more}"):
+        return 0, 0
     fixed = _HOLE.sub("", pair[0])
     letters = len(re.findall(r"\w", fixed))
     return -letters, -len(fixed) if letters else 0
 
 
 def _closed(part: str) -> bool:
-    return not re.search(r"[()]", re.sub(r"\([^()]*\)", "", part))
+    """No parenthesis opens or ends in it alone, and no sentence ends within it."""
+    return not re.search(r"[()]|\. [A-Z]", re.sub(r"\([^()]*\)", "", part))
 
 
 def _pattern(english: str) -> re.Pattern[str]:
