@@ -6,6 +6,7 @@
 #include "drivers/unitree_go/bridge/motion_switcher.h"
 
 namespace robot_control::unitree::go::tests {
+#include "drivers/unitree_go/bridge/state_writer.h"
 
 constexpr std::int64_t kMs = 1'000'000;
 
@@ -64,6 +65,32 @@ TEST_F(Relay, ASilentDriverLeavesDampingForThreeSeconds) {
 
 struct Switcher : testing::Test {
   MotionSwitcher switcher{true, false};
+TEST(StateWriter, AnotherOneIsNotTheRobotAndIsRememberedForASecond) {
+  StateWriter robot;
+  EXPECT_EQ(robot.robots(0), RobotsSeen::kNone);
+  EXPECT_TRUE(robot.is_of_robot(7, 0));
+  EXPECT_FALSE(robot.is_of_robot(8, kMs));
+  for (int i = 2; i <= 1'001; ++i) EXPECT_TRUE(robot.is_of_robot(7, i * kMs));
+  EXPECT_EQ(robot.robots(1'000 * kMs), RobotsSeen::kMore);
+  EXPECT_EQ(robot.robots(1'001 * kMs), RobotsSeen::kOne);
+}
+
+TEST(StateWriter, OneIsTheOnlyOneAfterHalfASecond) {
+  StateWriter robot;
+  for (int i = 0; i <= 500; ++i) EXPECT_TRUE(robot.is_of_robot(7, i * kMs));
+  EXPECT_EQ(robot.robots(499 * kMs), RobotsSeen::kAwaited);
+  EXPECT_EQ(robot.robots(500 * kMs), RobotsSeen::kOne);
+}
+
+TEST(StateWriter, ARobotThatRestartsHasANewOne) {
+  StateWriter robot;
+  EXPECT_TRUE(robot.is_of_robot(7, 0));
+  EXPECT_EQ(robot.robots(1'000 * kMs), RobotsSeen::kNone);
+  EXPECT_TRUE(robot.is_of_robot(8, 1'000 * kMs));
+  EXPECT_EQ(robot.robots(1'000 * kMs), RobotsSeen::kAwaited);
+  EXPECT_FALSE(robot.is_of_robot(7, 1'001 * kMs));
+}
+
 
   std::optional<MotionSwitcher::Request> answered(MotionSwitcher& asked, std::int64_t now_ns, const char* data) {
     const auto request = asked.due(now_ns);
