@@ -64,7 +64,7 @@ JUDGED = (
 )
 REALTIME_PARTS = ("jitter", "chain", "cost", "scale")
 PARTS = {
-    "devices": ("losses", "answers", "slope", "disturbed"),
+    "devices": ("losses", "answers", "slope", "disturbed", "bridge"),
     "realtime": REALTIME_PARTS,
     "legs": legs.PARTS,
     "fleet": ("sequences", "orders", "losses", "cost"),
@@ -75,6 +75,7 @@ PARTS = {
 }
 ON_LEGS = {"devices": walk_bench.PARTS, "navigation": ("goals",)}
 """Parts that another robot than diffbot has; of a benchmark that is not here it has all"""
+NOT_ON_WHEELS = ("bridge",)
 NAMES = MEASURED + JUDGED
 SEED_PROGRAMS = {"limiter": 1_000_000, "release": 10_000, "bags": 10_000}  # seeds; a minute at most on two cores
 BY_WHEEL_COMMAND = ("campaign", "driving", "drive", "release")
@@ -133,7 +134,9 @@ def run_seed_program(name: str, given: argparse.Namespace, runner: Runner) -> Re
 
 
 def _possible_parts(name: str, robot: str) -> tuple[str, ...]:
-    return PARTS[name] if robot == DIFFBOT else ON_LEGS.get(name, PARTS[name])
+    if robot == DIFFBOT:
+        return tuple(part for part in PARTS[name] if part not in NOT_ON_WHEELS)
+    return ON_LEGS.get(name, PARTS[name])
 
 
 def _parts_of(name: str, given: argparse.Namespace) -> list[str]:
@@ -152,7 +155,16 @@ def _odometry(bench: Any, given: argparse.Namespace, runner: Runner) -> Result: 
 def _devices(bench: Any, given: argparse.Namespace, runner: Runner) -> Result:  # noqa: ANN401 (a module)
     parts = _parts_of("devices", given)
     if given.robot == QUADBOT:
-        return walk_bench.bench(parts, given.first, given.runs, say, runner, can_rate=given.rate)
+        return walk_bench.bench(
+            parts,
+            given.first,
+            given.runs,
+            say,
+            runner,
+            build=given.programs.parent,
+            can_rate=given.rate,
+            minutes=given.minutes,
+        )
     result: Result = bench.bench(
         parts, given.first, given.runs or bench.ALL_RUNS, say, runner, program=programs_of(given)
     )
@@ -274,6 +286,22 @@ def _scenarios(text: str) -> list[str]:
     return text.split(",")
 
 
+def _add_options_of_legs(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        "--rate",
+        type=float,
+        choices=legs.RATES,
+        default=legs.RATES[0],
+        help="legs, devices --robot quadbot with motors on CAN: Hz of the loop",
+    )
+    parser.add_argument("--delay", type=float, help="legs: s from sensor to torque, whole periods; default: one")
+    parser.add_argument(
+        "--minutes",
+        type=float,
+        help="devices --robot quadbot: length of one disturbed walk per drive; default: 30 walks of a minute",
+    )
+
+
 def parse(arguments: Sequence[str] | None = None) -> argparse.Namespace:
     """The command line of scripts/bench; ends the program on a wrong one."""
     parser = argparse.ArgumentParser(prog="scripts/bench", description="Measures this machine.")
@@ -308,14 +336,7 @@ def parse(arguments: Sequence[str] | None = None) -> argparse.Namespace:
     parser.add_argument("--worlds", type=Path, help="navigation barn: folder of public worlds, N.json each")
     parser.add_argument("--map", choices=navigation.MAPS, default=navigation.MAPS[0], help="navigation barn: the map")
     parser.add_argument("--speed", type=float, choices=navigation.SPEEDS, default=0.5, help="navigation barn: m/s")
-    parser.add_argument(
-        "--rate",
-        type=float,
-        choices=legs.RATES,
-        default=legs.RATES[0],
-        help="legs, devices --robot quadbot with motors on CAN: Hz of the loop",
-    )
-    parser.add_argument("--delay", type=float, help="legs: s from sensor to torque, whole periods; default: one")
+    _add_options_of_legs(parser)
     parser.add_argument("--keep", type=Path, help="record: folder for the logs and their reports")
     cluster = parser.add_argument_group("cluster", f"{', '.join(ON_CLUSTERS)} run with the workers of a Dask scheduler")
     cluster.add_argument("--scheduler", metavar="tls://HOST:8786", help="its address; default: this computer only")

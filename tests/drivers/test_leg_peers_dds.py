@@ -18,6 +18,8 @@ from pathlib import Path
 import pytest
 from support.pypi_package import imported
 
+from bench.devices.walk_bridge import KINDS, BridgeLoss, run_bridge_loss
+
 ROOT = Path(__file__).parents[2]
 BUILD = ROOT / "build/robot_control"
 PEER = BUILD / "tests/drivers/go_peer"
@@ -250,8 +252,6 @@ def robot(tmp_path, start, sdk):
     return robot
 
 
-CROUCH = [0.0, 1.36, -2.65] * 4
-STAND = [0.0, 0.67, -1.3] * 4
 @pytest.fixture
 def second_robot(tmp_path, start, sdk):
     """Starts a second robot on the same network. Its serial number is that of the first one."""
@@ -265,6 +265,8 @@ def second_robot(tmp_path, start, sdk):
     return start_robot
 
 
+CROUCH = [0.0, 1.36, -2.65] * 4
+STAND = [0.0, 0.67, -1.3] * 4
 
 
 def test_the_makers_client_stands_our_robot_up(sdk, robot):
@@ -339,6 +341,14 @@ def test_a_bridge_that_ends_or_hangs_is_named_and_the_robot_stops(robot, chain, 
         assert abs(turned(robot)) < 0.01, "the fault stays until the reset"
 
 
+@pytest.mark.parametrize("kind", KINDS)
+def test_quadbot_folds_upright_if_its_bridge_ends_or_hangs_while_it_walks(sdk, kind):
+    outcome = run_bridge_loss(BUILD, BridgeLoss(kind, seed=7))
+    sys.stdout.write(f"{kind}: named after {1e3 * outcome.named:.1f} ms, tilt {outcome.tilt:.2f} rad\n")
+    assert outcome.broken == ()
+    assert outcome.named < STOPPED
+
+
 @pytest.mark.parametrize("end", [signal.SIGKILL, signal.SIGSTOP])
 def test_the_bridge_damps_the_legs_of_a_driver_that_ends_or_hangs(sdk, robot, chain, end):
     with sdk.received("rt/lowcmd") as commands:
@@ -371,16 +381,6 @@ def test_a_second_writer_is_named_and_its_command_is_named(sdk, robot, chain):
         assert "with frame LowCmd; stop" in other.wait_for("is commanded by another program", after=count)
 
 
-class MotionService:
-    """The maker's server with an active mode."""
-
-    def __init__(self, mode):
-        server = imported("unitree_sdk2py.rpc.server", "unitree")
-        self.mode, self.calls = mode, []
-        self._server = server.Server("motion_switcher")
-        self._server._SetApiVersion("1.0.0.1")
-        self._server._RegistHandler(1001, self._check, False)
-        self._server._RegistHandler(1003, self._release, False)
 OTHER_ROBOT = "sends a state of another robot, by a second writer of rt/lowstate"
 
 
@@ -410,6 +410,16 @@ def test_neither_of_two_robots_is_commanded_before_one_is_alone(sdk, robot, chai
         assert turned(robot) == pytest.approx(0.2, abs=0.05)
 
 
+class MotionService:
+    """The maker's server with an active mode."""
+
+    def __init__(self, mode):
+        server = imported("unitree_sdk2py.rpc.server", "unitree")
+        self.mode, self.calls = mode, []
+        self._server = server.Server("motion_switcher")
+        self._server._SetApiVersion("1.0.0.1")
+        self._server._RegistHandler(1001, self._check, False)
+        self._server._RegistHandler(1003, self._release, False)
         self._server.Start(False)
 
     def _check(self, _):
