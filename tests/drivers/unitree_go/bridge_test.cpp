@@ -2,11 +2,13 @@
 
 #include <gtest/gtest.h>
 
+#include <random>
+
 #include "drivers/unitree_go/bridge/command_relay.h"
 #include "drivers/unitree_go/bridge/motion_switcher.h"
+#include "drivers/unitree_go/bridge/state_writer.h"
 
 namespace robot_control::unitree::go::tests {
-#include "drivers/unitree_go/bridge/state_writer.h"
 
 constexpr std::int64_t kMs = 1'000'000;
 
@@ -63,8 +65,6 @@ TEST_F(Relay, ASilentDriverLeavesDampingForThreeSeconds) {
   EXPECT_EQ(relay.last_command(), nullptr);
 }
 
-struct Switcher : testing::Test {
-  MotionSwitcher switcher{true, false};
 TEST(StateWriter, AnotherOneIsNotTheRobotAndIsRememberedForASecond) {
   StateWriter robot;
   EXPECT_EQ(robot.robots(0), RobotsSeen::kNone);
@@ -91,6 +91,8 @@ TEST(StateWriter, ARobotThatRestartsHasANewOne) {
   EXPECT_FALSE(robot.is_of_robot(7, 1'001 * kMs));
 }
 
+struct Switcher : testing::Test {
+  MotionSwitcher switcher{true, false};
 
   std::optional<MotionSwitcher::Request> answered(MotionSwitcher& asked, std::int64_t now_ns, const char* data) {
     const auto request = asked.due(now_ns);
@@ -171,6 +173,31 @@ TEST_F(Switcher, WhatIsNoAnswerFreesNothing) {
     EXPECT_TRUE(answered(switcher, ns += MotionSwitcher::kAskNs, data));
     EXPECT_FALSE(switcher.is_free()) << data;
   }
+}
+
+/// Mutants of an answer have no name, or one that stands in them.
+void expect_names_of_mutants(int count) {
+  constexpr std::string_view kAnswer = R"({"form":"0","name":"mcf"})";
+  std::mt19937 random(74);
+  int named = 0;
+  for (int i = 0; i < count; ++i) {
+    std::string answer(kAnswer.substr(0, random() % 8 == 0 ? random() % kAnswer.size() : kAnswer.size()));
+    for (auto changes = random() % 4; changes > 0 && !answer.empty(); --changes)
+      answer[random() % answer.size()] = static_cast<char>(random());
+    const auto name = name_in(answer);
+    if (!name) continue;
+    ++named;
+    ASSERT_NE(answer.find('"' + *name + '"'), std::string::npos) << i;
+  }
+  EXPECT_GT(named, count / 4);
+}
+
+TEST(SwitcherFuzz, AMutatedAnswerHasNoOtherName) {
+  expect_names_of_mutants(10'000);
+}
+
+TEST(SwitcherFuzz, NightlyNoneOfAMillionAnswersHasAnotherName) {
+  expect_names_of_mutants(1'000'000);
 }
 
 TEST_F(Switcher, ARobotWithoutAServiceIsFreeAndANewDriverIsAskedAnew) {
