@@ -36,10 +36,25 @@ constexpr double kRest = 1;        // s before the robot stands up
 constexpr double kNever = 1e9;     // s
 constexpr double kMeanTime = 0.3;  // s, of the speed at the end
 
-/// The devices of a line, each period of which takes as long on the wall clock.
+/// Lets each period last as long on the wall clock.
+class Pace {
+ public:
+  void wait() {
+    next_ns_ = std::max(next_ns_ + kPeriodNs, monotonic_ns() - kPeriodNs);
+    sleep_until(next_ns_);
+  }
+  bool starts = true;  ///< The machine starts, in which its devices wait.
+
+ private:
+  static constexpr std::int64_t kPeriodNs = 2'000'000;
+
+  std::int64_t next_ns_ = 0;
+};
+
+/// Devices that keep the pace while the machine starts.
 class PacedFront final : public DeviceFront {
  public:
-  explicit PacedFront(std::unique_ptr<DeviceFront> devices) : devices_(std::move(devices)) {}
+  PacedFront(std::unique_ptr<DeviceFront> devices, Pace& pace) : devices_(std::move(devices)), pace_(pace) {}
 
   std::size_t size() const override { return devices_->size(); }
   bool is_absolute() const override { return devices_->is_absolute(); }
@@ -49,8 +64,7 @@ class PacedFront final : public DeviceFront {
   void sense(const ImuSample& imu) override { devices_->sense(imu); }
   void run(std::span<const JointSample> joints) override {
     devices_->run(joints);
-    next_ns_ = std::max(next_ns_ + kPeriodNs, monotonic_ns() - kPeriodNs);
-    sleep_until(next_ns_);
+    if (pace_.starts) pace_.wait();
   }
   double torque(std::size_t joint) const override { return devices_->torque(joint); }
   std::string inject(std::string_view component, std::string_view kind) override {
@@ -58,10 +72,8 @@ class PacedFront final : public DeviceFront {
   }
 
  private:
-  static constexpr std::int64_t kPeriodNs = 2'000'000;
-
   std::unique_ptr<DeviceFront> devices_;
-  std::int64_t next_ns_ = 0;
+  Pace& pace_;
 };
 
 std::string quoted(const std::string& text) {
@@ -71,14 +83,14 @@ std::string quoted(const std::string& text) {
 }
 
 std::unique_ptr<Driver> machine_of(const Parameters& parameters, const std::string& robot_file, const LegModel& robot,
-                                   const std::vector<Brake>& brakes) {
+                                   const std::vector<Brake>& brakes, Pace& pace) {
   const DriveMotors motors = drive_motors(robot, brakes);
   const auto file = read_drive_file(parameters, motors.joints);
   Parameters of_robot = parameters;
   of_robot.drives = robot_file;
   const auto far_file = read_drive_file(of_robot, motors.joints);
-  auto devices =
-      std::make_unique<PacedFront>(make_front(*far_file, {.motors = motors, .line = open_devices_end(*far_file)}));
+  auto devices = std::make_unique<PacedFront>(
+      make_front(*far_file, {.motors = motors, .line = open_devices_end(*far_file)}), pace);
   auto driver = file->make_driver(motors, file->open_line(RealtimePolicy::kOff, {}),
                                   [] { return CanTime{.time_ns = monotonic_ns()}; });
   return std::make_unique<DrivenPlant>(robot, parameters.plant, parameters.loop.period(), std::move(devices),
@@ -88,8 +100,10 @@ std::unique_ptr<Driver> machine_of(const Parameters& parameters, const std::stri
 /// One walk.
 class Walk {
  public:
-  Walk(const Parameters& parameters, std::shared_ptr<const Robot> robot, std::unique_ptr<Driver> machine)
-      : loop_(parameters, std::move(robot), std::move(machine)), walks_(walk(kSpeed)) {}
+  Walk(const Parameters& parameters, std::shared_ptr<const Robot> robot, std::unique_ptr<Driver> machine, Pace& pace)
+      : loop_(parameters, std::move(robot), std::move(machine)), pace_(pace), walks_(walk(kSpeed)) {
+    pace_.starts = false;
+  }
 
   /// Runs for `seconds`, and requests to walk if `walks` is true.
   void run(double seconds, bool walks) {
@@ -102,6 +116,7 @@ class Walk {
       const std::uint64_t causes = loop_.row().monitor->permit.causes;
       if (named_ns_ == 0 && (causes & kCauseDriverFault) != 0) named_ns_ = monotonic_ns();
       if (named_ns_ == 0) before_ |= causes;
+      pace_.wait();
     }
   }
   void begin_loss() {
@@ -122,6 +137,7 @@ class Walk {
 
  private:
   ClosedLoop loop_;
+  Pace& pace_;
   Request walks_;
   std::int64_t named_ns_ = 0;  // when driver_fault latched
   std::uint64_t at_loss_ = 0;  // causes
@@ -138,7 +154,8 @@ void run(const std::vector<std::string>& given) {
   const LegModel robot = legged_robot("quadbot");
   const auto kind = std::make_shared<Quadruped>(parameters, robot);
   precede_ordinary_threads();
-  Walk trial(parameters, kind, machine_of(parameters, given[1], robot, kind->brakes()));
+  Pace pace;
+  Walk trial(parameters, kind, machine_of(parameters, given[1], robot, kind->brakes(), pace), pace);
   trial.run(kRest, false);
   trial.run(std::stod(given[4]), true);
   trial.begin_loss();
