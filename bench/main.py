@@ -64,7 +64,7 @@ JUDGED = (
 )
 REALTIME_PARTS = ("jitter", "chain", "cost", "scale")
 PARTS = {
-    "devices": ("losses", "answers", "slope", "disturbed", "bridge"),
+    "devices": ("losses", "answers", "slope", "disturbed"),
     "realtime": REALTIME_PARTS,
     "legs": legs.PARTS,
     "fleet": ("sequences", "orders", "losses", "cost"),
@@ -75,7 +75,6 @@ PARTS = {
 }
 ON_LEGS = {"devices": walk_bench.PARTS, "navigation": ("goals",)}
 """Parts that another robot than diffbot has; of a benchmark that is not here it has all"""
-NOT_ON_WHEELS = ("bridge",)
 NAMES = MEASURED + JUDGED
 SEED_PROGRAMS = {"limiter": 1_000_000, "release": 10_000, "bags": 10_000}  # seeds; a minute at most on two cores
 BY_WHEEL_COMMAND = ("campaign", "driving", "drive", "release")
@@ -134,14 +133,16 @@ def run_seed_program(name: str, given: argparse.Namespace, runner: Runner) -> Re
 
 
 def _possible_parts(name: str, robot: str) -> tuple[str, ...]:
-    if robot == DIFFBOT:
-        return tuple(part for part in PARTS[name] if part not in NOT_ON_WHEELS)
-    return ON_LEGS.get(name, PARTS[name])
+    return PARTS[name] if robot == DIFFBOT else ON_LEGS.get(name, PARTS[name])
+
+
+def _all_parts(name: str) -> set[str]:
+    return {*PARTS[name], *ON_LEGS.get(name, ())}
 
 
 def _parts_of(name: str, given: argparse.Namespace) -> list[str]:
     """The parts of this benchmark that are named, or all that the robot has."""
-    return [part for part in given.parts if part in PARTS[name]] or list(_possible_parts(name, given.robot))
+    return [part for part in given.parts if part in _all_parts(name)] or list(_possible_parts(name, given.robot))
 
 
 def _odometry(bench: Any, given: argparse.Namespace, runner: Runner) -> Result:  # noqa: ANN401 (a module)
@@ -347,7 +348,7 @@ def parse(arguments: Sequence[str] | None = None) -> argparse.Namespace:
     parser.add_argument("--programs", type=Path, default=Path(), help=argparse.SUPPRESS)
     parser.add_argument("--params", type=Path, default=Path(), help=argparse.SUPPRESS)
     given = parser.parse_args(arguments)
-    possible = {part for name, own in PARTS.items() if name in given.names for part in own}
+    possible = {part for name in PARTS if name in given.names for part in _all_parts(name)}
     given.parts = [name for name in given.names if name in possible]
     given.names = [name for name in given.names if name not in possible]
     unknown = [name for name in given.names if name not in NAMES]
