@@ -136,9 +136,13 @@ def _possible_parts(name: str, robot: str) -> tuple[str, ...]:
     return PARTS[name] if robot == DIFFBOT else ON_LEGS.get(name, PARTS[name])
 
 
+def _all_parts(name: str) -> set[str]:
+    return {*PARTS[name], *ON_LEGS.get(name, ())}
+
+
 def _parts_of(name: str, given: argparse.Namespace) -> list[str]:
     """The parts of this benchmark that are named, or all that the robot has."""
-    return [part for part in given.parts if part in PARTS[name]] or list(_possible_parts(name, given.robot))
+    return [part for part in given.parts if part in _all_parts(name)] or list(_possible_parts(name, given.robot))
 
 
 def _odometry(bench: Any, given: argparse.Namespace, runner: Runner) -> Result:  # noqa: ANN401 (a module)
@@ -152,7 +156,16 @@ def _odometry(bench: Any, given: argparse.Namespace, runner: Runner) -> Result: 
 def _devices(bench: Any, given: argparse.Namespace, runner: Runner) -> Result:  # noqa: ANN401 (a module)
     parts = _parts_of("devices", given)
     if given.robot == QUADBOT:
-        return walk_bench.bench(parts, given.first, given.runs, say, runner, can_rate=given.rate)
+        return walk_bench.bench(
+            parts,
+            given.first,
+            given.runs,
+            say,
+            runner,
+            build=given.programs.parent,
+            can_rate=given.rate,
+            minutes=given.minutes,
+        )
     result: Result = bench.bench(
         parts, given.first, given.runs or bench.ALL_RUNS, say, runner, program=programs_of(given)
     )
@@ -274,6 +287,22 @@ def _scenarios(text: str) -> list[str]:
     return text.split(",")
 
 
+def _add_options_of_legs(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        "--rate",
+        type=float,
+        choices=legs.RATES,
+        default=legs.RATES[0],
+        help="legs, devices --robot quadbot with motors on CAN: Hz of the loop",
+    )
+    parser.add_argument("--delay", type=float, help="legs: s from sensor to torque, whole periods; default: one")
+    parser.add_argument(
+        "--minutes",
+        type=float,
+        help="devices --robot quadbot: length of one disturbed walk per drive; default: 30 walks of a minute",
+    )
+
+
 def parse(arguments: Sequence[str] | None = None) -> argparse.Namespace:
     """The command line of scripts/bench; ends the program on a wrong one."""
     parser = argparse.ArgumentParser(prog="scripts/bench", description="Measures this machine.")
@@ -308,14 +337,7 @@ def parse(arguments: Sequence[str] | None = None) -> argparse.Namespace:
     parser.add_argument("--worlds", type=Path, help="navigation barn: folder of public worlds, N.json each")
     parser.add_argument("--map", choices=navigation.MAPS, default=navigation.MAPS[0], help="navigation barn: the map")
     parser.add_argument("--speed", type=float, choices=navigation.SPEEDS, default=0.5, help="navigation barn: m/s")
-    parser.add_argument(
-        "--rate",
-        type=float,
-        choices=legs.RATES,
-        default=legs.RATES[0],
-        help="legs, devices --robot quadbot with motors on CAN: Hz of the loop",
-    )
-    parser.add_argument("--delay", type=float, help="legs: s from sensor to torque, whole periods; default: one")
+    _add_options_of_legs(parser)
     parser.add_argument("--keep", type=Path, help="record: folder for the logs and their reports")
     cluster = parser.add_argument_group("cluster", f"{', '.join(ON_CLUSTERS)} run with the workers of a Dask scheduler")
     cluster.add_argument("--scheduler", metavar="tls://HOST:8786", help="its address; default: this computer only")
@@ -326,7 +348,7 @@ def parse(arguments: Sequence[str] | None = None) -> argparse.Namespace:
     parser.add_argument("--programs", type=Path, default=Path(), help=argparse.SUPPRESS)
     parser.add_argument("--params", type=Path, default=Path(), help=argparse.SUPPRESS)
     given = parser.parse_args(arguments)
-    possible = {part for name, own in PARTS.items() if name in given.names for part in own}
+    possible = {part for name in PARTS if name in given.names for part in _all_parts(name)}
     given.parts = [name for name in given.names if name in possible]
     given.names = [name for name in given.names if name not in possible]
     unknown = [name for name in given.names if name not in NAMES]

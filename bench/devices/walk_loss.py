@@ -63,7 +63,7 @@ UNITREE = {
     "robot off": Loss("robot", "off", LOSS, "is silent"),
     "crc wrong": Loss("robot", "encrypted", LOSS, "wrong check sum"),
     "stale tick": Loss("robot", "frozen", LOSS, "repeats its last"),
-    "another robot": Loss("robot", "other_robot", SEEN, "another one than before"),
+    "another robot": Loss("robot", "other_robot", SEEN, "a state of another robot"),
     "motor hot": Loss("motor", "hot", FAULT, "is too hot"),
     "battery empty": Loss("robot", "low_battery", FAULT, "low supply"),
     "e-stop of the remote": Loss("robot", "e_stop", FAULT, "", "e_stop_input"),
@@ -72,6 +72,7 @@ BRIDGE = {
     "bridge gone": Loss("bridge", "off", LOSS, "lost its bridge"),
     "second writer": Loss("bridge", "second_writer", SEEN, "commanded by another program"),
     "second writer sends": Loss("bridge", "other_commands", SEEN, "commanded by another program"),
+    "second robot": Loss("bridge", "other_states", SEEN, "a state of another robot"),
     "motion service begins": Loss("bridge", "active", SEEN, "motion service of its maker to be released"),
     "motion service is asked": Loss("bridge", "asked", SEEN, "motion service of its maker to answer"),
 }

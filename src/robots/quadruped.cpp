@@ -32,7 +32,22 @@ LegAngles upright(const Leg& leg, double height) noexcept {
   return leg.kinematics.inverse(foot).angles;
 }
 
-/// Throws ParameterError unless the drives close the impedance of each joint and have its limits.
+/// Returns why the drive cannot hold all positions of the joint; "" if it can.
+std::string beyond_range(const JointModel& joint, const DriveCapability& able) {
+  if (joint.range && able.lower <= joint.range->lower && joint.range->upper <= able.upper) return "";
+  if (std::isinf(able.lower)) return "";
+  const auto interval = [](double lower, double upper) {
+    const auto rounded = [](double value) { return shortest(std::round(1000 * value) / 1000); };
+    return rounded(lower) + " … " + rounded(upper) + " rad";
+  };
+  return joint.name + ".position_range: the joint " +
+         (joint.range ? "moves in " + interval(joint.range->lower, joint.range->upper) : "turns without end") +
+         ", but its drive holds positions in " + interval(able.lower, able.upper) +
+         " only; set a wider position_range in the motor and the file, correct gear and offset, or set a smaller "
+         "range in the URDF";
+}
+
+/// Throws ParameterError unless the drives close the impedance of each joint, and have its limits and its range.
 void require_drives(const Parameters& parameters, const LegModel& machine) {
   std::vector<std::string> joints;
   for (const JointModel& joint : machine.joints) joints.push_back(joint.name);
@@ -44,16 +59,19 @@ void require_drives(const Parameters& parameters, const LegModel& machine) {
                          "Use drives that do (docs/drivers.md)");
   }
   std::string problems;
-  const auto add = [&](const JointModel& joint, const char* key, double of_drive, double of_joint) {
+  const auto add = [&](const std::string& problem) {
+    if (!problem.empty()) problems += (problems.empty() ? "" : "\n") + parameters.drives + ": " + problem;
+  };
+  const auto add_limit = [&](const JointModel& joint, const char* key, double of_drive, double of_joint) {
     if (of_drive >= of_joint) return;
-    problems += (problems.empty() ? "" : "\n") + parameters.drives + ": " + joint.name + "." + key + " = " +
-                shortest(of_drive) + ": must be at least the limit of the joint, " + shortest(of_joint) +
-                ", with which the robot plans; set a lower limit in the URDF, or use a stronger drive";
+    add(joint.name + "." + key + " = " + shortest(of_drive) + ": must be at least the limit of the joint, " +
+        shortest(of_joint) + ", with which the robot plans; set a lower limit in the URDF, or use a stronger drive");
   };
   for (std::size_t i = 0; i < machine.joints.size(); ++i) {
     const DriveCapability able = file->capability(i);
-    add(machine.joints[i], "torque_limit", able.torque, machine.joints[i].effort_limit);
-    add(machine.joints[i], "velocity_limit", able.velocity, machine.joints[i].velocity_limit);
+    add_limit(machine.joints[i], "torque_limit", able.torque, machine.joints[i].effort_limit);
+    add_limit(machine.joints[i], "velocity_limit", able.velocity, machine.joints[i].velocity_limit);
+    add(beyond_range(machine.joints[i], able));
   }
   if (!problems.empty()) throw ParameterError(problems);
 }

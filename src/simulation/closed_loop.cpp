@@ -41,11 +41,12 @@ std::unique_ptr<Driver> copy_of(Driver& machine) {
 
 }  // namespace
 
-ClosedLoop::ClosedLoop(const Parameters& given, std::shared_ptr<const Robot> robot)
+ClosedLoop::ClosedLoop(const Parameters& given, std::shared_ptr<const Robot> robot, std::unique_ptr<Driver> machine)
     : parameters_(robot != nullptr || given.drives.empty() ? given
                                                            : limited_by_drives(given, load_description(given.urdf))),
       robot_(drivable(std::move(robot), parameters_)),
-      machine_(make_simulated_machine(parameters_, robot_->machine(), robot_->brakes())),
+      machine_(machine != nullptr ? std::move(machine)
+                                  : make_simulated_machine(parameters_, robot_->machine(), robot_->brakes())),
       driver_(*machine_, robot_->machine(),
               {sensors_.writer, FrameWriter<TruthFrame>(), &command_.reader, &permit_.reader},
               parameters_.loop.period_ns(), nullptr, robot_->gate()),

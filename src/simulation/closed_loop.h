@@ -32,8 +32,10 @@ class ClosedLoop {
   /// ParameterError. Telemetry, clock and real-time parameters have no effect.
   explicit ClosedLoop(const Parameters& parameters) : ClosedLoop(parameters, nullptr) {}
 
-  /// Does the same with a robot of any kind, which was composed with these parameters.
-  ClosedLoop(const Parameters& parameters, std::shared_ptr<const Robot> robot);
+  /// Does the same with a robot of any kind, which was composed with these parameters. `machine` is another one than
+  /// they name, for example one whose line leads through other programs; null: theirs.
+  ClosedLoop(const Parameters& parameters, std::shared_ptr<const Robot> robot,
+             std::unique_ptr<Driver> machine = nullptr);
 
   /// A copy continues bit for bit as the original, but writes no log and has no row before its first step. Throws
   /// DriverError for a machine behind simulated drives.

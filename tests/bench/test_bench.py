@@ -91,7 +91,7 @@ def test_an_unknown_name_is_refused(capsys):
 @pytest.mark.parametrize(
     ("command", "complaint"),
     [
-        ("devices answers", "answers: no part of --robot quadbot, which has disturbed, losses"),
+        ("devices answers", "answers: no part of --robot quadbot, which has bridge, disturbed, losses"),
         ("devices losses slope", "slope: no part of --robot quadbot"),
         ("navigation routes guard", "routes, guard: no part of --robot quadbot, which has goals"),
         ("fleet sequences", "--robot quadbot is for campaign, devices, navigation"),

@@ -18,10 +18,13 @@ from pathlib import Path
 import pytest
 from support.pypi_package import imported
 
+from bench.devices.walk_bridge import KINDS, BridgeLoss, run_bridge_loss
+
 ROOT = Path(__file__).parents[2]
-PEER = ROOT / "build/robot_control/tests/drivers/go_peer"
-BRIDGE = ROOT / "build/robot_control/devel/lib/robot_control/unitree_bridge"
-REPORT = 24  # bytes before a state
+BUILD = ROOT / "build/robot_control"
+PEER = BUILD / "tests/drivers/go_peer"
+BRIDGE = BUILD / "devel/lib/robot_control/unitree_bridge"
+REPORT = 28  # bytes before a state
 DOMAIN = 100 + os.getpid() % 100
 """of DDS; other tests on this machine have another one"""
 MOTORS = 20
@@ -65,7 +68,8 @@ class Sdk:
         """A list that grows by (monotonic time, message)."""
         messages = []
         subscriber = self._channel.ChannelSubscriber(topic, self._types[topic])
-        subscriber.Init(lambda message: messages.append((time.monotonic(), message)), 100)
+        # Without a queue: the library's thread of a queue may miss the end, and `Close` then waits for ever.
+        subscriber.Init(lambda message: messages.append((time.monotonic(), message)))
         try:
             yield messages
         finally:
@@ -226,7 +230,7 @@ def test_every_number_of_our_state_is_read_equal_by_the_maker_with_its_check_sum
     end, bridge = device
     answer = subprocess.run([PEER, "states", str(FEW)], capture_output=True, text=True, check=True)
     lines = answer.stdout.splitlines()
-    report = struct.pack("<II", 0x31424755, 1) + bytes(REPORT - 8)
+    report = struct.pack("<II", 0x32424755, 1) + bytes(REPORT - 8)
     with sdk.received("rt/lowstate") as states:
         time.sleep(0.5)
         for i in range(FEW):
@@ -246,6 +250,19 @@ def robot(tmp_path, start, sdk):
     robot = start(PEER, "robot", path)
     start(BRIDGE, path, "--side", "robot")
     return robot
+
+
+@pytest.fixture
+def second_robot(tmp_path, start, sdk):
+    """Starts a second robot on the same network. Its serial number is that of the first one."""
+
+    def start_robot():
+        path = drive_file(tmp_path, "second_robot")
+        robot = start(PEER, "robot", path)
+        bridge = start(BRIDGE, path, "--side", "robot")
+        return robot, bridge
+
+    return start_robot
 
 
 CROUCH = [0.0, 1.36, -2.65] * 4
@@ -324,6 +341,14 @@ def test_a_bridge_that_ends_or_hangs_is_named_and_the_robot_stops(robot, chain, 
         assert abs(turned(robot)) < 0.01, "the fault stays until the reset"
 
 
+@pytest.mark.parametrize("kind", KINDS)
+def test_quadbot_folds_upright_if_its_bridge_ends_or_hangs_while_it_walks(sdk, kind):
+    outcome = run_bridge_loss(BUILD, BridgeLoss(kind, seed=7))
+    sys.stdout.write(f"{kind}: named after {1e3 * outcome.named:.1f} ms, tilt {outcome.tilt:.2f} rad\n")
+    assert outcome.broken == ()
+    assert outcome.named < STOPPED
+
+
 @pytest.mark.parametrize("end", [signal.SIGKILL, signal.SIGSTOP])
 def test_the_bridge_damps_the_legs_of_a_driver_that_ends_or_hangs(sdk, robot, chain, end):
     with sdk.received("rt/lowcmd") as commands:
@@ -354,6 +379,35 @@ def test_a_second_writer_is_named_and_its_command_is_named(sdk, robot, chain):
         count = len(other.lines)
         publisher.Write(sdk.command())
         assert "with frame LowCmd; stop" in other.wait_for("is commanded by another program", after=count)
+
+
+OTHER_ROBOT = "sends a state of another robot, by a second writer of rt/lowstate"
+
+
+def test_a_second_robot_on_the_network_is_named_and_the_robot_stops(sdk, robot, chain, second_robot):
+    driver, _ = chain()
+    time.sleep(0.3)
+    assert turned(robot) == pytest.approx(0.2, abs=0.05)
+    second_robot()
+    line = driver.wait_for(OTHER_ROBOT)
+    assert "fault" in line
+    assert "connect only one robot" in line
+    time.sleep(0.3)
+    assert abs(turned(robot)) < 0.01
+
+
+def test_neither_of_two_robots_is_commanded_before_one_is_alone(sdk, robot, chain, second_robot):
+    other, other_bridge = second_robot()
+    with sdk.received("rt/lowcmd") as commands:
+        driver, bridge = chain(wanted=OTHER_ROBOT)
+        bridge.wait_for("a second robot sends states")
+        time.sleep(0.5)
+        assert not commands
+        other_bridge.end()
+        other.end()
+        driver.wait_for("running")
+        time.sleep(0.5)
+        assert turned(robot) == pytest.approx(0.2, abs=0.05)
 
 
 class MotionService:

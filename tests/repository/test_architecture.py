@@ -395,7 +395,7 @@ def test_only_its_driver_sees_mujoco():
 
 SIMULATED = {"drivers/mujoco", "simulation/faults", "simulation/machines"}
 DEVICES = re.compile(
-    r"drivers/\w+/(?:device|\w+_device|\w+_front|simulated_\w+|virtual_\w+|answer_faults|object_dictionary|pseudo_\w+|"
+    r"drivers/(?:\w+/)+(?:device|\w+_device|\w+_front|simulated_\w+|virtual_\w+|answer_faults|object_dictionary|pseudo_\w+|"
     r"speed_loop)\.(?:h|cpp)"
 )
 """The simulated device of a drive lies beside it, in a library of its own."""

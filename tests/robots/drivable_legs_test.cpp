@@ -68,18 +68,40 @@ TEST(Quadruped, IsRefusedBehindDrivesThatDoNotCloseAnImpedance) {
   std::filesystem::remove(path);
 }
 
-TEST(Quadruped, IsRefusedBehindDrivesThatAreWeakerThanItsJoints) {
-  const std::string example = PROJECT_DIRECTORY "/config/drives/damiao.yaml";
+/// Returns why the example of a drive is refused in which `old` is replaced by `replacement`.
+std::string refusal_with(const std::string& drive, std::string_view old, std::string_view replacement) {
+  const std::string example = PROJECT_DIRECTORY "/config/drives/" + drive + ".yaml";
   EXPECT_EQ(refusal_with(example), "");
   std::ifstream file(example);
   std::string text{std::istreambuf_iterator<char>(file), {}};
-  text.replace(text.find("torque_limit: 36"), 16, "torque_limit: 35");
-  const std::string path = testing::TempDir() + "weak.yaml";
+  text.replace(text.find(old), old.size(), replacement);
+  const std::string path = testing::TempDir() + "changed.yaml";
   std::ofstream(path) << text;
-  EXPECT_THAT(refusal_with(path), AllOf(HasSubstr("front_left_knee_joint.torque_limit = 35: must be at least the limit "
-                                                  "of the joint, 35.55"),
-                                        Not(HasSubstr("hip_joint"))));
+  const std::string refusal = refusal_with(path);
   std::filesystem::remove(path);
+  return refusal;
+}
+
+TEST(Quadruped, IsRefusedBehindDrivesThatAreWeakerThanItsJoints) {
+  EXPECT_THAT(refusal_with("damiao", "torque_limit: 36", "torque_limit: 35"),
+              AllOf(HasSubstr("front_left_knee_joint.torque_limit = 35: must be at least the limit "
+                              "of the joint, 35.55"),
+                    Not(HasSubstr("hip_joint"))));
+}
+
+/// Quadbot's thigh moves in −0.69 … 4.5 rad, its knee in −2.82 … −0.89 rad, its hip in −0.86 … 0.86 rad.
+TEST(Quadruped, IsRefusedBehindMotorsWhosePositionsDoNotReachItsJoints) {
+  for (const char* drive : {"damiao", "cybergear", "ak"}) {
+    EXPECT_THAT(refusal_with(drive, "velocity_limit: 30", "velocity_limit: 30\n  offset: -8.5"),
+                AllOf(HasSubstr("front_left_thigh_joint.position_range: the joint moves in -0.69 … 4.5 rad, but its "
+                                "drive holds positions in -21"),
+                      HasSubstr("rad only; set a wider position_range"), Not(HasSubstr("knee"))))
+        << drive;
+  }
+  EXPECT_THAT(refusal_with("damiao", "velocity_limit: 30", "velocity_limit: 15\n  direction: -1\n  gear: 2.9"),
+              AllOf(HasSubstr("thigh_joint.position_range: the joint moves in -0.69 … 4.5 rad, but its drive holds "
+                              "positions in -4.31 … 4.31 rad only"),
+                    Not(HasSubstr("knee_joint.position_range"))));
 }
 
 TEST(Quadruped, IsRefusedIfTheDriveFileDoesNotMoveAllJoints) {

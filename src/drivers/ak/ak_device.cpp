@@ -1,7 +1,5 @@
 #include "drivers/ak/ak_device.h"
 
-#include <algorithm>
-
 #include "drivers/ak/ak_parameters.h"
 #include "drivers/drive/can_front.h"
 
@@ -14,17 +12,8 @@ constexpr std::uint8_t kHotMotor = 160;
 }  // namespace
 
 void AkDevice::boot() {
-  on_ = false;
+  release_motor();
   command_ = {};
-  motor_.torque = 0;
-}
-
-void AkDevice::begin_fault() {
-  if (fault() == DeviceFault::kOtherZero) parameters_.zero += kOtherZero;
-  if (fault() == DeviceFault::kReleased || fault() == DeviceFault::kOff) {
-    on_ = false;
-    motor_.torque = 0;
-  }
 }
 
 ak::Error AkDevice::error() const {
@@ -37,14 +26,11 @@ void AkDevice::receive(const can_frame& frame, std::int64_t /*now_ns*/) {
   if (const auto request = decode_request(frame)) {
     if (*request == MitRequest::kEnable) on_ = error() == ak::Error::kNone;
     if (*request == MitRequest::kRelease) on_ = false;
-    if (*request == MitRequest::kSetZero) parameters_.zero = motor_.position;
+    if (*request == MitRequest::kSetZero) set_zero();
   } else {
     command_ = decode_mit(frame, parameters_.ranges);
   }
-  ak::Reply reply{.node = parameters_.node,
-                  .position = motor_.position - parameters_.zero,
-                  .velocity = motor_.velocity,
-                  .torque = motor_.torque};
+  ak::Reply reply{.node = parameters_.node, .position = position(), .velocity = velocity(), .torque = torque()};
   if (parameters_.reports_health)
     reply.health = {.temperature = fault() == DeviceFault::kHot ? kHotMotor : kCoolMotor, .error = error()};
   transmit(ak::encode(parameters_.ranges, reply));
@@ -52,8 +38,7 @@ void AkDevice::receive(const can_frame& frame, std::int64_t /*now_ns*/) {
 
 void AkDevice::run(std::int64_t /*now_ns*/, double /*seconds*/) {
   if (error() != ak::Error::kNone) on_ = false;
-  const double torque = mit_torque(command_, motor_.position - parameters_.zero, motor_.velocity);
-  motor_.torque = on_ ? std::clamp(torque, -parameters_.torque_limit, parameters_.torque_limit) : 0;
+  close_impedance(on_);
 }
 
 namespace {

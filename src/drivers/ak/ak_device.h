@@ -7,7 +7,7 @@
 #include <cstdint>
 
 #include "drivers/ak/ak_messages.h"
-#include "drivers/drive/device.h"
+#include "drivers/drive/mit/mit_device.h"
 
 namespace robot_control {
 
@@ -19,23 +19,21 @@ struct AkDeviceParameters {
   bool reports_health = true;  ///< newer firmware
 };
 
-class AkDevice final : public Device {
+class AkDevice final : public MitDevice {
  public:
   AkDevice(const AkDeviceParameters& parameters, VirtualCan& bus, DeviceMotor& motor)
-      : Device(bus), parameters_(parameters), motor_(motor) {}
+      : MitDevice(bus, motor, parameters.zero, parameters.torque_limit), parameters_(parameters) {}
 
  private:
   void boot() override;
-  void begin_fault() override;
+  void release() override { on_ = false; }
   void receive(const can_frame& frame, std::int64_t now_ns) override;
   void run(std::int64_t now_ns, double seconds) override;
 
   ak::Error error() const;
 
   AkDeviceParameters parameters_;
-  DeviceMotor& motor_;
   bool on_ = false;
-  MitCommand command_;
 };
 
 }  // namespace robot_control

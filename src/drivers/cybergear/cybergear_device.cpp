@@ -1,6 +1,5 @@
 #include "drivers/cybergear/cybergear_device.h"
 
-#include <algorithm>
 #include <bit>
 
 #include "drivers/cybergear/cybergear_parameters.h"
@@ -21,10 +20,9 @@ constexpr std::uint8_t kUnderVoltage = 1U << 0U, kEncoder = 1U << 3U;  // bits o
 }  // namespace
 
 void CybergearDevice::boot() {
-  mode_ = Mode::kReset;
+  release_motor();
   faults_ = 0;
   timeout_ = 0;
-  motor_.torque = 0;
 }
 
 std::uint8_t CybergearDevice::lasting_faults() const {
@@ -32,11 +30,7 @@ std::uint8_t CybergearDevice::lasting_faults() const {
 }
 
 void CybergearDevice::begin_fault() {
-  if (fault() == DeviceFault::kOtherZero) parameters_.zero += kOtherZero;
-  if (fault() == DeviceFault::kReleased || fault() == DeviceFault::kOff) {
-    mode_ = Mode::kReset;
-    motor_.torque = 0;
-  }
+  MitDevice::begin_fault();
   if (lasting_faults() == 0) return;
   const std::uint64_t details = lasting_faults() == kEncoder ? 1U << 7U : 1U << 2U;
   transmit(word_frame(cybergear::encode({.type = Type::kFaults, .data = parameters_.node, .target = parameters_.host}),
@@ -63,7 +57,7 @@ void CybergearDevice::receive(const can_frame& frame, std::int64_t now_ns) {
       if (frame.data[0] == 1) faults_ = lasting_faults();
       break;
     case Type::kSetZero:
-      parameters_.zero = motor_.position;
+      set_zero();
       break;
     case Type::kRead:
       return read(host, cybergear::decode_parameter(frame).index);
@@ -101,9 +95,7 @@ void CybergearDevice::run(std::int64_t now_ns, double /*seconds*/) {
   faults_ |= lasting_faults();
   const double silence = 1.0e-9 * static_cast<double>(now_ns - ordered_ns_);
   if (faults_ != 0 || (timeout_ != 0 && silence > cybergear::kTimeoutUnit * timeout_)) mode_ = Mode::kReset;
-  const double torque = mit_torque(command_, motor_.position - parameters_.zero, motor_.velocity);
-  const double limit = double{parameters_.torque_limit};
-  motor_.torque = mode_ == Mode::kRun ? std::clamp(torque, -limit, limit) : 0;
+  close_impedance(mode_ == Mode::kRun);
 }
 
 void CybergearDevice::send_feedback(std::uint8_t host) {
@@ -111,9 +103,9 @@ void CybergearDevice::send_feedback(std::uint8_t host) {
                              {.node = parameters_.node,
                               .mode = mode_,
                               .faults = faults_,
-                              .position = motor_.position - parameters_.zero,
-                              .velocity = motor_.velocity,
-                              .torque = motor_.torque,
+                              .position = position(),
+                              .velocity = velocity(),
+                              .torque = torque(),
                               .temperature = fault() == DeviceFault::kHot ? kHotMotor : kCoolMotor}));
 }
 

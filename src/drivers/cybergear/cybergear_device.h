@@ -8,7 +8,7 @@
 #include <cstdint>
 
 #include "drivers/cybergear/cybergear_messages.h"
-#include "drivers/drive/device.h"
+#include "drivers/drive/mit/mit_device.h"
 
 namespace robot_control {
 
@@ -24,13 +24,14 @@ struct CybergearDeviceParameters {
   bool answers_parameters = true;  ///< of all kinds
 };
 
-class CybergearDevice final : public Device {
+class CybergearDevice final : public MitDevice {
  public:
   CybergearDevice(const CybergearDeviceParameters& parameters, VirtualCan& bus, DeviceMotor& motor)
-      : Device(bus), parameters_(parameters), motor_(motor) {}
+      : MitDevice(bus, motor, parameters.zero, double{parameters.torque_limit}), parameters_(parameters) {}
 
  private:
   void boot() override;
+  void release() override { mode_ = cybergear::Mode::kReset; }
   void begin_fault() override;
   void receive(const can_frame& frame, std::int64_t now_ns) override;
   void run(std::int64_t now_ns, double seconds) override;
@@ -40,10 +41,8 @@ class CybergearDevice final : public Device {
   std::uint8_t lasting_faults() const;
 
   CybergearDeviceParameters parameters_;
-  DeviceMotor& motor_;
   cybergear::Mode mode_ = cybergear::Mode::kReset;
   std::uint8_t faults_ = 0;
-  MitCommand command_;
   std::uint32_t timeout_ = 0;  // units of kTimeoutUnit
   std::int64_t ordered_ns_ = 0;
 };

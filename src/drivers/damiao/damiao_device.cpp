@@ -1,8 +1,5 @@
 #include "drivers/damiao/damiao_device.h"
 
-#include <algorithm>
-#include <cmath>
-
 #include "drivers/damiao/damiao_parameters.h"
 #include "drivers/drive/can_front.h"
 
@@ -18,17 +15,8 @@ constexpr double kHotMotor = 120;
 }  // namespace
 
 void DamiaoDevice::boot() {
-  state_ = State::kOff;
+  release_motor();
   timeout_ = 0;
-  motor_.torque = 0;
-}
-
-void DamiaoDevice::begin_fault() {
-  if (fault() == DeviceFault::kOtherZero) parameters_.zero += kOtherZero;
-  if (fault() == DeviceFault::kReleased || fault() == DeviceFault::kOff) {
-    state_ = State::kOff;
-    motor_.torque = 0;
-  }
 }
 
 void DamiaoDevice::receive(const can_frame& frame, std::int64_t now_ns) {
@@ -59,7 +47,7 @@ void DamiaoDevice::obey(damiao::Request request) {
       if (state_ == State::kOn) state_ = State::kOff;
       break;
     case damiao::Request::kSetZero:
-      parameters_.zero = motor_.position;
+      set_zero();
       break;
   }
 }
@@ -102,8 +90,7 @@ void DamiaoDevice::run(std::int64_t now_ns, double /*seconds*/) {
   const double silence = 1.0e-9 * static_cast<double>(now_ns - ordered_ns_);
   if (state_ == State::kOn && timeout_ != 0 && silence > damiao::kTimeoutUnit * timeout_)
     state_ = State::kCommunicationLost;
-  const double torque = mit_torque(command_, motor_.position - parameters_.zero, motor_.velocity);
-  motor_.torque = state_ == State::kOn ? std::clamp(torque, -parameters_.torque_limit, parameters_.torque_limit) : 0;
+  close_impedance(state_ == State::kOn);
 }
 
 void DamiaoDevice::send_feedback() {
@@ -111,9 +98,9 @@ void DamiaoDevice::send_feedback() {
   transmit(damiao::encode(parameters_.answers, parameters_.ranges,
                           damiao::Feedback{.node = parameters_.node,
                                            .state = state_,
-                                           .position = motor_.position - parameters_.zero,
-                                           .velocity = motor_.velocity,
-                                           .torque = motor_.torque,
+                                           .position = position(),
+                                           .velocity = velocity(),
+                                           .torque = torque(),
                                            .transistors = kCoolMotor,
                                            .rotor = temperature}));
 }

@@ -8,7 +8,7 @@
 #include <cstdint>
 
 #include "drivers/damiao/damiao_messages.h"
-#include "drivers/drive/device.h"
+#include "drivers/drive/mit/mit_device.h"
 
 namespace robot_control {
 
@@ -24,27 +24,24 @@ struct DamiaoDeviceParameters {
   bool answers_registers = true;
 };
 
-class DamiaoDevice final : public Device {
+class DamiaoDevice final : public MitDevice {
  public:
   DamiaoDevice(const DamiaoDeviceParameters& parameters, VirtualCan& bus, DeviceMotor& motor)
-      : Device(bus), parameters_(parameters), motor_(motor) {}
+      : MitDevice(bus, motor, parameters.zero, parameters.torque_limit), parameters_(parameters) {}
 
  private:
   void boot() override;
-  void begin_fault() override;
+  void release() override { state_ = damiao::State::kOff; }
   void receive(const can_frame& frame, std::int64_t now_ns) override;
   void run(std::int64_t now_ns, double seconds) override;
 
   void obey(damiao::Request request);
   void access(const damiao::RegisterAccess& access);
   std::uint32_t value_of(damiao::Register number) const;
-  bool fault_remains() const { return fault() == DeviceFault::kEncoder || fault() == DeviceFault::kUnderVoltage; }
   void send_feedback();
 
   DamiaoDeviceParameters parameters_;
-  DeviceMotor& motor_;
   damiao::State state_ = damiao::State::kOff;
-  MitCommand command_;
   std::uint32_t timeout_ = 0;  // units of kTimeoutUnit
   std::int64_t ordered_ns_ = 0;
 };

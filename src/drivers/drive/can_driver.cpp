@@ -29,6 +29,10 @@ const char* why_no_velocity(VelocitySource source) noexcept {
   return "";
 }
 
+bool is_checked(const DriveStatus& status) noexcept {
+  return status.state == DrivePhase::kReady || status.state == DrivePhase::kRunning;
+}
+
 }  // namespace
 
 CanDriver::CanDriver(CanBusParameters parameters, DriveSet drives, std::span<const Brake> brakes,
@@ -98,6 +102,18 @@ bool CanDriver::all_are(DrivePhase state) const noexcept {
   return true;
 }
 
+bool CanDriver::all_checked() const noexcept {
+  for (std::size_t i = 0; i < drives_.size(); ++i) {
+    if (!is_checked(drives_[i].status())) return false;
+  }
+  return true;
+}
+
+/// A drive that waits is enabled with all others. One that has torque keeps it, also in a fault in which it can brake.
+bool CanDriver::may_have_torque(std::size_t joint) const noexcept {
+  return checked_ || drives_[joint].status().state >= DrivePhase::kRunning;
+}
+
 void CanDriver::judge_faults() noexcept {
   for (std::size_t i = 0; i < drives_.size(); ++i) {
     const DriveStatus& status = drives_[i].status();
@@ -133,6 +149,7 @@ void CanDriver::read(SensorFrame& sensors) noexcept {
   for (std::size_t i = 0; i < lines_.size(); ++i) receive(i, now);
   drives_.judge_silence(now_ns_);
   judge_faults();
+  checked_ = all_checked();
   sensors.driver_state = state_;
   sensors.faults = faults_;
   sensors.valid = 0;
@@ -212,9 +229,11 @@ std::string CanDriver::warning() const {
     if (words.empty()) continue;
     text += (text.empty() ? "" : ". ") + (lines_.size() > 1 ? drives_.buses()[i] + ", " : "") + words;
   }
-  for (std::size_t i = 0; i < drives_.size(); ++i) {
-    const DriveStatus& status = statuses.drives[i];
-    if (status.state == DrivePhase::kRunning) continue;
+  const std::span drives = std::span(statuses.drives).first(drives_.size());
+  const bool others_wait = !std::ranges::all_of(drives, is_checked);
+  for (std::size_t i = 0; i < drives.size(); ++i) {
+    const DriveStatus& status = drives[i];
+    if (status.state == DrivePhase::kRunning || (others_wait && status.cause == DriveCause::kEnable)) continue;
     if (!text.empty()) text += ". ";
     text += drives_[i].words(status);
   }
@@ -222,7 +241,7 @@ std::string CanDriver::warning() const {
 }
 
 DriveCommand CanDriver::wanted(std::size_t joint, const JointCommand& command) noexcept {
-  DriveCommand wanted{.enabled = true, .reset = reset_, .brake_torque = brakes_[joint].effort};
+  DriveCommand wanted{.enabled = may_have_torque(joint), .reset = reset_, .brake_torque = brakes_[joint].effort};
   wanted.brake_damping = brakes_[joint].damping;
   const DriveSample& sample = drives_[joint].sample();
   if (!sample.valid) {

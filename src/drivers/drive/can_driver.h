@@ -2,8 +2,9 @@
 /// Motor drives on one to kMaxLinks CAN buses as a Driver.
 ///
 /// `start` returns at once; `read` reports kStarting until all drives are running, so that the brake of the driver
-/// holds from kRunning on. A fault of a drive stays until the operator's reset, or the next `start`. Meanwhile the
-/// other joints brake, and so does this drive by itself (drivers/drive/drive.h).
+/// holds from kRunning on. The first motor is enabled when all drives are ready: no motor has torque before all are
+/// checked. A fault of a drive stays until the operator's reset, or the next `start`. Meanwhile the other joints that
+/// had torque brake, and so does this drive by itself (drivers/drive/drive.h).
 ///
 /// The samples of all drives are brought to the time of `read` by their velocities. A sample that is missing therefore
 /// moves on, and its age grows.
@@ -61,7 +62,8 @@ class CanDriver final : public Driver {
   /// Returns the buses with their greatest load, and what each joint does on silence.
   std::string description() const override;
 
-  /// Returns what is wrong with the buses, and the words of every drive that is not running; any thread may call it.
+  /// Returns what is wrong with the buses, and the words of every drive that is not running. Drives that wait for the
+  /// check of another one are left out. Any thread may call it.
   std::string warning() const override;
 
   const DriveSet& drives() const noexcept { return drives_; }
@@ -86,10 +88,12 @@ class CanDriver final : public Driver {
   void begin() noexcept;
   void send_commands(std::int64_t now_ns) noexcept;
   bool all_are(DrivePhase state) const noexcept;
+  bool all_checked() const noexcept;
   bool follows() const noexcept;
   void receive(std::size_t line, const CanTime& now) noexcept;
   void publish_statuses() noexcept;
   void judge_faults() noexcept;
+  bool may_have_torque(std::size_t joint) const noexcept;
   DriveCommand wanted(std::size_t joint, const JointCommand& command) noexcept;
   void add_impedance(std::size_t joint, const JointCommand& command, const JointSample& now,
                      DriveCommand& wanted) const noexcept;
@@ -100,8 +104,9 @@ class CanDriver final : public Driver {
   DriveSet drives_;
   bool takes_speeds_;
   bool closes_impedance_ = true;
-  bool ran_ = false;  // since the last start
-  double load_ = 0;   // the greatest one of a bus, planned
+  bool ran_ = false;      // since the last start
+  bool checked_ = false;  // all drives were ready or running in the last `read`
+  double load_ = 0;       // the greatest one of a bus, planned
   DriverClock clock_;
   std::vector<Brake> brakes_;
   std::vector<JointLaw> laws_;

@@ -39,11 +39,13 @@ struct DriveFileRequest {
   double period() const noexcept { return 1 / rate; }
 };
 
-/// The greatest motion and torque of a drive at its joint.
+/// The greatest motion and torque of a drive at its joint, and the positions that its messages can hold.
 struct DriveCapability {
   double velocity = std::numeric_limits<double>::infinity();     ///< rad/s or m/s
   double torque = std::numeric_limits<double>::infinity();       ///< N·m or N
   double torque_rate = std::numeric_limits<double>::infinity();  ///< N·m/s or N/s
+  double lower = -std::numeric_limits<double>::infinity();       ///< rad
+  double upper = std::numeric_limits<double>::infinity();        ///< rad
 };
 
 /// The given values of one joint, for rules across keys.

@@ -43,7 +43,7 @@ constexpr CauseWords kCauseWords[] = {
      "check the connector of its encoder, then for a blockage; then reset"},
     {"sends messages with a wrong check sum", "check the cable and the network, then reset"},
     {"repeats its last", "restart the drive, then reset"},
-    {"is another one than before, by its", "remove the other one, then reset"},
+    {"sends a state of another robot, by", "remove the other one, then reset"},
     {"has lost its bridge", "start unitree_bridge or read its output, then reset"},
     {"waits for the motion service of its maker",
      "release it with the app of the maker, or set release_service: true in the drive file"},

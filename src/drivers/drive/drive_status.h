@@ -49,7 +49,7 @@ enum class DriveCause : std::uint8_t {
   kNoCounts,          ///< The motor was driven, and its encoder did not move; code: number of the motor.
   kCheckSum,          ///< The check sums of its messages are wrong.
   kStale,             ///< It sends its last message again and again.
-  kOtherDevice,       ///< Another device answers: its `subject` is not that of before.
+  kOtherDevice,       ///< States of another robot come, which `subject` shows.
   kBridge,            ///< The program between the driver and the drive sends nothing.
   kMotionService,     ///< A controller of the maker commands the same motors.
 };

@@ -203,7 +203,8 @@ void UnitreeDriver<Robot>::reject(const Rejected& rejected) noexcept {
 template <class Robot>
 void UnitreeDriver<Robot>::accept(const State& state) noexcept {
   if (has_state_) {
-    if (state.head.serial_number != state_.head.serial_number) return fail(DriveCause::kOtherDevice, "serial number");
+    if (state.head.serial_number != state_.head.serial_number)
+      return fail(DriveCause::kOtherDevice, "its serial number");
     const auto newer = static_cast<std::int32_t>(state.tick - state_.tick);
     if (newer == 0) return reject({DriveCause::kStale, "state"});
     if (newer < 0) return reject({DriveCause::kRestarted});

@@ -8,7 +8,8 @@ bool read_report(std::span<const std::uint8_t> bytes, BridgeReport& report) noex
   BridgeReport read;
   if (bytes.size() < kReportBytes) return false;
   std::memcpy(&read, bytes.data(), kReportBytes);
-  if (read.magic != BridgeReport::kMagic || read.service > MotionService::kNone) return false;
+  if (read.magic != BridgeReport::kMagic || read.robots > RobotsSeen::kMore || read.service > MotionService::kNone)
+    return false;
   read.mode.back() = '\0';
   for (char& c : read.mode) {
     if (c != '\0' && (c < ' ' || c > '~')) c = '?';

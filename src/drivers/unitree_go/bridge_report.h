@@ -21,21 +21,30 @@ enum class MotionService : std::uint8_t {
   kNone,      ///< The drive file states that there is none.
 };
 
+/// The robots that send states on the network.
+enum class RobotsSeen : std::uint8_t {
+  kNone,
+  kAwaited,  ///< One does, and another one may not be seen yet.
+  kOne,
+  kMore,  ///< Another one sent a state within the last second.
+};
+
 struct BridgeReport {
-  static constexpr std::uint32_t kMagic = 0x31424755;  // "UGB1"
+  static constexpr std::uint32_t kMagic = 0x32424755;  // "UGB2"
 
   std::uint32_t magic = kMagic;
   std::uint32_t process = 0;        ///< id of the bridge's process
   std::uint16_t writers = 0;        ///< other DDS writers of rt/lowcmd
   std::uint8_t other_commands = 0;  ///< 1: one of them sent a command within the last second
+  RobotsSeen robots = RobotsSeen::kNone;
   MotionService service = MotionService::kAsked;
-  std::array<char, 12> mode{};  ///< of the motion service, ends with 0
+  std::array<char, 15> mode{};  ///< of the motion service, ends with 0
 
   bool operator==(const BridgeReport&) const = default;
 };
 
 inline constexpr std::size_t kReportBytes = sizeof(BridgeReport);
-static_assert(kReportBytes == 24);
+static_assert(kReportBytes == 28);
 inline constexpr std::int64_t kReportNs = 2'000'000;
 
 /// Returns whether the bytes begin with a report; if not, `report` does not change.

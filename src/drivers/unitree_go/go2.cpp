@@ -10,6 +10,7 @@ namespace robot_control {
 
 using unitree::go::kReportBytes;
 using unitree::go::MotionService;
+using unitree::go::RobotsSeen;
 
 Go2::Go2(const Line& line)
     : max_silence_ns_(std::llround(1.0e9 * line.max_silence)), other_writers_(line.other_writers) {}
@@ -36,6 +37,9 @@ LegObstacle Go2::obstacle(std::int64_t now_ns) const noexcept {
             .found = static_cast<double>(report_.writers),
             .expected = static_cast<double>(other_writers_),
             .is_fault = true};
+  if (report_.robots == RobotsSeen::kAwaited) return {.cause = DriveCause::kIdentity};
+  if (report_.robots == RobotsSeen::kMore)
+    return {.cause = DriveCause::kOtherDevice, .subject = "a second writer of rt/lowstate"};
   switch (report_.service) {
     case MotionService::kAsked:
       return {.cause = DriveCause::kMotionService, .subject = "to answer"};
@@ -81,6 +85,8 @@ const char* Go2::remedy(DriveCause cause) {
       return "; set has_service: false for a robot without it, as most simulators";
     case DriveCause::kForeignCommander:
       return "; set other_writers for programs that never send";
+    case DriveCause::kOtherDevice:
+      return "; connect only one robot: all robots on a network obey rt/lowcmd";
     default:
       return "";
   }
@@ -92,8 +98,8 @@ bool Go2::Device::write_head(std::span<std::uint8_t> head) const noexcept {
 }
 
 bool Go2::Device::inject(std::string_view component, std::string_view kind) {
-  constexpr std::array<std::string_view, 7> kKnownKinds{"ok",        "off",           "asked",         "active",
-                                                        "no_answer", "second_writer", "other_commands"};
+  constexpr std::array<std::string_view, 8> kKnownKinds{"ok",        "off",           "asked",          "active",
+                                                        "no_answer", "second_writer", "other_commands", "other_states"};
   if (component != "bridge" || std::ranges::find(kKnownKinds, kind) == kKnownKinds.end()) return false;
   report.service = kind == "asked"       ? MotionService::kAsked
                    : kind == "active"    ? MotionService::kActive
@@ -103,6 +109,7 @@ bool Go2::Device::inject(std::string_view component, std::string_view kind) {
   if (kind == "active") std::ranges::copy(std::string_view("mcf"), report.mode.begin());
   report.writers = kind == "second_writer" ? 1 : 0;
   report.other_commands = kind == "other_commands" ? 1 : 0;
+  report.robots = kind == "other_states" ? RobotsSeen::kMore : RobotsSeen::kOne;
   ended = kind == "off";
   forwards = !ended && report.service == MotionService::kFree;
   return true;

@@ -4,6 +4,8 @@
 ///
 ///   bridge           no datagram of it in max_silence: it ended, hangs, or was not started
 ///   motion service   it did not answer, or a mode is active: the driver waits, and the bridge sends no command
+///   other device     another robot sends states on the same network: a driver that starts waits until it is gone, and the
+///                    bridge sends no command before. It also waits while another one may not be seen yet
 ///   other commander  another program sent a command within the last second, or there are more than other_writers
 
 #include "drivers/unitree_go/bridge_report.h"
@@ -30,7 +32,7 @@ class Go2 {
   /// For words in other threads.
   struct Notice {
     std::uint32_t process = 0;
-    std::array<char, 12> mode{};
+    decltype(unitree::go::BridgeReport::mode) mode{};
     bool operator==(const Notice&) const = default;
   };
 
@@ -38,14 +40,15 @@ class Go2 {
   struct Device {
     static constexpr std::size_t kHeadBytes = unitree::go::kReportBytes;
     static constexpr const char* kWords =
-        ", bridge (with ok, off, asked, active, no_answer, second_writer, other_commands)";
+        ", bridge (with ok, off, asked, active, no_answer, second_writer, other_commands, other_states)";
     bool forwards = true;  ///< commands
 
     /// Returns false if the bridge sends nothing.
     bool write_head(std::span<std::uint8_t> head) const noexcept;
     bool inject(std::string_view component, std::string_view kind);
 
-    unitree::go::BridgeReport report{.process = 1, .service = unitree::go::MotionService::kFree};
+    unitree::go::BridgeReport report{
+        .process = 1, .robots = unitree::go::RobotsSeen::kOne, .service = unitree::go::MotionService::kFree};
     bool ended = false;
   };
 

@@ -116,7 +116,7 @@ TEST_P(CanDriverOn, StartReturnsAtOnceAndReadReportsStarting) {
   EXPECT_EQ(frame.faults, 0u);
   EXPECT_FALSE(has(frame.joints[0], kValidPosition));
   EXPECT_THAT(machine_.driver().drives()[0].words(), HasSubstr("starting; the drive waits for the first frame"));
-  EXPECT_THAT(machine_.driver().drives()[1].words(), HasSubstr("running"));
+  EXPECT_THAT(machine_.driver().drives()[1].words(), HasSubstr("ready; the drive waits to be enabled"));
   EXPECT_EQ(machine_.rig().motor(1).velocity, 0);
   machine_.rig().device(0).inject(DeviceFault::kNone);
   EXPECT_EQ(cycles(5000).driver_state, DriverState::kRunning);

@@ -5,15 +5,18 @@
 
 #include <random>
 
+#include "drivers/ak/ak_messages.h"
 #include "drivers/cia402/drive_objects.h"
 #include "drivers/cia402/power_state.h"
 #include "drivers/cia402/sdo.h"
+#include "drivers/cybergear/cybergear_messages.h"
+#include "drivers/damiao/damiao_messages.h"
 #include "drivers/odrive/odrive_catalogue.h"
 #include "drivers/vesc/vesc_messages.h"
 
 namespace robot_control::tests {
 
-constexpr int kFrames = 10'000;  // per dialect
+constexpr int kFrames = 10'000, kManyFrames = 1'000'000;  // per dialect
 
 /// Half of the frames are any bytes; the others are valid ones with a few bits changed.
 class Frames {
@@ -59,23 +62,23 @@ struct OdriveCheck {
   }
 };
 
-TEST(CodecFuzz, ODriveFramesHaveOneMeaningOrNone) {
+void expect_one_meaning_of_odrives(int count) {
   std::vector<can_frame> valid;
   const auto add = [&valid]<class Message>(const char*) { valid.push_back(odrive::encode(3, Message{})); };
   odrive::visit_05(add);
   odrive::visit_06(add);
   Frames frames(valid);
   int accepted = 0;
-  for (int i = 0; i < kFrames; ++i) {
+  for (int i = 0; i < count; ++i) {
     const can_frame frame = frames.next();
     const OdriveCheck check{frame, accepted};
     odrive::visit_05([&check]<class Message>(const char* name) { check.operator()<Message>(name); });
     odrive::visit_06([&check]<class Message>(const char* name) { check.operator()<Message>(name); });
   }
-  EXPECT_GT(accepted, kFrames / 2);
+  EXPECT_GT(accepted, count / 2);
 }
 
-TEST(CodecFuzz, VescFramesHaveOneMeaningOrNone) {
+void expect_one_meaning_of_vescs(int count) {
   Frames frames({vesc::encode(3, vesc::SetCurrent{}), vesc::encode(3, vesc::SetSpeed{}),
                  vesc::encode(3, vesc::Status{}), vesc::encode(3, vesc::Status4{}), vesc::encode(3, vesc::Status5{})});
   int accepted = 0;
@@ -87,7 +90,7 @@ TEST(CodecFuzz, VescFramesHaveOneMeaningOrNone) {
     ASSERT_TRUE(again);
     ASSERT_EQ(packed(*again), packed(*message)) << std::hex << data_word(frame);
   };
-  for (int i = 0; i < kFrames; ++i) {
+  for (int i = 0; i < count; ++i) {
     const can_frame frame = frames.next();
     check(frame, vesc::SetCurrent{});
     check(frame, vesc::SetBrakeCurrent{});
@@ -96,7 +99,7 @@ TEST(CodecFuzz, VescFramesHaveOneMeaningOrNone) {
     check(frame, vesc::Status4{});
     check(frame, vesc::Status5{});
   }
-  EXPECT_GT(accepted, kFrames / 4);
+  EXPECT_GT(accepted, count / 4);
 }
 
 std::vector<can_frame> valid_canopen_frames() {
@@ -150,11 +153,144 @@ int check_canopen(const can_frame& frame) {
   return accepted;
 }
 
-TEST(CodecFuzz, CanopenFramesHaveOneMeaningOrNone) {
+void expect_one_meaning_of_canopen(int count) {
   Frames frames(valid_canopen_frames());
   int accepted = 0;
-  for (int i = 0; i < kFrames && !::testing::Test::HasFailure(); ++i) accepted += check_canopen(frames.next());
-  EXPECT_GT(accepted, kFrames / 4);
+  for (int i = 0; i < count && !::testing::Test::HasFailure(); ++i) accepted += check_canopen(frames.next());
+  EXPECT_GT(accepted, count / 4);
+}
+
+constexpr MitRanges kFuzzRanges{.position = 12.5, .velocity = 45, .torque = 54, .stiffness = 500, .damping = 5};
+constexpr std::uint8_t kFuzzNode = 3;
+
+/// A number of a range has one meaning up to one step of its field, because the makers round down.
+void expect_same(double again, double once, double range, unsigned bits) {
+  ASSERT_LE(std::abs(once), range * (1 + 1.0e-12));
+  ASSERT_NEAR(again, once, 1.01 * 2 * range / static_cast<double>(low_bits(bits)));
+}
+
+void expect_same(const MitCommand& again, const MitCommand& once, unsigned bits) {
+  expect_same(again.position, once.position, kFuzzRanges.position, 16);
+  expect_same(again.velocity, once.velocity, kFuzzRanges.velocity, bits);
+  expect_same(again.stiffness, once.stiffness, kFuzzRanges.stiffness, bits);
+  expect_same(again.damping, once.damping, kFuzzRanges.damping, bits);
+  expect_same(again.torque, once.torque, kFuzzRanges.torque, bits);
+}
+
+/// An answer of any motor.
+template <class Answer>
+void expect_same_motion(const Answer& again, const Answer& once, unsigned bits) {
+  ASSERT_EQ(again.node, once.node);
+  expect_same(again.position, once.position, kFuzzRanges.position, 16);
+  expect_same(again.velocity, once.velocity, kFuzzRanges.velocity, bits);
+  expect_same(again.torque, once.torque, kFuzzRanges.torque, bits);
+}
+
+/// Returns whether the frame is accepted.
+bool check_order(const can_frame& frame) {
+  if (!is_standard_data(frame) || frame.len != CAN_MAX_DLEN) return false;
+  const MitCommand order = decode_mit(frame, kFuzzRanges);
+  expect_same(decode_mit(encode_mit(kFuzzNode, kFuzzRanges, order), kFuzzRanges), order, 12);
+  if (const auto request = decode_request(frame)) {
+    EXPECT_EQ(data_word(encode_request(kFuzzNode, *request)), data_word(frame));
+  }
+  return true;
+}
+
+bool check_damiao(const can_frame& frame) {
+  using namespace damiao;
+  if (!check_order(frame)) return false;
+  const Feedback feedback = decode_feedback(frame, kFuzzRanges);
+  const Feedback again = decode_feedback(encode(canid_t{19}, kFuzzRanges, feedback), kFuzzRanges);
+  expect_same_motion(again, feedback, 12);
+  EXPECT_EQ(again.state, feedback.state);
+  EXPECT_EQ(again.transistors, feedback.transistors);
+  EXPECT_EQ(again.rotor, feedback.rotor);
+  EXPECT_EQ(data_word(encode(kRegisterId, decode_register(frame))), data_word(frame));
+  return true;
+}
+
+bool check_cybergear(const can_frame& frame) {
+  using namespace cybergear;
+  const auto id = identifier_of(frame);
+  if (!id) return false;
+  EXPECT_EQ(encode(*id), frame.can_id);
+  const MitCommand order = decode_order(frame, kFuzzRanges);
+  expect_same(decode_order(encode_order(kFuzzNode, kFuzzRanges, order), kFuzzRanges), order, 16);
+  const Feedback feedback = decode_feedback(frame, kFuzzRanges);
+  const Feedback again = decode_feedback(encode(std::uint8_t{kHost}, kFuzzRanges, feedback), kFuzzRanges);
+  expect_same_motion(again, feedback, 16);
+  EXPECT_EQ(again.mode, feedback.mode);
+  EXPECT_EQ(again.faults, feedback.faults);
+  EXPECT_NEAR(again.temperature, feedback.temperature, 0.11);
+  constexpr std::uint64_t kUnused = 0xFFFF0000;  // of a parameter's data
+  EXPECT_EQ(data_word(encode(*id, decode_parameter(frame))), data_word(frame) & ~kUnused);
+  return true;
+}
+
+bool check_ak(const can_frame& frame) {
+  const auto reply = ak::decode_reply(frame, kFuzzRanges);
+  if (!reply) return false;
+  const auto again = ak::decode_reply(ak::encode(kFuzzRanges, *reply), kFuzzRanges);
+  EXPECT_TRUE(again.has_value());
+  if (!again) return true;
+  expect_same_motion(*again, *reply, 12);
+  EXPECT_EQ(again->health.has_value(), reply->health.has_value());
+  if (!again->health || !reply->health) return true;
+  EXPECT_EQ(again->health->temperature, reply->health->temperature);
+  EXPECT_EQ(again->health->error, reply->health->error);
+  return true;
+}
+
+void expect_one_meaning_of(bool (*check)(const can_frame& frame), std::vector<can_frame> valid, int count) {
+  Frames frames(std::move(valid));
+  int accepted = 0;
+  for (int i = 0; i < count && !::testing::Test::HasFailure(); ++i) accepted += check(frames.next()) ? 1 : 0;
+  EXPECT_GT(accepted, count / 4);
+}
+
+void expect_one_meaning_of_mit(int count) {
+  const MitCommand order{.position = 1, .velocity = 2, .stiffness = 30, .damping = 1, .torque = -3};
+  expect_one_meaning_of(check_damiao,
+                        {encode_mit(kFuzzNode, kFuzzRanges, order), damiao::encode(kFuzzNode, MitRequest::kEnable),
+                         damiao::encode(canid_t{19}, kFuzzRanges, damiao::Feedback{.node = kFuzzNode, .position = 1}),
+                         damiao::encode(damiao::kRegisterId, damiao::RegisterAccess{.node = kFuzzNode, .value = 600})},
+                        count);
+  expect_one_meaning_of(
+      check_cybergear,
+      {cybergear::encode_order(kFuzzNode, kFuzzRanges, order),
+       cybergear::encode_request(cybergear::Type::kEnable, kFuzzNode),
+       cybergear::encode(std::uint8_t{cybergear::kHost}, kFuzzRanges, {.node = kFuzzNode, .position = 1}),
+       cybergear::encode({.type = cybergear::Type::kRead, .data = cybergear::kHost, .target = kFuzzNode},
+                         {.value = 600})},
+      count);
+  const ak::Reply reply{.node = kFuzzNode, .position = 1, .velocity = 2, .torque = 3};
+  ak::Reply healthy = reply;
+  healthy.health = {.temperature = 75, .error = ak::Error::kNone};
+  expect_one_meaning_of(check_ak, {ak::encode(kFuzzRanges, reply), ak::encode(kFuzzRanges, healthy)}, count);
+}
+
+TEST(CodecFuzz, ODriveFramesHaveOneMeaningOrNone) {
+  expect_one_meaning_of_odrives(kFrames);
+}
+
+TEST(CodecFuzz, VescFramesHaveOneMeaningOrNone) {
+  expect_one_meaning_of_vescs(kFrames);
+}
+
+TEST(CodecFuzz, CanopenFramesHaveOneMeaningOrNone) {
+  expect_one_meaning_of_canopen(kFrames);
+}
+
+TEST(CodecFuzz, MitFramesHaveOneMeaningOrNone) {
+  expect_one_meaning_of_mit(kFrames);
+}
+
+TEST(CodecFuzz, NightlyAMillionFramesOfEachDialectHaveOneMeaningOrNone) {
+  expect_one_meaning_of_odrives(kManyFrames);
+  expect_one_meaning_of_vescs(kManyFrames);
+  expect_one_meaning_of_canopen(kManyFrames);
+  expect_one_meaning_of_mit(kManyFrames);
 }
 
 }  // namespace robot_control::tests

@@ -1,4 +1,5 @@
-/// Claims about every drive of drive_table.def: the contract of a driver, and rest when its answers fail.
+/// Claims about every drive of drive_table.def: the contract of a driver, rest when its answers fail, and no torque
+/// before all drives are checked.
 
 #include <algorithm>
 #include <cmath>
@@ -6,6 +7,7 @@
 #include "drivers/driver_contract.h"
 #include "drivers/line/answer_faults.h"
 #include "drivers/table/drive_machine.h"
+#include "support/matchers.h"
 
 namespace robot_control::tests {
 
@@ -103,5 +105,54 @@ TEST_P(EveryDrive, StatesWhatItCanDo) {
 INSTANTIATE_TEST_SUITE_P(Table, EveryDrive, testing::ValuesIn(all_drives()), [](const auto& each) {
   return std::string(each.param.row->name) + (each.param.takes_speeds ? "_with_speeds" : "_with_torques");
 });
+
+/// Drives on CAN, one or more of which are not as the drive file states.
+struct EveryDriveOnCan : testing::TestWithParam<const DriveRow*> {
+  EveryDriveOnCan() {
+    for (JointSample& joint : machine_.joints) joint.velocity = 0.1;
+  }
+
+  /// N·m, the greatest one of any joint while the driver starts for `seconds`. The brake damps the joints' motion.
+  double torque(double seconds) {
+    double greatest = 0;
+    for (int i = 0; i < seconds * DriveMachine::kRate; ++i) {
+      machine_.cycles(1);
+      for (std::size_t joint = 0; joint < machine_.joints.size(); ++joint)
+        greatest = std::max(greatest, std::abs(machine_.board().torque(joint)));
+    }
+    return greatest;
+  }
+
+  DriveMachine machine_{*GetParam(), false};
+};
+
+TEST_P(EveryDriveOnCan, HasNoTorqueBeforeTheLastDriveIsChecked) {
+  const std::string last = joints_of(example(GetParam()->name)).back();
+  ASSERT_EQ(machine_.board().inject(last, "off"), "");
+  EXPECT_EQ(torque(3), 0);
+  EXPECT_EQ(machine_.frame().driver_state, DriverState::kStarting);
+  EXPECT_THAT(machine_.warning(), AllOf(HasSubstr(last), Not(HasSubstr("enabled"))));
+  ASSERT_EQ(machine_.board().inject(last, "ok"), "");
+  EXPECT_GT(torque(5), 0);
+  EXPECT_EQ(machine_.frame().driver_state, DriverState::kRunning) << machine_.warning();
+}
+
+TEST_P(EveryDriveOnCan, HasNoTorqueIfTheLastDriveIsRefused) {
+  if (GetParam()->command != "impedance") GTEST_SKIP() << "drives of wheels have no angle at the start";
+  machine_.joints.back().position += 1;
+  EXPECT_EQ(torque(3), 0);
+  EXPECT_EQ(machine_.frame().driver_state, DriverState::kFault);
+  EXPECT_THAT(machine_.warning(), HasSubstr("differs from the drive file: start_angle"));
+}
+
+std::vector<const DriveRow*> drives_on_can() {
+  std::vector<const DriveRow*> rows;
+  for (const DriveRow& row : kDriveRows)
+    if (row.driver == "can") rows.push_back(&row);
+  return rows;
+}
+
+INSTANTIATE_TEST_SUITE_P(Table, EveryDriveOnCan, testing::ValuesIn(drives_on_can()),
+                         [](const auto& each) { return std::string(each.param->name); });
 
 }  // namespace robot_control::tests

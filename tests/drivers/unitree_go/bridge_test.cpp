@@ -2,8 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <random>
+
 #include "drivers/unitree_go/bridge/command_relay.h"
 #include "drivers/unitree_go/bridge/motion_switcher.h"
+#include "drivers/unitree_go/bridge/state_writer.h"
 
 namespace robot_control::unitree::go::tests {
 
@@ -60,6 +63,32 @@ TEST_F(Relay, ASilentDriverLeavesDampingForThreeSeconds) {
   EXPECT_NEAR(static_cast<double>(last_ns), 3.02e9, 2e6);
   EXPECT_FALSE(relay.has_driver(last_ns + 10 * kMs));
   EXPECT_EQ(relay.last_command(), nullptr);
+}
+
+TEST(StateWriter, AnotherOneIsNotTheRobotAndIsRememberedForASecond) {
+  StateWriter robot;
+  EXPECT_EQ(robot.robots(0), RobotsSeen::kNone);
+  EXPECT_TRUE(robot.is_of_robot(7, 0));
+  EXPECT_FALSE(robot.is_of_robot(8, kMs));
+  for (int i = 2; i <= 1'001; ++i) EXPECT_TRUE(robot.is_of_robot(7, i * kMs));
+  EXPECT_EQ(robot.robots(1'000 * kMs), RobotsSeen::kMore);
+  EXPECT_EQ(robot.robots(1'001 * kMs), RobotsSeen::kOne);
+}
+
+TEST(StateWriter, OneIsTheOnlyOneAfterHalfASecond) {
+  StateWriter robot;
+  for (int i = 0; i <= 500; ++i) EXPECT_TRUE(robot.is_of_robot(7, i * kMs));
+  EXPECT_EQ(robot.robots(499 * kMs), RobotsSeen::kAwaited);
+  EXPECT_EQ(robot.robots(500 * kMs), RobotsSeen::kOne);
+}
+
+TEST(StateWriter, ARobotThatRestartsHasANewOne) {
+  StateWriter robot;
+  EXPECT_TRUE(robot.is_of_robot(7, 0));
+  EXPECT_EQ(robot.robots(1'000 * kMs), RobotsSeen::kNone);
+  EXPECT_TRUE(robot.is_of_robot(8, 1'000 * kMs));
+  EXPECT_EQ(robot.robots(1'000 * kMs), RobotsSeen::kAwaited);
+  EXPECT_FALSE(robot.is_of_robot(7, 1'001 * kMs));
 }
 
 struct Switcher : testing::Test {
@@ -144,6 +173,31 @@ TEST_F(Switcher, WhatIsNoAnswerFreesNothing) {
     EXPECT_TRUE(answered(switcher, ns += MotionSwitcher::kAskNs, data));
     EXPECT_FALSE(switcher.is_free()) << data;
   }
+}
+
+/// Mutants of an answer have no name, or one that stands in them.
+void expect_names_of_mutants(int count) {
+  constexpr std::string_view kAnswer = R"({"form":"0","name":"mcf"})";
+  std::mt19937 random(74);
+  int named = 0;
+  for (int i = 0; i < count; ++i) {
+    std::string answer(kAnswer.substr(0, random() % 8 == 0 ? random() % kAnswer.size() : kAnswer.size()));
+    for (auto changes = random() % 4; changes > 0 && !answer.empty(); --changes)
+      answer[random() % answer.size()] = static_cast<char>(random());
+    const auto name = name_in(answer);
+    if (!name) continue;
+    ++named;
+    ASSERT_NE(answer.find('"' + *name + '"'), std::string::npos) << i;
+  }
+  EXPECT_GT(named, count / 4);
+}
+
+TEST(SwitcherFuzz, AMutatedAnswerHasNoOtherName) {
+  expect_names_of_mutants(10'000);
+}
+
+TEST(SwitcherFuzz, NightlyNoneOfAMillionAnswersHasAnotherName) {
+  expect_names_of_mutants(1'000'000);
 }
 
 TEST_F(Switcher, ARobotWithoutAServiceIsFreeAndANewDriverIsAskedAnew) {

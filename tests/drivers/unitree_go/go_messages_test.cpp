@@ -8,6 +8,7 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <utility>
 
 #include "drivers/unitree_go/bridge_report.h"
 #include "drivers/unitree_go/random_messages.h"
@@ -222,17 +223,23 @@ TEST(GoFuzz, NightlyAMillionMutantsHaveOneMeaningOrNone) {
 }
 
 TEST(BridgeReport, IsReadAsItWasWrittenAndAnythingElseIsRefused) {
-  const BridgeReport report{
-      .process = 7, .writers = 2, .other_commands = 1, .service = MotionService::kActive, .mode = {'m', 'c', 'f'}};
+  const BridgeReport report{.process = 7,
+                            .writers = 2,
+                            .other_commands = 1,
+                            .robots = RobotsSeen::kOne,
+                            .service = MotionService::kActive,
+                            .mode = {'m', 'c', 'f'}};
   std::array<std::uint8_t, kReportBytes> bytes{};
   write_report(report, bytes);
   BridgeReport read;
   ASSERT_TRUE(read_report(bytes, read));
   EXPECT_EQ(read, report);
   EXPECT_FALSE(read_report(std::span(bytes).first(kReportBytes - 1), read));
-  bytes[11] = 5;
-  EXPECT_FALSE(read_report(bytes, read)) << "a service without a meaning";
-  bytes[11] = 2;
+  for (const std::size_t at : {11U, 12U}) {
+    const std::uint8_t before = std::exchange(bytes[at], std::uint8_t{5});
+    EXPECT_FALSE(read_report(bytes, read)) << "a word without a meaning";
+    bytes[at] = before;
+  }
   bytes[0] ^= 1;
   EXPECT_FALSE(read_report(bytes, read));
   EXPECT_EQ(read, report);
@@ -244,7 +251,7 @@ TEST(BridgeReport, AModeIsPrintableAndEnds) {
   std::array<std::uint8_t, kReportBytes> bytes{};
   write_report(report, bytes);
   ASSERT_TRUE(read_report(bytes, read));
-  EXPECT_STREQ(read.mode.data(), "???????????");
+  EXPECT_STREQ(read.mode.data(), "??????????????");
 }
 
 }  // namespace robot_control::unitree::go::tests

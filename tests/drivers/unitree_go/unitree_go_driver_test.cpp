@@ -102,10 +102,11 @@ TEST_P(UnitreeGo, EachLossIsNamedInTimeAndEndsWithAReset) {
         GoLoss{"robot", "frozen", "repeats its last state", kLost},
         GoLoss{"line", "answers_shifted", "differs from the drive file", kLost},
         GoLoss{"motor", "not_finite", "sent NaN or infinity", kLost},
-        GoLoss{"robot", "other_robot", "is another one than before", kSeen},
+        GoLoss{"robot", "other_robot", "sends a state of another robot", kSeen},
         GoLoss{"bridge", "asked", "waits for the motion service of its maker to answer", kSeen},
         GoLoss{"bridge", "second_writer", "it has not sent yet, number of writers, 1 instead of 0", kSeen, true},
         GoLoss{"bridge", "other_commands", "is commanded by another program, with frame LowCmd; stop", kSeen, true},
+        GoLoss{"bridge", "other_states", "sends a state of another robot, by a second writer of rt/lowstate", kSeen},
         GoLoss{"motor", "hot", "is too hot: motor of thigh", kSeen, true},
         GoLoss{"robot", "low_battery", "has a low supply: charge in %, 1 instead of 10", kSeen, true}}) {
     SCOPED_TRACE(loss.kind);
@@ -139,6 +140,17 @@ TEST_P(UnitreeGo, ItWaitsForTheMotionServiceWithItsMode) {
   machine_.driver().start();
   EXPECT_EQ(run(0.1).driver_state, DriverState::kFault);
   EXPECT_THAT(machine_.warning(), HasSubstr("set has_service: false"));
+}
+
+TEST_P(UnitreeGo, ItWaitsUntilItsRobotIsAlone) {
+  inject("bridge", "other_states");
+  run(kInFlight);
+  machine_.driver().start();
+  EXPECT_EQ(run(1).driver_state, DriverState::kStarting);
+  EXPECT_THAT(machine_.warning(), AllOf(HasSubstr("a state of another robot"), HasSubstr("connect only one robot")));
+  EXPECT_FALSE(turns());
+  inject("bridge", "ok");
+  EXPECT_EQ(run(1).driver_state, DriverState::kRunning);
 }
 
 TEST_P(UnitreeGo, AnAbsentBridgeIsAwaited) {

@@ -183,7 +183,7 @@ TEST_P(UnitreeLegged, EachLossIsNamedInTimeBrakesAndEndsWithAReset) {
                            {"robot", "frozen", "repeats its last state", kLost},
                            {"line", "answers_shifted", "differs from the drive file: beginning of its states", kLost},
                            {"motor", "not_finite", "sent NaN or infinity or a number beyond its range", kLost},
-                           {"robot", "other_robot", "is another one than before, by its serial number", kSeen}}) {
+                           {"robot", "other_robot", "sends a state of another robot, by its serial number", kSeen}}) {
     SCOPED_TRACE(loss.kind);
     ASSERT_TRUE(turns());
     inject(loss.component, loss.kind);

@@ -29,6 +29,16 @@ class MitFile : public CanFileOf<Joint> {
   /// be repeated in each cycle.
   double max_load() const override { return 0.85; }
 
+  /// A position beyond position_range of the motor has no raw number. The joint is at offset ± motor position / gear.
+  DriveCapability capability(std::size_t joint) const override {
+    DriveCapability capability = CanFileOf<Joint>::capability(joint);
+    const Joint& its = this->joints()[joint];
+    const double reach = its.ranges.position / its.drive.gear;
+    capability.lower = its.drive.offset - reach;
+    capability.upper = its.drive.offset + reach;
+    return capability;
+  }
+
   /// A bus that loses 5 % of the frames each way, with twelve motors at 500 Hz, reaches it once in 50 hours.
   double tolerated_silence() const override { return static_cast<double>(max_missing()) * this->request().period(); }
 

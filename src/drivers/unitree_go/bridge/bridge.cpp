@@ -16,6 +16,7 @@
 #include "drivers/unitree_go/bridge/command_relay.h"
 #include "drivers/unitree_go/bridge/dds_network.h"
 #include "drivers/unitree_go/bridge/motion_switcher.h"
+#include "drivers/unitree_go/bridge/state_writer.h"
 #include "drivers/unitree_go/unitree_go_file.h"
 #include "files/message_text.h"
 #include "rt/realtime_thread.h"
@@ -73,7 +74,7 @@ class ControllerSide {
         relay_(line.damping),
         switcher_(line.has_service, line.release_service),
         network_(DdsSide::kController, line.interface, static_cast<std::uint32_t>(line.domain),
-                 [this](std::span<std::uint8_t> state) { forward(state); }) {
+                 [this](std::span<std::uint8_t> state, std::uint64_t writer) { forward(state, writer); }) {
     report_.process = static_cast<std::uint32_t>(getpid());
   }
 
@@ -86,7 +87,7 @@ class ControllerSide {
       const bool was_stopped = now_ns - last_ns > CommandRelay::kSilenceNs;  // what waits is old
       last_ns = now_ns;
       take_commands(now_ns, was_stopped);
-      if (const LowCmd* command = relay_.due(now_ns, switcher_.is_free())) send(*command);
+      if (const LowCmd* command = relay_.due(now_ns, may_send(now_ns))) send(*command);
       request_mode(now_ns);
       watch(now_ns);
       report(now_ns);
@@ -96,11 +97,15 @@ class ControllerSide {
   }
 
  private:
-  /// A relay that hangs sends no commands: its driver gets no states, and says so.
-  void forward(std::span<std::uint8_t> state) {
-    if (clock_() - relayed_ns_ > CommandRelay::kSilenceNs) return;
+  /// A relay that hangs sends no commands: its driver gets no states, and says so. The driver gets the states of one
+  /// robot.
+  void forward(std::span<std::uint8_t> state, std::uint64_t writer) {
+    const std::int64_t now_ns = clock_();
+    if (now_ns - relayed_ns_ > CommandRelay::kSilenceNs) return;
     std::array<std::uint8_t, kReportBytes + kStateBytes> datagram;
     const std::lock_guard lock(mutex_);
+    if (!robot_.is_of_robot(writer, now_ns)) return;
+    report_.robots = robot_.robots(now_ns);
     write_report(report_, datagram);
     std::memcpy(datagram.data() + kReportBytes, state.data(), kStateBytes);
     line_.send(datagram);
@@ -111,6 +116,7 @@ class ControllerSide {
     const std::lock_guard lock(mutex_);
     report_.writers = static_cast<std::uint16_t>(std::min<std::size_t>(writers_, 0xFFFF));
     report_.other_commands = now_ns - other_ns_ < kRememberedNs ? 1 : 0;
+    report_.robots = robot_.robots(now_ns);
     report_.service = switcher_.state();
     report_.mode = {};
     switcher_.mode().copy(report_.mode.data(), report_.mode.size() - 1);
@@ -119,6 +125,19 @@ class ControllerSide {
     write_report(report_, datagram);
     line_.send(datagram);
     sent_ns_ = now_ns;
+  }
+
+  /// All robots on a network obey the same topic. One that obeys already is sent the damping of its driver.
+  bool may_send(std::int64_t now_ns) {
+    if (!switcher_.is_free()) return false;
+    const RobotsSeen robots = [&] {
+      const std::lock_guard lock(mutex_);
+      return robot_.robots(now_ns);
+    }();
+    if (robots != robots_ && robots == RobotsSeen::kOne) say("one robot sends states");
+    if (robots != robots_ && robots == RobotsSeen::kMore) say("a second robot sends states");
+    robots_ = robots;
+    return robots == RobotsSeen::kOne || relay_.sends();
   }
 
   void take_commands(std::int64_t now_ns, bool was_stopped) {
@@ -178,7 +197,9 @@ class ControllerSide {
   std::size_t writers_ = 0;
   std::int64_t watched_ns_ = 0;
   std::int64_t other_ns_ = -kRememberedNs;
+  RobotsSeen robots_ = RobotsSeen::kNone;
   std::mutex mutex_;  // of what follows
+  StateWriter robot_;
   BridgeReport report_;
   std::int64_t sent_ns_ = 0;
   std::atomic<std::int64_t> relayed_ns_ = clock_();  // when the relay began its last pass
@@ -192,7 +213,7 @@ class RobotSide {
       : clock_(std::move(clock)),
         line_(line.address, static_cast<std::uint16_t>(line.port)),
         network_(DdsSide::kRobot, line.interface, static_cast<std::uint32_t>(line.domain),
-                 [this](std::span<std::uint8_t> command) { line_.send(command); }) {}
+                 [this](std::span<std::uint8_t> command, std::uint64_t /*writer*/) { line_.send(command); }) {}
 
   void run(const volatile std::sig_atomic_t& ends) {
     std::int64_t hello_ns = 0;

@@ -28,6 +28,9 @@ class CommandRelay {
     return has_command_ && now_ns - command_ns_ <= kSilenceNs + kFoldNs;
   }
 
+  /// Returns whether the robot got a command of this driver.
+  bool sends() const noexcept { return sends_; }
+
   /// Returns the command that is due, or null. `may_send`: the motion service is free.
   const LowCmd* due(std::int64_t now_ns, bool may_send) noexcept;
 
@@ -41,7 +44,7 @@ class CommandRelay {
   std::int64_t damped_ns_ = 0;
   bool has_command_ = false;
   bool is_new_ = false;
-  bool sends_ = false;  // the robot got a command of this driver
+  bool sends_ = false;
 };
 
 }  // namespace robot_control::unitree::go

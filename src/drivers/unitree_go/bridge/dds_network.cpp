@@ -95,7 +95,7 @@ struct DdsNetwork::Impl {
       } else {
         clear_gaps_of_command(bytes);
       }
-      static_cast<Impl*>(self)->on_message(bytes);
+      static_cast<Impl*>(self)->on_message(bytes, info.publication_handle);
     }
   }
 };

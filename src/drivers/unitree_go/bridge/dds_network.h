@@ -25,7 +25,8 @@ enum class DdsSide : std::uint8_t { kController, kRobot };
 
 class DdsNetwork {
  public:
-  using Receiver = std::function<void(std::span<std::uint8_t> bytes)>;
+  /// `writer` is a number of the DDS writer, which no other writer has meanwhile.
+  using Receiver = std::function<void(std::span<std::uint8_t> bytes, std::uint64_t writer)>;
 
   /// All sockets belong to this network interface. Throws DdsError.
   DdsNetwork(DdsSide side, const std::string& interface, std::uint32_t domain, Receiver on_message);
