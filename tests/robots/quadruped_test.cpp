@@ -371,6 +371,16 @@ TEST(QuadbotClearance, KeepsBodyAndFeetWhereTheyAreAndLetsItLieDown) {
   EXPECT_NE(robot.command().reasons & kReasonHolding, 0u);
 }
 
+// A box on which a box lies flat threw the robot away on this one.
+TEST(QuadbotTerrain, StandsUpOnAPlatform) {
+  Parameters parameters = QuadrupedLoop::parameters(0, ErrorLevel::kField);
+  parameters.plant.terrain = {.kind = TerrainKind::kGap, .length = 0.1, .distance = 0.85, .heading = -0.2};
+  QuadrupedLoop robot = loop_of(parameters);
+  robot.run(2.5, stance({ModeKind::kStand}));
+  EXPECT_EQ(robot.permit().causes, 0u) << robot.causes();
+  EXPECT_LE(robot.tilt, 0.1);
+}
+
 TEST_F(Quadbot, StandsUpOnlyAfterAResetThatFollowsZero) {
   robot.loop.e_stop();
   robot.run(1.0, stance({ModeKind::kStand}));

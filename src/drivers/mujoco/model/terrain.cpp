@@ -71,7 +71,8 @@ double Terrain::height(double x, double y) const noexcept {
 std::string Terrain::mjcf(const std::array<double, 7>& start) const {
   Eigen::Isometry3d course = Eigen::Translation3d(start[0], start[1], start[2]) *
                              Eigen::Quaterniond(start[3], start[4], start[5], start[6]) *
-                             Eigen::AngleAxisd(heading_, Eigen::Vector3d::UnitZ());
+                             Eigen::AngleAxisd(heading_, Eigen::Vector3d::UnitZ()) *
+                             Eigen::AngleAxisd(kLean, Eigen::Vector3d(1, 1, 0).normalized());
   std::string text;
   for (const Box& box : boxes_) {
     const Eigen::Vector2d middle = (box.from + box.to) / 2, half = (box.to - box.from) / 2;
