@@ -68,7 +68,7 @@ class BodyMotion {
  public:
   static constexpr double kImpactWindow = 0.01;  ///< s
   static constexpr double kPushTime = 0.02;      ///< s
-  static constexpr double kPushed = 0.25;        ///< s; a foot that slid is set anew within a period of a trot
+  static constexpr double kPushed = 0.25;        ///< s; a foot that slid is set again within a period of a trot
 
   /// `point` is the one to which the forward speed belongs, m, base axes. `period` s. `force_time` is that of
   /// Attitude. `landing` s is 0 for a machine that does not fold.

@@ -19,7 +19,7 @@ class OneSenderTest(RobotTestCase):
         try:
             wait_for("the reason", lambda: "many_senders" in self.sender.reasons, every=self.send)
             wait_for("standstill", lambda: abs(self.robot.speed) < 0.01, every=self.send)
-            words = f"2 nodes send commands: {rospy.get_name()}, /send_cmd; motion is refused (one_sender)"
+            words = f"2 nodes send commands: {rospy.get_name()}, /send_cmd; refused while one of them requests motion"
             self.assertIn(words, self.robot.nodes[CONTROLLER].output)
             wait_for(
                 "diagnostics",

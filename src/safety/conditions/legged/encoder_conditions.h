@@ -59,7 +59,7 @@ class EncoderStuck {
  public:
   static constexpr double kLateFactor = 1.8;   ///< what leaves the ground is late (docs/evidence/derivations.md)
   static constexpr double kRepeatTime = 0.01;  ///< s
-  static constexpr double kSame = 4e-5;        ///< rad: a code of velocity of the fastest AK, 0.0186 rad/s, times 2 ms
+  static constexpr double kSame = 2.5e-5;      ///< rad: half a code of velocity of an AK of 51 rad/s, times 2 ms
   static constexpr std::uint64_t kFewest = 2;  ///< new samples
   static constexpr std::size_t kAnswer = 2;    ///< cycles: command k − 1 moves the joint from cycle k to k + 1
 
