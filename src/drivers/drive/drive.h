@@ -121,7 +121,7 @@ class Drive : public DriveStateMachine {
   /// Counts a request to clear errors. Returns false if none is left since the operator's reset.
   bool may_clear() noexcept { return clears_ < kMaxClears && ++clears_ > 0; }
   /// Motor position in rad, velocity in rad/s. A late frame is moved on (late_position.h). A drive that closes an
-  /// impedance takes it as it arrives, also of a wheel: a joint of a leg changes its speed within the lateness.
+  /// impedance takes it as it arrives, also of a wheel. A joint of a leg changes its speed within the lateness.
   void accept_position(double position, double velocity, std::int64_t now_ns) noexcept;
   /// The same of a drive that sends no velocity. It follows from the positions, so late frames move the joint.
   void accept_position(double position, std::int64_t now_ns) noexcept;

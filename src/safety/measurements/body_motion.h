@@ -84,7 +84,7 @@ class BodyMotion {
   const Attitude& attitude() const noexcept { return attitude_; }
   double shock() const noexcept { return shock_; }  ///< m/s², |mean over kImpactWindow of a across u|
   /// Something besides the floor pushed the machine within the last kPushed: the low pass over kPushTime of `shock` was
-  /// above g, more than a floor of friction 1 pushes feet. What bears on the floor may slide then.
+  /// above g. A floor of friction 1 pushes no harder, and feet may slide.
   bool pushed() const noexcept { return unpushed_ < kPushed; }
   double carried() const noexcept { return carried_; }        ///< part of the weight on the contacts; 1 without sensors
   double along_z() const noexcept { return along_z_; }        ///< m/s², a_z; NaN without a sample

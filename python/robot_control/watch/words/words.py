@@ -82,7 +82,7 @@ def _uses(sentence: str, remedy: str, other: str, other_remedy: str) -> Iterator
 
 
 def _generality(pair: Pair) -> tuple[int, int]:
-    """Patterns with more letters are tried first, then longer ones; lists fit most, and are the last, in their order."""
+    """Patterns with more letters are tried first, then longer ones. Lists fit most: the last, in their order."""
     if pair[0].endswith("{more}"):
         return 0, 0
     fixed = _HOLE.sub("", pair[0])

@@ -2,8 +2,8 @@
 /// An uneven floor before the robot: boxes on the ground of the scene, by parameters and the seed of the plant.
 ///
 /// The axes of a course have their origin at the site `start` of the scene. Their x axis is turned by `heading` from
-/// that of the site. Boxes are kWidth wide, and lean by kLean: between parallel faces of two boxes MuJoCo 2.2 may find a
-/// contact that throws the robot away. The first one begins `distance` ahead of the origin:
+/// that of the site. Boxes are kWidth wide, and lean by kLean. Between parallel faces of two boxes MuJoCo 2.2 may find
+/// a contact that throws the robot away. The first one begins `distance` ahead of the origin:
 ///
 ///   stairs  `count` steps of `height`, each `length` deep, a landing of kLanding, and as many steps down; a step is one
 ///   rough   `count` rows of square tiles of side `length`, each between 0 and `height` high at random

@@ -419,7 +419,7 @@ TEST_F(LeggedConditionsTest, AFootThatCarriesNothingIsAWarning) {
 double wrong_share(double every, double part) {
   constexpr double kPeriod = 0.001, kLimit = 20;
   MotorTorque torque;
-  double most = 0;
+  double largest = 0;
   for (int k = 0; k < 2000; ++k) {
     const double t = kPeriod * k, seen = every * std::floor(t / every + 1e-6);
     const JointCommand command{.mode = JointMode::kImpedance, .damping = 3};
@@ -427,9 +427,9 @@ double wrong_share(double every, double part) {
                              .velocity = 5 * std::cos(37.7 * seen),
                              .effort = -part * command.damping * 5 * std::cos(37.7 * t)};
     torque.step(sample, command, kLimit, kPeriod);
-    most = std::max(most, torque.wrong());
+    largest = std::max(largest, torque.wrong());
   }
-  return most;
+  return largest;
 }
 
 TEST(MotorTorqueTest, SamplesThatAreLateAreNoMotorThatFails) {
