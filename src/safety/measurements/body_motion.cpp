@@ -79,21 +79,22 @@ void BodyMotion::shake(double dt) noexcept {
 }
 
 void BodyMotion::step(const SensorFrame& sensors, std::uint64_t elapsed, double forward_speed, bool moving) noexcept {
+  const double dt = static_cast<double>(elapsed) * period_;
   Eigen::Vector3d rate = Eigen::Vector3d::Zero();
   turned_ = sample(sensors, kValidGyro, sensors.imu.angular_velocity, rate);
   felt_ = sample(sensors, kValidAccelerometer, sensors.imu.linear_acceleration, *force_);
 
   const Eigen::Vector3d velocity = forward_speed * Eigen::Vector3d::UnitX() + rate.cross(*imu_);
   const Eigen::Vector3d gravity = *force_ - rate.cross(velocity);
-  attitude_.step(turned_ ? &rate : nullptr, felt_ ? &gravity : nullptr, static_cast<double>(elapsed) * period_);
+  attitude_.step(turned_ ? &rate : nullptr, felt_ ? &gravity : nullptr, dt);
   if (turned_) rate_change_.step(sensors.imu.angular_velocity);
   constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
   *rate_ = turned_ ? rate : Eigen::Vector3d::Constant(kNone);
   along_z_ = felt_ ? (*force_).z() : kNone;
-  shake(static_cast<double>(elapsed) * period_);
+  shake(dt);
   weigh(sensors);
   braked_ = sensors.gate.verdict == GateVerdict::kBrake ? braked_ + elapsed : 0;
-  folded_ = braked_ >= window_ ? 0 : folded_ + static_cast<double>(elapsed) * period_;
+  folded_ = braked_ >= window_ ? 0 : folded_ + dt;
   repeat(gyro_, turned_, sensors.imu.angular_velocity, elapsed, moving);
   repeat(accelerometer_, felt_, sensors.imu.linear_acceleration, elapsed, moving);
 }

@@ -4,10 +4,9 @@
 /// Three commands demand torques at the measured angle and speed of this cycle and of the one before. They are those of
 /// now, of kMaxDelay and of 2 kMaxDelay ago, rounded to whole cycles but 0. They span a range. A sample that repeats
 /// itself is late. It also counts moved on by its last change, and the one before it stays in force. After 2 kMaxDelay
-/// the encoder is stuck. A torque is wrong if it
-/// is outside by more than kDemandShare of the range's end and kEffortShare of the effort limit. All of these torques
-/// are means over kMean, because measured speeds come in steps. The result w is the part of the last cycles in which
-/// the torque was wrong:
+/// the encoder is stuck. A torque is wrong if it is outside by more than kDemandShare of the range's end and
+/// kEffortShare of the effort limit. All of these torques are means over kMean, because measured speeds come in steps.
+/// The result w is the part of the last cycles in which the torque was wrong:
 ///
 ///   w += T/kTime (1 − w), or T/kTime (0 − w)      T: period
 ///
