@@ -29,9 +29,9 @@ def wait_for(what: str, condition: Callable[[], object], limit: float = LIMIT) -
         time.sleep(0.02)
 
 
-def free_port() -> int:
-    """A port of the loopback that is free now."""
-    with socket.socket() as probe:
+def free_port(kind: socket.SocketKind = socket.SOCK_STREAM) -> int:
+    """A port of the loopback that is free now, by default of TCP."""
+    with socket.socket(type=kind) as probe:
         probe.bind(("127.0.0.1", 0))
         return int(probe.getsockname()[1])
 

@@ -21,6 +21,7 @@ from typing import Any
 
 from robot_control.installed_files import share_file
 
+from bench.console.process import free_port
 from bench.devices.walk_loss import LEANS, LYING, PHASES, RISE_TIME, STRIDE, WalkOutcome
 from bench.faults.sequence_judge import FOLD_TIME, MEAN_TIME, STANDING_SPEED
 
@@ -39,17 +40,11 @@ class BridgeLoss:
     seed: int
 
 
-def free_port() -> int:
-    """A UDP port that was free a moment ago."""
-    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as end:
-        end.bind(("127.0.0.1", 0))
-        return int(end.getsockname()[1])
-
-
 def drive_file(path: Path) -> Path:
     """The example of a Go2 with ports and a domain of its own."""
     text = Path(share_file("config/drives/unitree_go.yaml")).read_text(encoding="utf-8")
-    own = f"  domain: {DOMAIN}\n  address: 127.0.0.1:{free_port()}\n  port: {free_port()}\n  has_service: false\n"
+    other, here = (free_port(socket.SOCK_DGRAM) for _ in range(2))
+    own = f"  domain: {DOMAIN}\n  address: 127.0.0.1:{other}\n  port: {here}\n  has_service: false\n"
     path.write_text(re.sub(r"^unitree_go:\n", f"unitree_go:\n{own}", text, flags=re.MULTILINE), encoding="utf-8")
     return path
 
