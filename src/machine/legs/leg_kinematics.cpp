@@ -173,6 +173,8 @@ LegSolution LegKinematics::inverse(const Eigen::Vector3d& foot) const noexcept {
       try_from(start);
     }
   }
+  for (std::size_t i = 0; i < kLegJoints; ++i)
+    if (range_[i].upper - range_[i].lower >= 2 * kPi) result.angles[i] = into(result.angles[i], range_[i]);
   return result;
 }
 

@@ -129,6 +129,25 @@ TEST_P(LegKinematicsOf, GivesTheNearestPointOfAFootBeyondReach) {
   }
 }
 
+/// The thighs of anymal turn by three turns. Their angles once jumped by one where a foot left the reach.
+TEST_P(LegKinematicsOf, FollowsAFootBeyondReachWithoutAJump) {
+  constexpr int kSteps = 400;
+  std::uniform_real_distribution<double> draw(-1, 1);
+  for (const Leg& each : robot_.legs) {
+    const LegKinematics& leg = each.kinematics;
+    const Eigen::Vector3d below = leg.geometry().hip - 0.7 * leg.length() * Eigen::Vector3d::UnitZ();
+    for (int trial = 0; trial < 10; ++trial) {
+      const Eigen::Vector3d way = leg.length() * Eigen::Vector3d(draw(random_), draw(random_), 0.3 * draw(random_));
+      double thigh = leg.inverse(below).angles[1];
+      for (int i = 1; i <= kSteps; ++i) {
+        const LegSolution solution = leg.inverse(below + static_cast<double>(i) / kSteps * way);
+        EXPECT_NEAR(solution.angles[1], thigh, 1) << "trial " << trial << ", step " << i;
+        thigh = solution.angles[1];
+      }
+    }
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(Robots, LegKinematicsOf, testing::ValuesIn(legged_robots()), robot_name);
 
 TEST(LegKinematics, TellsReachAndRangeApart) {
