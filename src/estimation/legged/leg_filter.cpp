@@ -193,6 +193,9 @@ void LegFilter::finish() noexcept {
   store(turned_by(-turn) * attitude(), state_.attitude);
   corrected(state_.velocity, kSpeed);
   for (std::size_t foot = 0; foot < kLegs; ++foot) corrected(state_.feet[foot], kFeet + 3 * static_cast<int>(foot));
+  const auto P = covariance();
+  const double yaw = P(kTurn + 2, kTurn + 2);
+  if (yaw > 0) error_.segment<2>(kPlace) -= turn.z() / yaw * P.block<2, 1>(kPlace, kTurn + 2);
   Map(state_.position.data()) -= error_.segment<3>(kPlace);
   Map(state_.rate_bias.data()) -= error_.segment<3>(kRateBias);
   Map(state_.force_bias.data()) -= error_.segment<3>(kForceBias);

@@ -19,6 +19,10 @@
 /// innovation beyond kGate deviations means that it has moved. Then its own variance grows by the innovation's square,
 /// so that the foot moves and not the body.
 ///
+/// What corrects the yaw corrects that of the whole way. Far from its beginning, it would move x and y by decimetres at
+/// once. So they keep what their covariance with the yaw explains of their correction: a pose in odom never jumps (REP
+/// 105). Their covariance remains that with it.
+///
 /// The height h of one level plane is a state, too. A foot on it measures p_z + eᵢ_z − h, whose error is that of p_z,
 /// êᵢ_z and ĥ, and ξ_x êᵢ_y − ξ_y êᵢ_x.
 ///

@@ -130,6 +130,21 @@ TEST(LegFilter, LetsAFootThatJumpsMoveItselfAlone) {
   EXPECT_LE(walk.place_error().norm(), 1e-3);
 }
 
+/// What is learned of the gyro's bias turns the body by 0.04 rad after a way of 10 m. Without the rule this moves it by
+/// 0.2 m.
+TEST(LegFilter, KeepsItsPlaceWhereItsYawIsCorrected) {
+  Walk walk(3);
+  walk.velocity.x() = walk.state.velocity[0] = 5;
+  walk.run(2000, 50);
+  const Vector3d place = vector_of(walk.state.position);
+  const Quaterniond turn = quaternion_of(walk.state.attitude);
+  LegFilter filter(walk.state);
+  filter.rest(vector_of(walk.state.rate_bias) + Vector3d(0, 0, 0.02), 1e-6);
+  filter.finish();
+  EXPECT_NEAR(quaternion_of(walk.state.attitude).angularDistance(turn), 0.04, 0.005);
+  EXPECT_LT((vector_of(walk.state.position) - place).head<2>().norm(), 0.03);
+}
+
 TEST(LegFilter, TurnsOdomBelowTheBody) {
   Walk walk(1);
   walk.run(300, 100);
