@@ -19,7 +19,7 @@ from bench.runs.runner import Runner
 
 PARTS = ("losses", "disturbed", "bridge")
 WALKS = 30  # of each drive, half an hour
-WALK_TIME = 60.0  # s; in a longer walk a late correction of the heading outweighs lost frames
+WALK_TIME = 60.0  # s
 BRIDGE_PHASES = 5
 """Every fourth one of a stride: on the wall clock a trial lasts 7 s."""
 STATES = ("ok", "disturbed")

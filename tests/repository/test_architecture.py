@@ -649,7 +649,7 @@ MAX_FUNCTION = 60
 """lines, from the line of its name to its last brace; in Python without the docstring"""
 MAX_FUNCTION_IN = {SRC / "estimation": 40}
 """lines, in folders with a bound of their own; the innermost bound holds"""
-MAX_LINES = {SRC / "estimation": 3720, SRC / "estimation/legged": 1110}
+MAX_LINES = {SRC / "estimation": 3700, SRC / "estimation/legged": 1130}
 """lines of a whole folder, comments included; a folder below that is listed counts by itself"""
 MAX_TUNED_CONSTANTS = 13
 """in src/estimation/common/tuning.h, before the conventions of statistics"""

@@ -115,10 +115,13 @@ void LegFilter::stand(std::size_t foot, const Vector3d& place) noexcept {
   const int entry = kFeet + 3 * static_cast<int>(foot);
   const Vector3d error = ConstMap(state_.feet[foot].data()) - attitude() * place;
   auto P = covariance();
+  held_[foot] = true;
   for (int axis = 0; axis < 3; ++axis) {
     const double innovation = error[axis] - error_[entry + axis];
     double& own = P(entry + axis, entry + axis);
-    if (innovation * innovation > kGate * kGate * (own + kFoot * kFoot)) own += innovation * innovation;
+    const bool moved = innovation * innovation > kGate * kGate * (own + kFoot * kFoot);
+    if (moved) own += innovation * innovation;
+    held_[foot] = held_[foot] && !moved;
     measure(entry + axis, error[axis], kFoot * kFoot);
   }
 }
@@ -192,11 +195,17 @@ void LegFilter::finish() noexcept {
   };
   store(turned_by(-turn) * attitude(), state_.attitude);
   corrected(state_.velocity, kSpeed);
-  for (std::size_t foot = 0; foot < kLegs; ++foot) corrected(state_.feet[foot], kFeet + 3 * static_cast<int>(foot));
-  const auto P = covariance();
-  const double yaw = P(kTurn + 2, kTurn + 2);
-  if (yaw > 0) error_.segment<2>(kPlace) -= turn.z() / yaw * P.block<2, 1>(kPlace, kTurn + 2);
-  Map(state_.position.data()) -= error_.segment<3>(kPlace);
+  Vector3d moved = Vector3d::Zero();  // from the body
+  int held = 0;
+  for (std::size_t foot = 0; foot < kLegs; ++foot) {
+    const Vector3d before = this->foot(foot);
+    corrected(state_.feet[foot], kFeet + 3 * static_cast<int>(foot));
+    if (!held_[foot]) continue;
+    moved += this->foot(foot) - before;
+    ++held;
+  }
+  if (held > 0) Map(state_.position.data()).head<2>() -= moved.head<2>() / held;
+  state_.position[2] -= error_[kPlace + 2];
   Map(state_.rate_bias.data()) -= error_.segment<3>(kRateBias);
   Map(state_.force_bias.data()) -= error_.segment<3>(kForceBias);
   state_.ground -= error_[kGround];

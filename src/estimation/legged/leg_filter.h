@@ -19,9 +19,8 @@
 /// innovation beyond kGate deviations means that it has moved. Then its own variance grows by the innovation's square,
 /// so that the foot moves and not the body.
 ///
-/// What corrects the yaw corrects that of the whole way. Far from its beginning, it would move x and y by decimetres at
-/// once. So they keep what their covariance with the yaw explains of their correction: a pose in odom never jumps (REP
-/// 105). Their covariance remains that with it.
+/// Nothing measures x and y. The gain would move them by what the yaw of the whole way was, by decimetres. Instead the
+/// feet that stand keep their mean place in odom, which must not jump (REP 105).
 ///
 /// The height h of one level plane is a state, too. A foot on it measures p_z + eᵢ_z − h, whose error is that of p_z,
 /// êᵢ_z and ĥ, and ξ_x êᵢ_y − ξ_y êᵢ_x.
@@ -116,6 +115,7 @@ class LegFilter {
 
   State& state_;
   Column error_ = Column::Zero();
+  std::array<bool, kLegs> held_{};  ///< stand, and did not move
 };
 
 }  // namespace robot_control
