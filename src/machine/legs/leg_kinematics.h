@@ -70,8 +70,8 @@ class LegKinematics {
 
   /// Returns angles within the ranges that bring the foot's centre to `foot` (m, base axes). The leg below its
   /// hip is the preferred one of two solutions. If none exists, the angles are those of the nearest point that the
-  /// search of leg_nearest.cpp finds within the ranges. Joints that turn farther than a whole turn stay within ±π of the
-  /// middle of their range.
+  /// search of leg_nearest.cpp finds within the ranges. Joints that turn farther than a whole turn stay within ±π of
+  /// the middle of their range.
   LegSolution inverse(const Eigen::Vector3d& foot) const noexcept;
 
   /// Returns the angles of `inverse`, but none if the leg does not reach `foot`.

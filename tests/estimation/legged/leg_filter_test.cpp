@@ -130,8 +130,8 @@ TEST(LegFilter, LetsAFootThatJumpsMoveItselfAlone) {
   EXPECT_LE(walk.place_error().norm(), 1e-3);
 }
 
-/// What is learned of the bias of the gyro turns the body by 0.04 rad after a way of 10 m, about the feet that stand,
-/// which are 0.3 m behind it. The gain would move it by 0.2 m.
+/// A bias of the gyro that is learned after a way of 10 m turns the body by 0.04 rad. It turns about the feet that
+/// stand, 0.3 m behind it. The gain would move it by 0.2 m.
 TEST(LegFilter, KeepsItsPlaceWhereItsYawIsCorrected) {
   Walk walk(3);
   walk.velocity.x() = walk.state.velocity[0] = 5;
