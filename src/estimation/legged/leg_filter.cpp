@@ -210,6 +210,7 @@ void LegFilter::finish() noexcept {
   Map(state_.force_bias.data()) -= error_.segment<3>(kForceBias);
   state_.ground -= error_[kGround];
   error_.setZero();
+  held_ = {};
 }
 
 }  // namespace robot_control

@@ -20,7 +20,8 @@
 /// so that the foot moves and not the body.
 ///
 /// Nothing measures x and y. The gain would move them by what the yaw of the whole way was, by decimetres. Instead the
-/// feet that stand keep their mean place in odom, which must not jump (REP 105).
+/// feet that stand keep their mean place in odom, which must not jump (REP 105). Without such feet no correction moves
+/// x and y. Their covariance is still that of the gain. It is too small after a walk with an unknown bias of the gyro.
 ///
 /// The height h of one level plane is a state, too. A foot on it measures p_z + eᵢ_z − h, whose error is that of p_z,
 /// êᵢ_z and ĥ, and ξ_x êᵢ_y − ξ_y êᵢ_x.
