@@ -242,6 +242,10 @@ def test_long_reports_of_one_sender_are_few(diagnostics) -> None:
     assert list(table.items(0.0)) == ["/safety_monitor"]
 
 
+def test_a_sealed_message_is_printed_without_its_bytes() -> None:
+    assert str(sealed(OccupancyGrid, wire(OccupancyGrid(data=[7] * 100)))) == ""
+
+
 def test_the_longest_map_and_the_longest_path_are_opened_in_time() -> None:
     grid = OccupancyGrid()
     cells = MAX_LONG_BYTES - len(wire(grid))

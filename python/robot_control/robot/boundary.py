@@ -166,7 +166,7 @@ def next_message(topic: str, kind: type, patience: float, longest: int = 0) -> A
 def _sealed(kind: type) -> type:
     """The type as it is on the wire, whose messages stay bytes. rospy has one type per topic and process."""
     own = {name: getattr(kind, name) for name in ("_type", "_md5sum", "_has_header", "_full_text")}
-    return type(f"Sealed{kind.__name__}", (rospy.AnyMsg,), {**own, "__slots__": [], "kind": kind})
+    return type(f"Sealed{kind.__name__}", (rospy.AnyMsg,), {**own, "__slots__": [], "_slot_types": [], "kind": kind})
 
 
 def opened(sealed: Any, not_finite: Collection[str] = (), longest: int = 0) -> Any:
