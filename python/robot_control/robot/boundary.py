@@ -169,6 +169,19 @@ def _sealed(kind: type) -> type:
     return type(f"Sealed{kind.__name__}", (rospy.AnyMsg,), {**own, "__slots__": [], "_slot_types": [], "kind": kind})
 
 
+class _Parts:
+    """The bytes of a message for genpy, which slices them: a long slice is a view, for a copy costs a page fault per
+    4 KB.
+    """
+
+    def __init__(self, data: bytes) -> None:
+        self._data = data
+
+    def __getitem__(self, part: slice) -> bytes | memoryview:
+        view = memoryview(self._data)[part]
+        return view if len(view) > MAX_BYTES else bytes(view)
+
+
 def opened(sealed: Any, not_finite: Collection[str] = (), longest: int = 0) -> Any:
     """The checked message of the bytes, at most `longest` or, if that is 0, MAX_BYTES. Raises UnfitError."""
     data: bytes = sealed._buff  # all that AnyMsg has
@@ -177,7 +190,7 @@ def opened(sealed: Any, not_finite: Collection[str] = (), longest: int = 0) -> A
         raise UnfitError(f"has {len(data)} bytes, more than {bound}")
     try:
         message = sealed.kind()
-        message.deserialize_numpy(data, np) if sealed.kind._type == GRID else message.deserialize(data)
+        message.deserialize_numpy(_Parts(data), np) if sealed.kind._type == GRID else message.deserialize(data)
     except (genpy.DeserializationError, UnicodeError, ValueError, TypeError, MemoryError, OverflowError) as error:
         raise UnfitError(f"is no {sealed.kind._type}: {str(error)[:100]}") from None
     require_fit(message, MAY_BE_INFINITE.union(not_finite) if not_finite else MAY_BE_INFINITE)
