@@ -115,13 +115,13 @@ void LegFilter::stand(std::size_t foot, const Vector3d& place) noexcept {
   const int entry = kFeet + 3 * static_cast<int>(foot);
   const Vector3d error = ConstMap(state_.feet[foot].data()) - attitude() * place;
   auto P = covariance();
-  held_[foot] = true;
   for (int axis = 0; axis < 3; ++axis) {
     const double innovation = error[axis] - error_[entry + axis];
     double& own = P(entry + axis, entry + axis);
-    const bool moved = innovation * innovation > kGate * kGate * (own + kFoot * kFoot);
-    if (moved) own += innovation * innovation;
-    held_[foot] = held_[foot] && !moved;
+    if (innovation * innovation > kGate * kGate * (own + kFoot * kFoot)) {
+      own += innovation * innovation;
+      held_[foot] = false;
+    }
     measure(entry + axis, error[axis], kFoot * kFoot);
   }
 }
@@ -181,9 +181,19 @@ void LegFilter::measure(int entry, double error, double variance) noexcept {
 /// `column` is the covariance of the error with a measurement, `expected` the variance of its innovation.
 void LegFilter::correct(const Column& column, double innovation, double expected) noexcept {
   if (!(expected > 0)) return;
-  const Column gain = column / expected;
-  error_ += innovation * gain;
+  Column gain = column / expected;
   covariance().noalias() -= gain * column.transpose();
+  Vector3d feet = Vector3d::Zero();  // the sum of the gains for the places of those that are held
+  int held = 0;
+  for (std::size_t foot = 0; foot < kLegs; ++foot) {
+    if (!held_[foot]) continue;
+    feet += gain.segment<3>(kFeet + 3 * static_cast<int>(foot)) + gain.segment<3>(kTurn).cross(this->foot(foot));
+    ++held;
+  }
+  const Eigen::Vector2d change = (held > 0 ? -1.0 / held : 0) * feet.head<2>() - gain.segment<2>(kPlace);
+  covariance().block<2, 2>(kPlace, kPlace) += expected * change * change.transpose();
+  gain.segment<2>(kPlace) += change;
+  error_ += innovation * gain;
 }
 
 void LegFilter::finish() noexcept {
@@ -195,17 +205,8 @@ void LegFilter::finish() noexcept {
   };
   store(turned_by(-turn) * attitude(), state_.attitude);
   corrected(state_.velocity, kSpeed);
-  Vector3d moved = Vector3d::Zero();  // from the body
-  int held = 0;
-  for (std::size_t foot = 0; foot < kLegs; ++foot) {
-    const Vector3d before = this->foot(foot);
-    corrected(state_.feet[foot], kFeet + 3 * static_cast<int>(foot));
-    if (!held_[foot]) continue;
-    moved += this->foot(foot) - before;
-    ++held;
-  }
-  if (held > 0) Map(state_.position.data()).head<2>() -= moved.head<2>() / held;
-  state_.position[2] -= error_[kPlace + 2];
+  for (std::size_t foot = 0; foot < kLegs; ++foot) corrected(state_.feet[foot], kFeet + 3 * static_cast<int>(foot));
+  Map(state_.position.data()) -= error_.segment<3>(kPlace);
   Map(state_.rate_bias.data()) -= error_.segment<3>(kRateBias);
   Map(state_.force_bias.data()) -= error_.segment<3>(kForceBias);
   state_.ground -= error_[kGround];

@@ -20,8 +20,9 @@
 /// so that the foot moves and not the body.
 ///
 /// Nothing measures x and y. The gain would move them by what the yaw of the whole way was, by decimetres. Instead the
-/// feet that stand keep their mean place in odom, which must not jump (REP 105). Without such feet no correction moves
-/// x and y. Their covariance is still that of the gain. It is too small after a walk with an unknown bias of the gyro.
+/// feet that are held keep their mean place in odom, which must not jump (REP 105). Without such feet no correction
+/// moves x and y. So their gain is k, not K. Their covariance becomes P − S K Kᵀ + S (k − K)(k − K)ᵀ, with the variance
+/// S of the innovation.
 ///
 /// The height h of one level plane is a state, too. A foot on it measures p_z + eᵢ_z − h, whose error is that of p_z,
 /// êᵢ_z and ĥ, and ξ_x êᵢ_y − ξ_y êᵢ_x.
@@ -78,6 +79,9 @@ class LegFilter {
 
   /// `place` is in base axes, from the body.
   void land(std::size_t foot, const Eigen::Vector3d& place) noexcept;
+
+  /// This foot keeps its place in odom in this cycle, unless it moved. Call it before the measurements.
+  void hold(std::size_t foot) noexcept { held_[foot] = true; }
 
   /// Measurements of one cycle; `finish` corrects the state by all of them.
   void stand(std::size_t foot, const Eigen::Vector3d& place) noexcept;
