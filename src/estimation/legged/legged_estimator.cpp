@@ -206,7 +206,7 @@ bool LeggedEstimator::filter(const SensorFrame& sensors, const FeetMotion& feet,
 
 bool LeggedEstimator::stand(const std::array<bool, kLegs>& bear, const FeetMotion& feet, LegFilter& filter) noexcept {
   const double deviation = std::sqrt(filter.speed_variance() + foot_speed_ * foot_speed_);
-  // At rest the body keeps its place, not the feet: they are said to creep.
+  // At rest the body keeps its place, not the feet: the model lets them creep.
   for (std::size_t leg = 0; leg < kLegs && state_.still <= kRestTime; ++leg)
     if (state_.stands[leg] != 0 && bear[leg]) filter.hold(leg);
   bool any = false, all_move = true;

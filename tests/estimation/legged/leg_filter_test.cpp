@@ -128,8 +128,9 @@ TEST(LegFilter, IsAsCertainAsItIsRight) {
     Walk walk(static_cast<std::uint64_t>(seed));
     walk.velocity.x() = walk.state.velocity[0] = seed % 2 == 0 ? 0 : 5;
     walk.run(1500, 100);
-    pose += squared_errors(walk)[0] / kRuns;
-    speed += squared_errors(walk)[1] / kRuns;
+    const auto [of_pose, of_speed] = squared_errors(walk);
+    pose += of_pose / kRuns;
+    speed += of_speed / kRuns;
     walk.learn_bias();
     learned += squared_errors(walk)[0] / kRuns;
   }
