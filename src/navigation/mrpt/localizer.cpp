@@ -66,12 +66,14 @@ struct Localizer::Parts {
   UncertainPose updated;  // the odometry at the last update
   PlanarPose odometry;    // at the last scan
   UncertainPose pose;     // of the particles, at the last update
-  bool first = true;      // the next scan updates
+  bool first = true;      // the next scan updates; before it nothing says where the odometry of a set pose is
   double explained = 0;   // smoothed
   double last_explained = 0;
   double spread = 0;   // m
   PlanarPose aligned;  // of the frame of all these in that of the given map
   int settled = 0;     // scans since the particles of a search came together
+
+  bool awaits_scan() const { return first && state == Localization::kLocalized; }
 
   /// Returns the pose at the last scan.
   CPose2D now() const { return mrpt_pose(pose.mean) + (mrpt_pose(odometry) - mrpt_pose(updated.mean)); }
@@ -176,11 +178,12 @@ bool Localizer::update(const Scan& scan, const PlanarPose& sensor, const Uncerta
 }
 
 Localization Localizer::state() const noexcept {
-  return parts_->state;
+  return parts_->awaits_scan() ? Localization::kNoPose : parts_->state;
 }
 
 std::string Localizer::reason() const {
   const auto cm = [](double m) { return std::to_string(std::lround(100 * m)) + " cm"; };
+  if (parts_->awaits_scan()) return "a pose was set, and no scan has come since: see the topic scan";
   switch (parts_->state) {
     case Localization::kLocalized:
       return "";

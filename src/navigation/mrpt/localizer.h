@@ -26,7 +26,7 @@ inline constexpr double kUpdateDistance = 0.1;  ///< m
 inline constexpr double kUpdateTurn = 0.1;      ///< rad
 
 enum class Localization {
-  kNoPose,     ///< neither a pose nor a global start was given
+  kNoPose,     ///< neither a pose nor a global start was given, or no scan has come since
   kSearching,  ///< after a global start: the particles lie far apart
   kLocalized,
   kLost,  ///< the scans do not fit the map
@@ -61,7 +61,7 @@ class Localizer {
   /// Returns the pose at the last scan. Its covariance is that of the particles and that of the map's own cells.
   UncertainPose pose() const;
 
-  /// Returns the pose of odom in the map.
+  /// Returns the pose of odom in the map. Valid while kLocalized.
   PlanarPose correction() const;
 
   /// Returns the part of the last scan's points that lie at a wall of the map.

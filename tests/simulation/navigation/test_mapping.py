@@ -131,6 +131,18 @@ def test_a_robot_is_followed_in_the_map_and_its_ellipse_is_true(sights, grid):
     assert off @ np.linalg.solve(covariance, off) < 11.3  # 99 % in three dimensions
 
 
+def test_a_pose_that_is_set_holds_from_the_next_scan_on(sights, grid):
+    """Only the scan says where the odometry was; until then no correction may be read from a pose."""
+    localizer = mrpt.Localizer(grid, 1)
+    for place in (0, len(sights) // 2):
+        localizer.set_pose(sights[place].truth, KNOWN)
+        assert localizer.state == "no pose"
+        assert "no scan has come since" in localizer.reason
+        assert followed(localizer, sights[place : place + 1]) == ["localized"]
+        assert localizer.reason == ""
+        assert np.hypot(*(np.array(localizer.pose[0]) - sights[place].truth)[:2]) < 0.05
+
+
 def test_a_map_whose_origin_lies_within_a_cell_keeps_its_walls_and_places(sights, grid):
     """Maps of other programs begin anywhere."""
     x, y, resolution, cells = grid

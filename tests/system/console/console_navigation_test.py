@@ -1,6 +1,5 @@
 """The console's map in a browser: the place of the robot, a goal and its cancel, each by a press and a drag."""
 
-import contextlib
 import math
 import tempfile
 import unittest
@@ -22,6 +21,8 @@ from bench.navigation.scene_map import read_scene, true_map
 
 CLICKED = 0.05
 """m on the map: some pixels of 4 mm, from above"""
+SAME = 0.001
+"""m; the page's numbers are rounded"""
 AT_GOAL = CLICKED + 0.05 + 0.05
 """m in odometry: the click, the end of a path, and what localization corrects on the way"""
 REASON = missing_mrpt() or missing()
@@ -68,10 +69,19 @@ class ConsoleNavigationTest(ConsoleTestCase):
             event = {"type": kind, "x": x, "y": y, "button": "left", "buttons": held, "clickCount": 1}
             browser.driver.execute_cdp_cmd("Input.dispatchMouseEvent", event)
 
+    def knows_the_map(self, browser: Browser) -> bool:
+        """True if the page has the map where tf has it now."""
+        try:
+            type(self).map = self.tf.lookup("odom", "map").pose
+        except PathError:
+            return True  # before the first place odometry and map are the same
+        script = "const [done] = arguments; import('/map.js').then((m) => done(m.onMap([0, 0], [1, 0])))"
+        seen = browser.driver.execute_async_script(script)
+        return seen is not None and math.dist((seen["x"], seen["y"]), Pose(0, 0, 0).seen_from(self.map)) < SAME
+
     def click(self, browser: Browser, button: str, topic: Latest, ahead: float) -> float:
         """Strokes that far ahead of the robot, which looks along x; the heading of the place that comes."""
-        with contextlib.suppress(PathError):  # before the first place odometry and map are the same
-            type(self).map = self.tf.lookup("odom", "map").pose
+        wait_for("the map on the page", lambda: self.knows_the_map(browser))
         here, before = self.robot.pose, topic.count
         self.stroke(browser, button, ahead)
         self.waits_for(browser, "what was clicked", lambda: topic.count > before)
