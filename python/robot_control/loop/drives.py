@@ -4,6 +4,8 @@ import re
 from dataclasses import dataclass
 from pathlib import Path
 
+import yaml  # type: ignore[import-untyped]
+
 from robot_control.installed_files import share_file
 
 
@@ -26,3 +28,23 @@ class DriveRow:
 _TABLE = Path(share_file("src/drivers/drive_table.def")).read_text(encoding="utf-8")
 DRIVES = {row[0]: DriveRow(*row) for row in re.findall(r"^DRIVE\((\w+), (\w+), (\w+)\)", _TABLE, re.MULTILINE)}
 """by name"""
+
+
+def drive_of(file: Path) -> DriveRow:
+    """The drive that a drive file is for: that of `bus.dialect`, or of its block.
+
+    Raises:
+        OSError: it cannot be read.
+        ValueError: it is no YAML, or names no drive.
+    """
+    try:
+        blocks = yaml.safe_load(file.read_text(encoding="utf-8"))
+    except (yaml.YAMLError, UnicodeDecodeError) as error:
+        raise ValueError(f"{file} is not YAML: {' '.join(str(error).split())}") from None
+    blocks = blocks if isinstance(blocks, dict) else {}
+    bus = blocks.get("bus")
+    named = [bus.get("dialect")] if isinstance(bus, dict) else list(blocks)
+    found = next((DRIVES[name] for name in named if isinstance(name, str) and name in DRIVES), None)
+    if found is None:
+        raise ValueError(f"{file} has neither a bus.dialect nor a block of a drive")
+    return found

@@ -9,6 +9,7 @@ from robot_control import ClosedLoop
 from robot_control.data.demo import launched, lockstep
 from robot_control.data.demo import main as demo
 from robot_control.data.demo.arguments import parse
+from robot_control.installed_files import share_file
 from robot_control.ui.child import Child
 
 WAIT = "import time\nprint('ready')\nfor _ in range(6000): time.sleep(0.01)"
@@ -69,6 +70,7 @@ def test_a_child_ends_in_order_with_a_program_that_is_killed(tmp_path):
     heeds = f"try: exec({WAIT!r})\nexcept KeyboardInterrupt: print('bye')"
     starts = f"""
 import pathlib, sys, time
+from robot_control.installed_files import share_file
 from robot_control.ui.child import Child
 Child([sys.executable, "-u", "-c", {heeds!r}], pathlib.Path({str(tmp_path / "output")!r}))
 time.sleep(60)"""
@@ -113,10 +115,24 @@ def test_drives_that_do_not_fit_the_robot_are_refused(tmp_path, capsys):
     with pytest.raises(SystemExit):
         parse(["--robot", "quadbot", "--drives", "odrive", "--out", str(tmp_path)])
     assert "--drives odrive do not move quadbot: take one of damiao, cybergear, ak" in capsys.readouterr().err
-    assert parse(["--robot", "quadbot", "--drives", "damiao", "--out", str(tmp_path)]).drives == "damiao"
+    assert parse(["--robot", "quadbot", "--drives", "damiao", "--out", str(tmp_path)]).drive.driver == "can"
     with pytest.raises(SystemExit):
         parse(["--drives", "damiao", "--out", str(tmp_path)])
     assert "--drives damiao do not move diffbot: take one of odrive, cia402, vesc" in capsys.readouterr().err
+
+
+def test_a_robot_and_its_drives_may_be_files(tmp_path, capsys):
+    go2, urdf, text = share_file("config/robots/go2.yaml"), tmp_path / "go2.urdf", tmp_path / "text.yaml"
+    urdf.touch()
+    given = parse(["--robot", str(urdf), "--drives", go2, "--rate", "500", "--out", str(tmp_path)])
+    assert (given.robot, str(given.drives), given.drive.driver, given.rate) == (str(urdf), go2, "unitree_go", 500)
+    assert demo.overlay(given.drives, given.rate, velocity=False).endswith("robot: {rate: 500}\n")
+    text.write_text("- [")
+    wrong = {"--drives": [str(urdf), str(text), "motors"], "--robot": ["robot"], "--rate": ["10", "2001"]}
+    for name, value in [(name, value) for name, values in wrong.items() for value in values]:
+        with pytest.raises(SystemExit):
+            parse([name, value, "--out", str(tmp_path)])
+        assert value in capsys.readouterr().err
 
 
 @pytest.mark.parametrize("out", ["file", "file/below", "/proc/xx"])
@@ -158,11 +174,11 @@ def test_sigterm_ends_like_an_interrupt():
         demo._interrupt(signal.SIGTERM, None)
 
 
-@pytest.mark.parametrize("legged", [False, True])
-def test_the_script_repeats_its_command_before_it_is_too_old(legged):
-    text, asked, cycles = lockstep.script(3.2, legged=legged)
+@pytest.mark.parametrize(("legged", "period"), [(False, 1e-3), (True, 1e-3), (True, 2e-3)])
+def test_the_script_repeats_its_command_before_it_is_too_old(legged, period):
+    text, asked, cycles = lockstep.script(3.2, period, legged=legged)
     rows = [[float(cell) for cell in line.split(",")] for line in text.splitlines()[1:]]
-    times = [cycle * launched.PERIOD for cycle, _, _ in rows]
+    times = [cycle * period for cycle, _, _ in rows]
     assert times[0] == launched.REST_TIME
     assert max(later - one for one, later in itertools.pairwise(times)) <= 0.5
     assert rows[-1][1:] == [0, 0]

@@ -52,6 +52,17 @@ def test_the_steady_part_begins_after_ramp_and_settling_and_ends_with_the_comman
     assert rows.stop == END
 
 
+def test_a_command_that_the_log_has_rounded_is_the_one_that_was_sent(run):
+    """The outputs of a law are float32 there, and 0.2 is none of these numbers."""
+    for name in ("limited_linear", "limited_angular"):
+        run[name] = run[name].astype(np.float32).astype(float)
+    rows = steady_rows(run, LINEAR, ANGULAR)
+    assert rows.start == pytest.approx(BEGIN + (RAMP + SETTLE) / PERIOD, abs=1)
+    run["limited_angular"] *= 1 + 1e-6
+    with pytest.raises(NotSteadyError):
+        steady_rows(run, LINEAR, ANGULAR)
+
+
 def test_a_robot_that_never_moves_fails(run):
     still = np.zeros_like(run["time"])
     tracking = verdict(with_truth(run, still, still))

@@ -5,19 +5,27 @@ import tempfile
 from collections.abc import Sequence
 from pathlib import Path
 
-from robot_control.loop.drives import DRIVES
+from robot_control.installed_files import share_file
+from robot_control.loop.drives import DRIVES, DriveRow, drive_of
 
-LEGGED_ROBOT = "quadbot"
+LEGS = {"diffbot": False, "quadbot": True}
+"""included robot → whether it has legs"""
+RATES = (20, 2000)
+"""Hz, as of robot.rate"""
 
 
 def parse(arguments: Sequence[str] | None = None) -> argparse.Namespace:
-    """The arguments of scripts/demo as `seconds`, `out`, `robot` …; ends the program on a wrong one."""
+    """The arguments of scripts/demo as `seconds`, `out`, `robot` (name or file) …; `drives` is a file, and `drive` its
+    row of DRIVES. Ends the program on a wrong one.
+    """
     parser = argparse.ArgumentParser(prog="scripts/demo", description="Drives the simulated robot and judges the run.")
     parser.add_argument("--seconds", type=_seconds, default=10.0, help="of driving (default %(default)g)")
     parser.add_argument("--out", type=_folder, default="demo_out", help="folder (default ./demo_out)")
-    meaning = "on wheels or on legs (default %(default)s)"
-    parser.add_argument("--robot", choices=("diffbot", LEGGED_ROBOT), default="diffbot", help=meaning)
-    parser.add_argument("--drives", choices=tuple(DRIVES), help="simulated drives of the motors")
+    meaning = "diffbot (on wheels), quadbot (on legs), or a URDF or xacro file (default %(default)s)"
+    parser.add_argument("--robot", type=_robot, default="diffbot", help=meaning)
+    meaning = f"simulated drives of the motors: {', '.join(DRIVES)}, or a drive file"
+    parser.add_argument("--drives", type=_drives, help=meaning)
+    parser.add_argument("--rate", type=_rate, default=1000, help="of the loop in Hz (default %(default)d)")
     meaning = "what the drives take (default torque, or the only one of --drives)"
     parser.add_argument("--wheel-command", choices=("torque", "velocity"), help=meaning)
     meaning = (
@@ -25,17 +33,42 @@ def parse(arguments: Sequence[str] | None = None) -> argparse.Namespace:
     )
     parser.add_argument("--clock", choices=("lockstep", "wall"), default="lockstep", help=meaning)
     given = parser.parse_args(arguments)
-    legged = given.robot == LEGGED_ROBOT
-    if given.drives and (DRIVES[given.drives].command == "impedance") != legged:
+    given.drives, given.drive = given.drives or (None, None)
+    of_legs = given.drive is not None and given.drive.command == "impedance"
+    legged = LEGS.get(given.robot, of_legs)
+    if given.drive is not None and of_legs != legged:
         fitting = ", ".join(name for name, row in DRIVES.items() if (row.command == "impedance") == legged)
-        parser.error(f"--drives {given.drives} do not move {given.robot}: take one of {fitting}")
+        parser.error(f"--drives {given.drive.name} do not move {given.robot}: take one of {fitting}")
     if given.wheel_command and legged:
-        parser.error(f"--wheel-command needs wheels, but {LEGGED_ROBOT} has legs: remove one of the two")
-    commands = DRIVES[given.drives].wheel_commands if given.drives and not legged else ("torque", "velocity")
+        parser.error(f"--wheel-command needs wheels, but {given.robot} has legs: remove one of the two")
+    commands = given.drive.wheel_commands if given.drive is not None and not legged else ("torque", "velocity")
     given.wheel_command = given.wheel_command or commands[0]
     if given.wheel_command not in commands:
-        parser.error(f"the board of --drives {given.drives} takes {commands[0]} only: remove --wheel-command")
+        parser.error(f"the board of --drives {given.drive.name} takes {commands[0]} only: remove --wheel-command")
     return given
+
+
+def _robot(text: str) -> str:
+    if text in LEGS:
+        return text
+    if not (path := Path(text).resolve()).is_file():
+        raise argparse.ArgumentTypeError(f"{text} is neither {' nor '.join(LEGS)} nor a file")
+    return str(path)
+
+
+def _drives(text: str) -> tuple[Path, DriveRow]:
+    path = Path(share_file(f"config/drives/{text}.yaml") if text in DRIVES else text).resolve()
+    try:
+        return path, drive_of(path)
+    except (OSError, ValueError) as error:
+        raise argparse.ArgumentTypeError(f"{text} is none of {', '.join(DRIVES)} nor a drive file: {error}") from None
+
+
+def _rate(text: str) -> int:
+    value = int(text)
+    if not RATES[0] <= value <= RATES[1]:
+        raise argparse.ArgumentTypeError(f"{text} is not {RATES[0]} … {RATES[1]} Hz")
+    return value
 
 
 def _seconds(text: str) -> float:

@@ -4,10 +4,11 @@ import contextlib
 import os
 import time
 from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 
+from robot_control.data.demo.arguments import LEGS
 from robot_control.data.run_log import LogError, read_log
-from robot_control.loop.drives import DRIVES
 from robot_control.loop.signal_names import number_of
 from robot_control.ui.child import Child, children
 
@@ -15,8 +16,6 @@ LINEAR, ANGULAR = 0.5, 0.2
 """m/s, rad/s: what send_cmd.py sends by default; the source article's command."""
 REST_TIME = 2.0
 """s of the robot's clock before it drives: at rest it learns the bias of its gyro, to 0.35 mrad/s in that time."""
-PERIOD = 1e-3
-"""s, of the package's parameters"""
 BUS = f"demo_{os.getpid()}"
 """The bus belongs to this demo alone, which removes it: 12 MB that outlive the nodes would fill a small /dev/shm."""
 SHOWN = (
@@ -32,14 +31,33 @@ class DemoError(RuntimeError):
     """Something did not start, or died; the message names the file with the reason."""
 
 
-def launch(out: Path, robot: str, drives: Path | None, parameters: Path, arguments: Sequence[str]) -> Child:
+@dataclass(frozen=True)
+class Driven:
+    """A robot, its clock and its files."""
+
+    robot: str
+    """an included robot or a URDF file"""
+    legged: bool
+    out: Path
+    parameters: Path
+    """laid over those of the package"""
+    drives: Path | None = None
+    driver: str = ""
+    """of `drives`"""
+    period: float = 1e-3
+    """s"""
+
+
+def launch(driven: Driven, arguments: Sequence[str]) -> Child:
     """Starts sim.launch on the master of the environment, with `arguments` of it, and run.bag in `out`."""
+    which = f"robot:={driven.robot}" if driven.robot in LEGS else f"urdf:={driven.robot}"
+    out, drives = driven.out, driven.drives
     port = os.environ["ROS_MASTER_URI"].rsplit(":", 1)[1].strip("/")
     return Child(
         [
-            *("roslaunch", "-p", port, "robot_control", "sim.launch", f"robot:={robot}"),
-            *("telemetry:=true", "black_box:=false", f"out:={out}", f"bus:={BUS}", f"params:={parameters}"),
-            *([] if drives is None else [f"drives:={drives}", f"driver:={DRIVES[drives.stem].driver}"]),
+            *("roslaunch", "-p", port, "robot_control", "sim.launch", which),
+            *("telemetry:=true", "black_box:=false", f"out:={out}", f"bus:={BUS}", f"params:={driven.parameters}"),
+            *([] if drives is None else [f"drives:={drives}", f"driver:={driven.driver}"]),
             *arguments,
         ],
         out / "launch.log",

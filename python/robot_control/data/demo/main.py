@@ -10,16 +10,18 @@ from concurrent.futures import ProcessPoolExecutor
 from pathlib import Path
 from types import FrameType
 
+from robot_control._robot_control import ParameterError, RobotError, describe
 from robot_control.data.csv_table import write_csv
 from robot_control.data.demo import lockstep, wall_clock
-from robot_control.data.demo.arguments import LEGGED_ROBOT, parse
-from robot_control.data.demo.launched import ANGULAR, LINEAR, DemoError
+from robot_control.data.demo.arguments import LEGS, parse
+from robot_control.data.demo.launched import ANGULAR, LINEAR, DemoError, Driven
 from robot_control.data.demo.run_picture import draw_run
 from robot_control.data.demo.run_summary import summarize, to_json, to_table
 from robot_control.data.loop_timing import processor_time, stolen_share
 from robot_control.data.run_log import LogError, read_log
 from robot_control.files.files import in_words, printable
 from robot_control.installed_files import share_file
+from robot_control.loop.drives import drive_of
 from robot_control.loop.roles import DRIVER, LEGGED, LOOP, TELEMETRY, WHEELED, Kind
 from robot_control.ui.program import run
 
@@ -29,9 +31,8 @@ OUTPUTS = (
 )
 EVERY_CYCLE = "telemetry: {record: always}\n"
 """parameters laid over the package's"""
-VELOCITY = "robot: {wheel_command: velocity}\n"
 SIMULATED_VELOCITY = f"{DRIVER}: {{drive: velocity}}\n"
-"""the same, of drives that take speeds; the second one where no other drives stand before the motors"""
+"""the same, of drives that take speeds where no other drives stand before the motors"""
 CLOCKS = {"lockstep": lockstep, "wall": wall_clock}
 CLOCK_WORDS = {"lockstep": "lockstep", "wall": "wall clock"}
 
@@ -44,10 +45,10 @@ def run_demo(
     *,
     velocity: bool = False,
     clock: str = "lockstep",
+    rate: int = 1000,
 ) -> int:
-    """Drives `robot` for `seconds` and writes everything to `out`; `drives`: a drive file, `velocity`: of
-    speeds, `clock`: lockstep or wall.
-    Returns the exit code.
+    """Drives `robot`, a name or a URDF file, for `seconds` and writes everything to `out`; `drives`: a drive file,
+    `velocity`: of speeds, `clock`: lockstep or wall, `rate`: Hz. Returns the exit code.
     """
     out.mkdir(parents=True, exist_ok=True)
     for name in OUTPUTS:
@@ -55,13 +56,21 @@ def run_demo(
     os.environ["ROS_HOME"] = str(out / "ros")
     shutil.rmtree(out / "ros", ignore_errors=True)
 
-    legged = robot == LEGGED_ROBOT
+    urdf = share_file(f"urdf/{robot}.urdf") if robot in LEGS else robot
+    try:
+        machine = describe(share_file("config/robot_params.yaml"), [("robot.urdf", urdf)])
+    except (RobotError, ParameterError, OSError) as error:
+        raise DemoError(in_words(error)) from None
+    legged = machine["kind"] == "legs"
     parameters = out / "ros" / "overlay.yaml"
     parameters.parent.mkdir()
-    parameters.write_text(overlay(drives, velocity=velocity) + lockstep.LIE_DOWN * (legged and clock == "lockstep"))
+    parameters.write_text(
+        overlay(drives, rate, velocity=velocity) + lockstep.LIE_DOWN * (legged and clock == "lockstep")
+    )
     print(f"starting roscore, {Kind(LEGGED if legged else WHEELED).worded(', '.join(LOOP))}, {TELEMETRY}")
+    driver = "" if drives is None else drive_of(drives).driver
     before, began = processor_time(), time.monotonic()
-    driven = CLOCKS[clock].drive(seconds, out, robot, drives, parameters)
+    asked = CLOCKS[clock].drive(seconds, Driven(robot, legged, out, parameters, drives, driver, 1 / rate))
     stolen, took = stolen_share(before, processor_time()), time.monotonic() - began
 
     try:
@@ -70,10 +79,11 @@ def run_demo(
         raise DemoError(f"no log of the run: {in_words(error)}; see {out / 'launch.log'}") from error
     with ProcessPoolExecutor(1) as beside:
         table = beside.submit(write_csv, out / "run.bag", out / "run.csv")
-        summary = summarize(log, LINEAR, ANGULAR, driven, stolen, legged=legged, clock=clock)
+        summary = summarize(log, LINEAR, ANGULAR, asked, stolen, legged=legged, clock=clock)
         (out / "summary.json").write_text(to_json(summary))
         verdict = "tracked" if summary.passed else "NOT TRACKED"
-        title = f"{robot}, {LINEAR} m/s and {ANGULAR} rad/s, {CLOCK_WORDS[clock]}, 1 ms cycles: {verdict}"
+        what = f"{machine['name']}, {LINEAR} m/s and {ANGULAR} rad/s"
+        title = f"{what}, {CLOCK_WORDS[clock]}, {1000 / rate:g} ms cycles: {verdict}"
         draw_run(log, summary, title, out / "run.png")
     try:
         table.result()
@@ -84,16 +94,15 @@ def run_demo(
     else:
         print(f"{log['time'][-1]:.1f} s of simulated time in {took:.1f} s")
     print(f"\n{to_table(summary)}\n\n{verdict}; see {printable(str(out))}/summary.json, run.bag, run.csv, run.png")
-    print(f"see it in a browser: scripts/try {robot}")
+    print(f"see it in a browser: scripts/try {printable(robot)}")
     return 0 if summary.passed else 1
 
 
-def overlay(drives: Path | None, *, velocity: bool) -> str:
+def overlay(drives: Path | None, rate: int, *, velocity: bool) -> str:
     """The parameters that are laid over the package's."""
-    if not velocity:
-        return EVERY_CYCLE
-    simulated = SIMULATED_VELOCITY if drives is None else ""
-    return EVERY_CYCLE + VELOCITY + simulated
+    command = ", wheel_command: velocity" * velocity
+    simulated = SIMULATED_VELOCITY if velocity and drives is None else ""
+    return f"{EVERY_CYCLE}robot: {{rate: {rate}{command}}}\n{simulated}"
 
 
 def refusals(launch_log: str) -> list[str]:
@@ -124,9 +133,12 @@ def main() -> int:
     given = parse()
     signal.signal(signal.SIGTERM, _interrupt)
     try:
-        drives = Path(share_file(f"config/drives/{given.drives}.yaml")) if given.drives else None
+        velocity = given.wheel_command == "velocity"
         return run_demo(
-            given.seconds, given.out, given.robot, drives, velocity=given.wheel_command == "velocity", clock=given.clock
+            *(given.seconds, given.out, given.robot, given.drives),
+            velocity=velocity,
+            clock=given.clock,
+            rate=given.rate,
         )
     except (DemoError, OSError) as error:
         print(f"scripts/demo: {in_words(error)}", file=sys.stderr)

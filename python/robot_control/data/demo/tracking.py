@@ -51,7 +51,7 @@ class Tolerances:
 
 
 ON_WHEELS = Tolerances()
-ON_LEGS = Tolerances(mean=0.03, cycle=None, pose=0.02, rise=5.0)
+ON_LEGS = Tolerances(mean=0.03, cycle=None, rise=5.0)
 """It stands up within 2 s before it walks."""
 
 
@@ -205,9 +205,9 @@ def commanded_path(log: Log) -> tuple[FloatArray, FloatArray, FloatArray]:
 
 
 def _is_twist(log: Log, prefix: str, linear: float, angular: float) -> BoolArray:
-    # 1e-9: the values are those that were sent, bit by bit; a different value is another command.
-    off = np.abs([log[f"{prefix}_linear"] - linear, log[f"{prefix}_angular"] - angular])
-    return np.asarray((off < 1e-9).all(axis=0))
+    # A log rounds to float32; what differs by more is another command.
+    off = np.abs([log[f"{prefix}_linear"] / linear - 1, log[f"{prefix}_angular"] / angular - 1])
+    return np.asarray((off < np.finfo(np.float32).eps).all(axis=0))
 
 
 def _integrate(log: Log, row: int) -> Pose:
