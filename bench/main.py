@@ -62,7 +62,7 @@ JUDGED = (
     "navigation",
     "loops",
 )
-REALTIME_PARTS = ("jitter", "chain", "cost", "scale")
+REALTIME_PARTS = ("jitter", "chain", "cost", "scale", "dds")
 PARTS = {
     "devices": ("losses", "answers", "slope", "disturbed"),
     "realtime": REALTIME_PARTS,

@@ -6,17 +6,19 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from bench.realtime import chain, cost, jitter, scale
+from bench.realtime import chain, cost, dds, jitter, scale
 from bench.realtime.jitter import BLOCKS
 from bench.realtime.machine import require_programs
 from bench.rows import Result, Say
 
-PARTS = {"jitter": jitter.bench, "chain": chain.bench, "cost": cost.bench, "scale": scale.bench}
+PARTS = {"jitter": jitter.bench, "chain": chain.bench, "cost": cost.bench, "scale": scale.bench, "dds": dds.bench}
 
 
 def bench(parts: Sequence[str], blocks: int, programs: Path, say: Say) -> Result:
     """The table of these parts, and whether all figures meet their bounds."""
     require_programs()
+    if "dds" in parts:
+        dds.require_bridge(programs.parent)
     blocks = blocks or BLOCKS
     rows: list[dict[str, Any]] = []
     good = True
