@@ -32,10 +32,15 @@ MAX_RATIO = 1.1
 
 def require_bridge(build: Path) -> None:
     """Raises RuntimeError with the remedy where the bridge or another core is missing."""
-    if not bridge_of(build).exists():
+    if not bridge_of(build).exists() or not walk_of(build).exists():
         raise RuntimeError("no unitree_bridge: scripts/setup --unitree, then build; without it, name the other parts")
     if not other_cores():
         raise RuntimeError(f"no core beside {CORE}: run this on a machine with two")
+
+
+def walk_of(build: Path) -> Path:
+    """The other robot, which is built with the tests."""
+    return build / "tests/drivers/go_walk"
 
 
 def other_cores() -> list[int]:
@@ -62,8 +67,7 @@ def traffic(build: Path) -> Iterator[None]:
 
         bridge = start(program, driver)
         programs = [bridge, start(program, robot, "--side", "robot")]
-        walk = build / "tests/drivers/go_walk"
-        programs.append(start(walk, driver, robot, str(bridge.pid), "0", str(WALK), "1"))
+        programs.append(start(walk_of(build), driver, robot, str(bridge.pid), "0", str(WALK), "1"))
         time.sleep(START)
         yield
         if any(process.poll() is not None for process in programs):

@@ -185,6 +185,13 @@ def test_a_message_that_is_too_long_for_its_type_is_refused_before_it_is_read(ki
         opened(sealed(kind, bytes(size + 1)))
 
 
+def test_a_long_text_in_a_map_is_refused() -> None:
+    grid = OccupancyGrid()
+    grid.header.frame_id = "m" * (MAX_BYTES + 1)
+    with pytest.raises(UnfitError, match="is no nav_msgs/OccupancyGrid"):
+        opened(sealed(OccupancyGrid, wire(grid)))
+
+
 def test_a_text_with_a_zero_byte_is_refused() -> None:
     with pytest.raises(UnfitError, match="child_frame_id must not contain a zero byte"):
         opened(sealed(Odometry, wire(Odometry(child_frame_id="a\0b"))))

@@ -39,7 +39,7 @@ def drive_of(file: Path) -> DriveRow:
     """
     try:
         blocks = yaml.safe_load(file.read_text(encoding="utf-8"))
-    except (yaml.YAMLError, UnicodeDecodeError) as error:
+    except (yaml.YAMLError, ValueError, RecursionError) as error:
         raise ValueError(f"{file} is not YAML: {' '.join(str(error).split())}") from None
     blocks = blocks if isinstance(blocks, dict) else {}
     bus = blocks.get("bus")

@@ -169,9 +169,16 @@ def _sealed(kind: type) -> type:
     return type(f"Sealed{kind.__name__}", (rospy.AnyMsg,), {**own, "__slots__": [], "_slot_types": [], "kind": kind})
 
 
+UNREADABLE = (
+    *(genpy.DeserializationError, UnicodeError, ValueError, TypeError, MemoryError, OverflowError),
+    AttributeError,  # of _Parts
+)
+"""what genpy raises for bytes that are no message of a type"""
+
+
 class _Parts:
     """The bytes of a message for genpy, which slices them: a long slice is a view, for a copy costs a page fault per
-    4 KB.
+    4 KB. A text that long raises AttributeError, because a view cannot be decoded.
     """
 
     def __init__(self, data: bytes) -> None:
@@ -191,7 +198,7 @@ def opened(sealed: Any, not_finite: Collection[str] = (), longest: int = 0) -> A
     try:
         message = sealed.kind()
         message.deserialize_numpy(_Parts(data), np) if sealed.kind._type == GRID else message.deserialize(data)
-    except (genpy.DeserializationError, UnicodeError, ValueError, TypeError, MemoryError, OverflowError) as error:
+    except UNREADABLE as error:
         raise UnfitError(f"is no {sealed.kind._type}: {str(error)[:100]}") from None
     require_fit(message, MAY_BE_INFINITE.union(not_finite) if not_finite else MAY_BE_INFINITE)
     with contextlib.suppress(AttributeError):

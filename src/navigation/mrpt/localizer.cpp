@@ -183,7 +183,7 @@ Localization Localizer::state() const noexcept {
 
 std::string Localizer::reason() const {
   const auto cm = [](double m) { return std::to_string(std::lround(100 * m)) + " cm"; };
-  if (parts_->awaits_scan()) return "a pose was set, and no scan has come since: see the topic scan";
+  if (parts_->awaits_scan()) return "a pose was set, and no scan was used since";
   switch (parts_->state) {
     case Localization::kLocalized:
       return "";

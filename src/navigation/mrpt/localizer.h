@@ -26,7 +26,7 @@ inline constexpr double kUpdateDistance = 0.1;  ///< m
 inline constexpr double kUpdateTurn = 0.1;      ///< rad
 
 enum class Localization {
-  kNoPose,     ///< neither a pose nor a global start was given, or no scan has come since
+  kNoPose,     ///< neither a pose nor a global start was given, or no scan was used since a pose was set
   kSearching,  ///< after a global start: the particles lie far apart
   kLocalized,
   kLost,  ///< the scans do not fit the map
@@ -58,7 +58,8 @@ class Localizer {
   /// Returns why it is not kLocalized, in one sentence; "" if it is.
   std::string reason() const;
 
-  /// Returns the pose at the last scan. Its covariance is that of the particles and that of the map's own cells.
+  /// Returns the pose at the last scan, valid while kLocalized. Its covariance is that of the particles and that of the
+  /// map's own cells.
   UncertainPose pose() const;
 
   /// Returns the pose of odom in the map. Valid while kLocalized.

@@ -3,6 +3,7 @@ import signal
 import subprocess
 import sys
 import time
+from pathlib import Path
 
 import pytest
 from robot_control import ClosedLoop
@@ -128,7 +129,10 @@ def test_a_robot_and_its_drives_may_be_files(tmp_path, capsys):
     assert (given.robot, str(given.drives), given.drive.driver, given.rate) == (str(urdf), go2, "unitree_go", 500)
     assert demo.overlay(given.drives, given.rate, velocity=False).endswith("robot: {rate: 500}\n")
     text.write_text("- [")
-    wrong = {"--drives": [str(urdf), str(text), "motors"], "--robot": ["robot"], "--rate": ["10", "2001"]}
+    (tmp_path / "circle").symlink_to(tmp_path / "circle")
+    (tmp_path / "$(env HOME)").touch()
+    no_files = ["motors", str(tmp_path), str(tmp_path / "circle"), str(tmp_path / "$(env HOME)"), "a" * 300]
+    wrong = {"--drives": [str(urdf), str(text), *no_files], "--robot": no_files, "--rate": ["10", "2001", "1e3"]}
     for name, value in [(name, value) for name, values in wrong.items() for value in values]:
         with pytest.raises(SystemExit):
             parse([name, value, "--out", str(tmp_path)])
@@ -142,6 +146,13 @@ def test_a_folder_that_cannot_be_written_to_is_refused_before_anything_starts(ou
         parse(["--out", str(tmp_path / out)])
     assert ended.value.code == 2
     assert "cannot be written to" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(("drives", "velocity"), [("odrive", False), (None, True)])
+def test_what_does_not_fit_a_robot_on_legs_of_a_file_is_refused(drives, velocity, tmp_path):
+    file = None if drives is None else Path(share_file(f"config/drives/{drives}.yaml"))
+    with pytest.raises(demo.DemoError, match=f"quadbot.urdf .*{drives or '--wheel-command'}"):
+        demo.run_demo(2.0, tmp_path, share_file("urdf/quadbot.urdf"), file, velocity=velocity)
 
 
 def test_the_command_line_is_judged_before_anything_is_built(tmp_path):

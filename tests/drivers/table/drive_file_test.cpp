@@ -1,5 +1,5 @@
 #include <filesystem>
-#include <regex>
+#include <sstream>
 
 #include "drivers/cia402/cia402_parameters.h"
 #include "drivers/damiao/damiao_parameters.h"
@@ -76,14 +76,12 @@ struct DriveFileTest : ::testing::Test {
   static std::string uncommented(std::string_view name) {
     std::ifstream file(example(name));
     std::string text;
-    const std::regex line_of_key("  (# )?(\\w+): ([^ ]+).*");
     for (std::string line; std::getline(file, line);) {
-      std::smatch found;
-      if (std::regex_match(line, found, line_of_key)) {
-        text += "  " + found[2].str() + ": " + found[3].str() + "\n";
-      } else if (!line.starts_with(" ") && !line.starts_with("#")) {
-        text += line + "\n";
-      }
+      if (!line.starts_with(" ") && !line.starts_with("#")) text += line + "\n";
+      if (!line.starts_with("  ")) continue;
+      std::istringstream words(line.substr(line.starts_with("  # ") ? 4 : 2));
+      std::string key, value;
+      if (words >> key >> value && key.ends_with(":")) text += "  " + key + " " + value + "\n";
     }
     return text;
   }

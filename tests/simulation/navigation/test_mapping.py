@@ -137,7 +137,7 @@ def test_a_pose_that_is_set_holds_from_the_next_scan_on(sights, grid):
     for place in (0, len(sights) // 2):
         localizer.set_pose(sights[place].truth, KNOWN)
         assert localizer.state == "no pose"
-        assert "no scan has come since" in localizer.reason
+        assert "no scan was used since" in localizer.reason
         assert followed(localizer, sights[place : place + 1]) == ["localized"]
         assert localizer.reason == ""
         assert np.hypot(*(np.array(localizer.pose[0]) - sights[place].truth)[:2]) < 0.05

@@ -2,7 +2,7 @@
 
 import argparse
 import tempfile
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from pathlib import Path
 
 from robot_control.installed_files import share_file
@@ -49,26 +49,33 @@ def parse(arguments: Sequence[str] | None = None) -> argparse.Namespace:
 
 
 def _robot(text: str) -> str:
-    if text in LEGS:
-        return text
-    if not (path := Path(text).resolve()).is_file():
-        raise argparse.ArgumentTypeError(f"{text} is neither {' nor '.join(LEGS)} nor a file")
-    return str(path)
+    return text if text in LEGS else str(_file(text, LEGS))
 
 
 def _drives(text: str) -> tuple[Path, DriveRow]:
-    path = Path(share_file(f"config/drives/{text}.yaml") if text in DRIVES else text).resolve()
+    path = Path(share_file(f"config/drives/{text}.yaml")) if text in DRIVES else _file(text, DRIVES)
     try:
         return path, drive_of(path)
     except (OSError, ValueError) as error:
         raise argparse.ArgumentTypeError(f"{text} is none of {', '.join(DRIVES)} nor a drive file: {error}") from None
 
 
+def _file(text: str, names: Collection[str]) -> Path:
+    """The absolute path of a file that is none of these names. roslaunch would replace "$(…)" in it."""
+    try:
+        path = Path(text).resolve()
+        found = path.is_file() and "$(" not in text
+    except (OSError, RuntimeError) as error:  # RuntimeError: links in a circle
+        raise argparse.ArgumentTypeError(f"{text} cannot be read: {error}") from None
+    if not found:
+        raise argparse.ArgumentTypeError(f"{text} is none of {', '.join(names)} nor a file without $( in its name")
+    return path
+
+
 def _rate(text: str) -> int:
-    value = int(text)
-    if not RATES[0] <= value <= RATES[1]:
-        raise argparse.ArgumentTypeError(f"{text} is not {RATES[0]} … {RATES[1]} Hz")
-    return value
+    if not (text.isdecimal() and RATES[0] <= int(text) <= RATES[1]):
+        raise argparse.ArgumentTypeError(f"{text} is not a whole number of {RATES[0]} … {RATES[1]} Hz")
+    return int(text)
 
 
 def _seconds(text: str) -> float:

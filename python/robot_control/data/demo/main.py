@@ -2,6 +2,7 @@
 
 import os
 import re
+import shlex
 import shutil
 import signal
 import sys
@@ -62,13 +63,18 @@ def run_demo(
     except (RobotError, ParameterError, OSError) as error:
         raise DemoError(in_words(error)) from None
     legged = machine["kind"] == "legs"
+    drive = None if drives is None else drive_of(drives)
+    if drive is not None and (drive.command == "impedance") != legged:
+        raise DemoError(f"{robot} is a robot on {machine['kind']}: --drives {drive.name} do not move it")
+    if velocity and legged:
+        raise DemoError(f"{robot} has legs, but --wheel-command needs wheels: remove one of the two")
     parameters = out / "ros" / "overlay.yaml"
     parameters.parent.mkdir()
     parameters.write_text(
         overlay(drives, rate, velocity=velocity) + lockstep.LIE_DOWN * (legged and clock == "lockstep")
     )
     print(f"starting roscore, {Kind(LEGGED if legged else WHEELED).worded(', '.join(LOOP))}, {TELEMETRY}")
-    driver = "" if drives is None else drive_of(drives).driver
+    driver = "" if drive is None else drive.driver
     before, began = processor_time(), time.monotonic()
     asked = CLOCKS[clock].drive(seconds, Driven(robot, legged, out, parameters, drives, driver, 1 / rate))
     stolen, took = stolen_share(before, processor_time()), time.monotonic() - began
@@ -94,7 +100,7 @@ def run_demo(
     else:
         print(f"{log['time'][-1]:.1f} s of simulated time in {took:.1f} s")
     print(f"\n{to_table(summary)}\n\n{verdict}; see {printable(str(out))}/summary.json, run.bag, run.csv, run.png")
-    print(f"see it in a browser: scripts/try {printable(robot)}")
+    print(f"see it in a browser: scripts/try {shlex.quote(printable(robot))}")
     return 0 if summary.passed else 1
 
 
