@@ -2,7 +2,6 @@
 
 #include <filesystem>
 #include <fstream>
-#include <regex>
 #include <span>
 
 #include "drivers/drive/can_drive_file.h"
@@ -112,8 +111,12 @@ TEST(BehindDrives, AnotherProgramFindsThemOnEachBus) {
   const std::string path = testing::TempDir() + "leg_drives.yaml";
   Parameters parameters = behind_drives();
   std::ifstream example(parameters.drives);
-  const std::string text{std::istreambuf_iterator<char>(example), {}};
-  std::ofstream(path) << std::regex_replace(text, std::regex("can([0-3])"), "unix:" + folder + "$1");
+  std::string text{std::istreambuf_iterator<char>(example), {}};
+  for (const std::string bus : {"can0", "can1", "can2", "can3"}) {
+    for (std::size_t at = 0; (at = text.find(bus, at)) != std::string::npos;)
+      text.replace(at, bus.size(), "unix:" + folder + bus.back());
+  }
+  std::ofstream(path) << text;
   parameters.drives = path;
   const std::vector<Word> words = words_of(DriverName());
   parameters.driver = static_cast<DriverName>(std::ranges::find(words, "can", &Word::text)->value);
