@@ -73,8 +73,6 @@ struct Localizer::Parts {
   PlanarPose aligned;  // of the frame of all these in that of the given map
   int settled = 0;     // scans since the particles of a search came together
 
-  bool awaits_scan() const { return first && state == Localization::kLocalized; }
-
   /// Returns the pose at the last scan.
   CPose2D now() const { return mrpt_pose(pose.mean) + (mrpt_pose(odometry) - mrpt_pose(updated.mean)); }
 
@@ -178,12 +176,16 @@ bool Localizer::update(const Scan& scan, const PlanarPose& sensor, const Uncerta
 }
 
 Localization Localizer::state() const noexcept {
-  return parts_->awaits_scan() ? Localization::kNoPose : parts_->state;
+  return awaits_scan() ? Localization::kNoPose : parts_->state;
+}
+
+bool Localizer::awaits_scan() const noexcept {
+  return parts_->first && parts_->state == Localization::kLocalized;
 }
 
 std::string Localizer::reason() const {
   const auto cm = [](double m) { return std::to_string(std::lround(100 * m)) + " cm"; };
-  if (parts_->awaits_scan()) return "a pose was set, and no scan was used since";
+  if (awaits_scan()) return "a pose was set, and no scan was used since";
   switch (parts_->state) {
     case Localization::kLocalized:
       return "";

@@ -55,6 +55,9 @@ class Localizer {
 
   Localization state() const noexcept;
 
+  /// Returns whether a pose was set and no scan was used since, which is kNoPose.
+  bool awaits_scan() const noexcept;
+
   /// Returns why it is not kLocalized, in one sentence; "" if it is.
   std::string reason() const;
 

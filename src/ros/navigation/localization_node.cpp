@@ -81,11 +81,10 @@ class LocalizationService {
     const std::string scan = input_.problem();
     if (!localizer_)
       return topics_.publish("no pose", "there is no map: set localization.map or call load_map", 0, stamp_);
-    const Localization state = localizer_->state();
-    const bool localized = state == Localization::kLocalized;
-    const bool needs_scan = localized || state == Localization::kNoPose;  // else the scans in use give the reason
-    const std::string why = needs_scan && !scan.empty() ? scan : localizer_->reason();
-    topics_.publish(name_of(state), why, localizer_->explained(), stamp_);
+    const bool localized = localizer_->state() == Localization::kLocalized;
+    const bool lacks_scan = !scan.empty() && (localized || localizer_->awaits_scan());
+    const std::string why = lacks_scan ? scan : localizer_->reason();
+    topics_.publish(name_of(localizer_->state()), why, localizer_->explained(), stamp_);
     if (localized) topics_.publish(localizer_->correction(), odometry);
   }
 

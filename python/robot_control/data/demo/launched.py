@@ -9,6 +9,7 @@ from pathlib import Path
 
 from robot_control.data.demo.arguments import LEGS
 from robot_control.data.run_log import LogError, read_log
+from robot_control.loop.drives import drive_of
 from robot_control.loop.signal_names import number_of
 from robot_control.ui.child import Child, children
 
@@ -42,8 +43,6 @@ class Driven:
     parameters: Path
     """laid over those of the package"""
     drives: Path | None = None
-    driver: str = ""
-    """of `drives`"""
     period: float = 1e-3
     """s"""
 
@@ -57,7 +56,7 @@ def launch(driven: Driven, arguments: Sequence[str]) -> Child:
         [
             *("roslaunch", "-p", port, "robot_control", "sim.launch", which),
             *("telemetry:=true", "black_box:=false", f"out:={out}", f"bus:={BUS}", f"params:={driven.parameters}"),
-            *([] if drives is None else [f"drives:={drives}", f"driver:={driven.driver}"]),
+            *([] if drives is None else [f"drives:={drives}", f"driver:={drive_of(drives).driver}"]),
             *arguments,
         ],
         out / "launch.log",

@@ -57,26 +57,15 @@ def run_demo(
     os.environ["ROS_HOME"] = str(out / "ros")
     shutil.rmtree(out / "ros", ignore_errors=True)
 
-    urdf = share_file(f"urdf/{robot}.urdf") if robot in LEGS else robot
-    try:
-        machine = describe(share_file("config/robot_params.yaml"), [("robot.urdf", urdf)])
-    except (RobotError, ParameterError, OSError) as error:
-        raise DemoError(in_words(error)) from None
-    legged = machine["kind"] == "legs"
-    drive = None if drives is None else drive_of(drives)
-    if drive is not None and (drive.command == "impedance") != legged:
-        raise DemoError(f"{robot} is a robot on {machine['kind']}: --drives {drive.name} do not move it")
-    if velocity and legged:
-        raise DemoError(f"{robot} has legs, but --wheel-command needs wheels: remove one of the two")
+    name, legged = robot_of(robot, drives, velocity=velocity)
     parameters = out / "ros" / "overlay.yaml"
     parameters.parent.mkdir()
     parameters.write_text(
         overlay(drives, rate, velocity=velocity) + lockstep.LIE_DOWN * (legged and clock == "lockstep")
     )
     print(f"starting roscore, {Kind(LEGGED if legged else WHEELED).worded(', '.join(LOOP))}, {TELEMETRY}")
-    driver = "" if drive is None else drive.driver
     before, began = processor_time(), time.monotonic()
-    asked = CLOCKS[clock].drive(seconds, Driven(robot, legged, out, parameters, drives, driver, 1 / rate))
+    asked = CLOCKS[clock].drive(seconds, Driven(robot, legged, out, parameters, drives, 1 / rate))
     stolen, took = stolen_share(before, processor_time()), time.monotonic() - began
 
     try:
@@ -88,7 +77,7 @@ def run_demo(
         summary = summarize(log, LINEAR, ANGULAR, asked, stolen, legged=legged, clock=clock)
         (out / "summary.json").write_text(to_json(summary))
         verdict = "tracked" if summary.passed else "NOT TRACKED"
-        what = f"{machine['name']}, {LINEAR} m/s and {ANGULAR} rad/s"
+        what = f"{name}, {LINEAR} m/s and {ANGULAR} rad/s"
         title = f"{what}, {CLOCK_WORDS[clock]}, {1000 / rate:g} ms cycles: {verdict}"
         draw_run(log, summary, title, out / "run.png")
     try:
@@ -102,6 +91,26 @@ def run_demo(
     print(f"\n{to_table(summary)}\n\n{verdict}; see {printable(str(out))}/summary.json, run.bag, run.csv, run.png")
     print(f"see it in a browser: scripts/try {shlex.quote(printable(robot))}")
     return 0 if summary.passed else 1
+
+
+def robot_of(robot: str, drives: Path | None, *, velocity: bool) -> tuple[str, bool]:
+    """The name of a robot, and whether it has legs.
+
+    Raises:
+        DemoError: it cannot be used, or not with these drives or with speeds as commands.
+    """
+    urdf = share_file(f"urdf/{robot}.urdf") if robot in LEGS else robot
+    try:
+        machine = describe(share_file("config/robot_params.yaml"), [("robot.urdf", urdf)])
+    except (RobotError, ParameterError, OSError) as error:
+        raise DemoError(in_words(error)) from None
+    legged = machine["kind"] == "legs"
+    drive = None if drives is None else drive_of(drives)
+    if drive is not None and (drive.command == "impedance") != legged:
+        raise DemoError(f"{robot} is a robot on {machine['kind']}: --drives {drive.name} do not move it")
+    if velocity and legged:
+        raise DemoError(f"{robot} has legs, but --wheel-command needs wheels: remove one of the two")
+    return machine["name"], legged
 
 
 def overlay(drives: Path | None, rate: int, *, velocity: bool) -> str:
