@@ -20,6 +20,11 @@ class DriveRow:
     command: str
 
     @property
+    def moves_legs(self) -> bool:
+        """True if it moves legs, false if it moves wheels."""
+        return self.command == "impedance"
+
+    @property
     def wheel_commands(self) -> tuple[str, ...]:
         """The values of robot.wheel_command that it takes; none of a drive of legs."""
         return {"any": ("torque", "velocity"), "impedance": ()}.get(self.command, (self.command,))

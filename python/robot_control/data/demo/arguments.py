@@ -34,10 +34,10 @@ def parse(arguments: Sequence[str] | None = None) -> argparse.Namespace:
     parser.add_argument("--clock", choices=("lockstep", "wall"), default="lockstep", help=meaning)
     given = parser.parse_args(arguments)
     given.drives, given.drive = given.drives or (None, None)
-    of_legs = given.drive is not None and given.drive.command == "impedance"
+    of_legs = given.drive is not None and given.drive.moves_legs
     legged = LEGS.get(given.robot, of_legs)
     if given.drive is not None and of_legs != legged:
-        fitting = ", ".join(name for name, row in DRIVES.items() if (row.command == "impedance") == legged)
+        fitting = ", ".join(name for name, row in DRIVES.items() if row.moves_legs == legged)
         parser.error(f"--drives {given.drive.name} do not move {given.robot}: take one of {fitting}")
     if given.wheel_command and legged:
         parser.error(f"--wheel-command needs wheels, but {given.robot} has legs: remove one of the two")

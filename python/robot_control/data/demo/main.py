@@ -106,7 +106,7 @@ def robot_of(robot: str, drives: Path | None, *, velocity: bool) -> tuple[str, b
         raise DemoError(in_words(error)) from None
     legged = machine["kind"] == "legs"
     drive = None if drives is None else drive_of(drives)
-    if drive is not None and (drive.command == "impedance") != legged:
+    if drive is not None and drive.moves_legs != legged:
         raise DemoError(f"{robot} is a robot on {machine['kind']}: --drives {drive.name} do not move it")
     if velocity and legged:
         raise DemoError(f"{robot} has legs, but --wheel-command needs wheels: remove one of the two")
