@@ -13,8 +13,12 @@ import time
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
+import rosgraph
+
 CLONE_NEWNET = 0x40000000
 """unshare(2)"""
+START_LIMIT = 30.0
+"""s for what takes half a second on an idle machine"""
 FULL_SPEED = 1.0
 """m/s: max_linear_speed."""
 FAST = 0.97 * FULL_SPEED
@@ -42,13 +46,18 @@ class Master:
         atexit.register(self.kill)
 
     def start(self) -> None:
-        """Starts it, after `kill` as another master at the same address, which knows no node."""
+        """Starts it, after `kill` as another master at the same address, which knows no node; waits until it answers."""
         self._process = subprocess.Popen(
             ["rosmaster", "--core", "-p", self.uri.rpartition(":")[2]],
             stdin=subprocess.DEVNULL,
             stdout=subprocess.DEVNULL,
             stderr=subprocess.DEVNULL,
         )
+        end = time.monotonic() + START_LIMIT
+        while not rosgraph.is_master_online(self.uri):
+            if time.monotonic() > end or self._process.poll() is not None:
+                raise AssertionError(f"no ROS master answers at {self.uri}")
+            time.sleep(0.02)
 
     def kill(self) -> None:
         """Kills with -9 and waits for the end; a second call does nothing."""
