@@ -5,12 +5,13 @@ The loss comes at one of `PHASES` phases of a stride, while the request goes on.
     named    its stop latches and the driver's words name it; only where samples cease, encoders_lost may stop before
     upright  the body never leans by more than `LEANS`
     folds    from `FOLD_TIME` after the loss on the robot lies and rests, as in bench/faults/sequence_judge.py
+    stands   where motors without a timeout lose all buses: it rests from `STAND_TIME` on
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from robot_control import ClosedLoop
@@ -29,6 +30,7 @@ PHASES = 20
 CAN_RATE, DATAGRAM_RATE = 1000.0, 500.0  # Hz
 LOSS, FAULT = 0.02, 0.3  # s until it is named: where samples cease, and what a motor or battery reports
 SEEN = 0.01  # s until it is named, where the next sample or report shows it: a few cycles, no time without samples
+STAND_TIME = 6.0  # s; on its springs it rocks for some seconds
 LEANS = 0.6  # rad; docs/drivers.md states 0.55 after the loss of one bus
 LYING = 0.1  # m above the place where it lay; one leg may hold it up
 COLUMNS = ("permit_causes", "truth_tilt", "truth_z", "truth_linear", "truth_lateral")
@@ -40,24 +42,29 @@ ENCODERS_LOST = mask_of("StopCause", "encoders_lost")
 
 @dataclass(frozen=True)
 class Loss:
-    """A loss has a fault that is injected, s until it is named, words of the driver, and the cause of its stop."""
+    """A loss has a fault that is injected, s until it is named, words of the driver, and the cause of its stop.
+
+    After it the robot folds, or stands."""
 
     component: str
     fault: str
     latest: float
     words: str
     cause: str = "driver_fault"
+    folds: bool = True
 
 
 CAN = {
     "bus gone": Loss("bus", "off", LOSS, "is silent"),
     "cable of a leg": Loss("can0", "off", LOSS, "is silent"),
     "motor silent": Loss(KNEE, "off", LOSS, f"{OF_KNEE} is silent"),
+    "motor unplugged": Loss(KNEE, "unplugged", LOSS, f"{OF_KNEE} is silent"),
     "motor restarts": Loss(KNEE, "reset", LOSS, f"{OF_KNEE} is silent"),
     "second writer": Loss("can0", "second_writer", SEEN, "commanded by another program"),
     "motor hot": Loss(KNEE, "hot", FAULT, f"{OF_KNEE} is too hot"),
     "battery empty": Loss(EVERY_JOINT, "under_voltage", FAULT, "under-voltage"),
 }
+AK = CAN | {"bus gone": replace(CAN["bus gone"], folds=False)}
 UNITREE = {
     "line gone": Loss("line", "cut", LOSS, "is silent"),
     "robot off": Loss("robot", "off", LOSS, "is silent"),
@@ -79,7 +86,7 @@ BRIDGE = {
 LOSSES = {
     "damiao": CAN,
     "cybergear": CAN,
-    "ak": CAN,
+    "ak": AK,
     "unitree_legged": UNITREE,
     "unitree_go": {**UNITREE, "line gone": Loss("line", "cut", LOSS, "lost its bridge"), **BRIDGE},
 }
@@ -121,7 +128,7 @@ def run_loss(trial: WalkLoss) -> WalkOutcome:
     joints = [joint["name"] for joint in loop.robot["joints"]]
     for component in joints if loss.component == EVERY_JOINT else [loss.component]:
         loop.inject_fault(component, loss.fault)
-    log = loop.run(FOLD_TIME + MEAN_TIME, (SPEED, 0.0), COLUMNS)
+    log = loop.run((FOLD_TIME if loss.folds else STAND_TIME) + MEAN_TIME, (SPEED, 0.0), COLUMNS)
     causes = log["permit_causes"].astype(np.int64)
     named = first(causes & mask_of("StopCause", loss.cause) != 0)
     before = int(np.bitwise_or.reduce(causes[:named], initial=0))
@@ -139,5 +146,5 @@ def broken_rules(loss: Loss, loop: ClosedLoop, log: Log, before: int) -> Iterato
         yield f"upright: {log['truth_tilt'].max():.2f} rad"
     speed = resting_speed(log, loop.period, {"truth_linear": 1, "truth_lateral": 1})[-1]
     height = log["truth_z"][-1]
-    if speed > STANDING_SPEED or height > LYING:
-        yield f"folds: {speed:.2f} m/s at {height:.2f} m"
+    if speed > STANDING_SPEED or (loss.folds and height > LYING):
+        yield f"{'folds' if loss.folds else 'stands'}: {speed:.2f} m/s at {height:.2f} m"

@@ -171,7 +171,7 @@ class ClosedLoop:
                 <joint>_motor; gyro accelerometer battery e_stop_button controller estimator monitor; with `drives`
                 also bus or the address of one, and the joints by name
             kind: ok (ends the fault) off stuck garbage wrong slow delayed intermittent; bus: ok off lossy disturbed; a
-                joint's drive: ok off reset other_zero slipped encoder released hot under_voltage not_finite
+                joint's drive: ok off unplugged reset other_zero slipped encoder released hot under_voltage not_finite
 
         Raises:
             ValueError: an unknown word, with the list of those there are.

@@ -42,6 +42,7 @@ CanDriver::CanDriver(CanBusParameters parameters, DriveSet drives, std::span<con
       drives_(std::move(drives)),
       takes_speeds_(drives_.size() > 0 && drives_[0].drive_parameters().takes_speeds),
       clock_(std::move(clock)),
+      period_(period),
       brakes_(brakes.begin(), brakes.end()),
       commands_(drives_.size()),
       send_(sockets.size()) {
@@ -257,6 +258,15 @@ DriveCommand CanDriver::wanted(std::size_t joint, const JointCommand& command) n
   return wanted;
 }
 
+void CanDriver::add_hold(const DriveParameters& drive, const JointSample& now, DriveCommand& wanted) const noexcept {
+  const double stiffness = std::min(drive.torque_limit / (kHoldSpeed * period_), drive.max_stiffness);
+  if (wanted.stiffness >= stiffness) return;
+  const double moves = kHoldPeriods * period_ * now.velocity;
+  wanted.stiffness = stiffness;
+  wanted.position = now.position + moves;
+  wanted.torque += stiffness * moves;
+}
+
 void CanDriver::add_impedance(std::size_t joint, const JointCommand& command, const JointSample& now,
                               DriveCommand& wanted) const noexcept {
   const DriveParameters& drive = drives_[joint].drive_parameters();
@@ -267,6 +277,7 @@ void CanDriver::add_impedance(std::size_t joint, const JointCommand& command, co
     case JointMode::kImpedance:
       wanted.stiffness = std::min(command.stiffness, drive.max_stiffness);
       wanted.position = command.position;
+      if (drive.on_silence == SilenceReaction::kKeeps) add_hold(drive, now, wanted);
       [[fallthrough]];
     case JointMode::kVelocity:
       wanted.damping = std::min(command.damping, drive.max_damping);

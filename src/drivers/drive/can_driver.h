@@ -18,9 +18,15 @@
 /// A drive that closes an impedance (DriveParameters::max_stiffness) is given stiffness, damping and their targets. The
 /// torque beside them is what is missing from the law's torque at the time of the call. So the sum is within the
 /// joint's limit, and gains beyond those of the drive act with the delay of the sample. A torque at its limit is given
-/// alone. It brakes with the damping of its Brake. In a fault of another drive that came after kRunning it obeys
-/// further, because the gate then orders the stop action. A robot on legs folds with it, and would tip over on braked
-/// legs.
+/// alone. It brakes with the damping of its Brake.
+///
+/// A motor that keeps its last order for ever (SilenceReaction::kKeeps) shall stand still with it. So each impedance
+/// has at least the stiffness torque_limit / (kHoldSpeed h), about the angle after kHoldPeriods. At that angle the
+/// torque is the law's. A frame that is late by h makes a damping of torque_limit / kHoldSpeed, of either sign, which a
+/// leg bears (docs/evidence/leg_drives.md, Losses).
+///
+/// In a fault of another drive that came after kRunning a drive obeys further, because the gate then orders the stop
+/// action. A robot on legs folds with it, and would tip over on braked legs.
 
 #include <array>
 #include <deque>
@@ -70,6 +76,8 @@ class CanDriver final : public Driver {
   const CanBus& bus(std::size_t i = 0) const noexcept { return lines_[i].bus; }
 
  private:
+  static constexpr double kHoldSpeed = 200;    // rad/s
+  static constexpr double kHoldPeriods = 1.5;  // until the middle of the period in which the order acts
   static constexpr int kLastCommands = 3;  // one may be lost, and some motors of legs keep their last order for ever
   static constexpr int kMaxBatches = 8;    // of frames in one cycle, so that a flooded bus does not stop the loop
 
@@ -95,6 +103,7 @@ class CanDriver final : public Driver {
   void judge_faults() noexcept;
   bool may_have_torque(std::size_t joint) const noexcept;
   DriveCommand wanted(std::size_t joint, const JointCommand& command) noexcept;
+  void add_hold(const DriveParameters& drive, const JointSample& now, DriveCommand& wanted) const noexcept;
   void add_impedance(std::size_t joint, const JointCommand& command, const JointSample& now,
                      DriveCommand& wanted) const noexcept;
 
@@ -108,6 +117,7 @@ class CanDriver final : public Driver {
   bool checked_ = false;  // all drives were ready or running in the last `read`
   double load_ = 0;       // the greatest one of a bus, planned
   DriverClock clock_;
+  double period_;  // s
   std::vector<Brake> brakes_;
   std::vector<JointLaw> laws_;
   std::vector<DriveCommand> commands_;

@@ -21,6 +21,7 @@ struct DeviceMotor {
 enum class DeviceFault : std::uint8_t {
   kNone,          ///< healthy again; a device that was off boots
   kOff,           ///< no supply: no frame, no torque
+  kUnplugged,     ///< no line: no frame, the motor control goes on
   kReset,         ///< The device boots again, once.
   kOtherZero,     ///< Its position continues from another zero, once.
   kSlipped,       ///< The encoder slips on its shaft: another zero, and the commutation is wrong (ODrive alone).
@@ -36,6 +37,7 @@ inline std::vector<Word> words_of(DeviceFault) {
   using enum DeviceFault;
   return {{"ok", kNone},
           {"off", kOff},
+          {"unplugged", kUnplugged},
           {"reset", kReset},
           {"other_zero", kOtherZero},
           {"slipped", kSlipped},
@@ -59,7 +61,7 @@ class Device {
   void step(std::int64_t now_ns) {
     const double seconds = 1.0e-9 * static_cast<double>(now_ns - now_ns_);
     now_ns_ = now_ns;
-    if (!silent(now_ns)) run(now_ns, seconds);
+    if (powered(now_ns)) run(now_ns, seconds);
   }
   void inject(DeviceFault fault) {
     const bool boots = fault == DeviceFault::kReset || (fault_ == DeviceFault::kOff && fault != DeviceFault::kOff);
@@ -71,7 +73,7 @@ class Device {
  protected:
   explicit Device(VirtualCan& bus)
       : bus_(bus), party_(bus.join([this](const can_frame& frame, std::int64_t now_ns) {
-          if (!silent(now_ns)) receive(frame, now_ns);
+          if (connected(now_ns)) receive(frame, now_ns);
         })) {}
 
   /// The device is silent for kBootNs.
@@ -79,7 +81,9 @@ class Device {
     boot_ns_ = bus_.now_ns() + kBootNs;
     boot();
   }
-  void transmit(const can_frame& frame) { bus_.send(party_, frame); }
+  void transmit(const can_frame& frame) {
+    if (connected(bus_ns())) bus_.send(party_, frame);
+  }
   DeviceFault fault() const { return fault_; }
   /// Time of the bus, which is ahead of the last step while frames arrive.
   std::int64_t bus_ns() const { return bus_.now_ns(); }
@@ -87,7 +91,8 @@ class Device {
   std::int64_t now_ns() const { return now_ns_; }
 
  private:
-  bool silent(std::int64_t now_ns) const { return fault_ == DeviceFault::kOff || now_ns < boot_ns_; }
+  bool powered(std::int64_t now_ns) const { return fault_ != DeviceFault::kOff && now_ns >= boot_ns_; }
+  bool connected(std::int64_t now_ns) const { return powered(now_ns) && fault_ != DeviceFault::kUnplugged; }
   virtual void boot() = 0;
   virtual void begin_fault() = 0;
   virtual void receive(const can_frame& frame, std::int64_t now_ns) = 0;

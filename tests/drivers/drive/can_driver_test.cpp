@@ -11,7 +11,7 @@
 
 namespace robot_control::tests {
 
-enum class TestedDialect { kOdrive, kCia402, kVesc, kDamiao };
+enum class TestedDialect { kOdrive, kCia402, kVesc, kDamiao, kAk };
 constexpr const char* kNames[] = {"odrive", "cia402", "vesc"};
 
 /// Two drives on devices in virtual time. A datagram socket stands between the driver and the bus.
@@ -27,8 +27,7 @@ class CanMachine final : public Driver {
       if (write_frame(frame) != sizeof frame) ADD_FAILURE() << "the wire is full";
     });
     rig_.host_lives = false;
-    const std::uint8_t first =
-        dialect == TestedDialect::kCia402 || dialect == TestedDialect::kDamiao ? 1 : 0;  // 0 is no node
+    const std::uint8_t first = dialect == TestedDialect::kOdrive || dialect == TestedDialect::kVesc ? 0 : 1;
     add(dialect, first);
     add(dialect, first + 1);
     // At the joint 0.0625 kg·m²: d h/J = 0.16.
@@ -77,6 +76,7 @@ class CanMachine final : public Driver {
     if (dialect == TestedDialect::kOdrive) robot_control::add(rig_, odrive_pair(node));
     if (dialect == TestedDialect::kCia402) robot_control::add(rig_, cia402_pair(node));
     if (dialect == TestedDialect::kDamiao) robot_control::add(rig_, damiao_pair(node));
+    if (dialect == TestedDialect::kAk) robot_control::add(rig_, ak_pair(node));
     if (dialect != TestedDialect::kVesc) return;
     VescPair pair = vesc_pair(node);
     pair.drive.drive.max_silence = 10;  // of 2 ms
@@ -221,6 +221,7 @@ TEST_P(CanDriverOn, BrakesAndHoldsOnASlope) {
 
 /// Drives that close an impedance by themselves.
 struct CanDriverOfImpedances : ::testing::Test {
+  explicit CanDriverOfImpedances(TestedDialect dialect = TestedDialect::kDamiao) : machine_(dialect) {}
   void SetUp() override { machine_.start(); }
   SensorFrame cycles(int count, const JointCommand& command) {
     SensorFrame frame;
@@ -233,8 +234,31 @@ struct CanDriverOfImpedances : ::testing::Test {
   /// N·m, of joint 0: the gear is 2.5.
   double torque() { return 2.5 * std::abs(machine_.rig().motor(0).torque); }
 
-  CanMachine machine_{TestedDialect::kDamiao};
+  CanMachine machine_;
 };
+
+/// Drives that keep their last order for ever.
+struct CanDriverOfKeepers : CanDriverOfImpedances {
+  CanDriverOfKeepers() : CanDriverOfImpedances(TestedDialect::kAk) {}
+};
+
+TEST_F(CanDriverOfKeepers, AMotorThatLosesItsLineStandsStillWithItsLastOrder) {
+  const DeviceMotor& motor = machine_.rig().motor(0);
+  const double begin = motor.position;
+  cycles(1, {.mode = JointMode::kImpedance, .damping = 0.5, .effort = 2});
+  machine_.rig().run(3);  // The driver is silent.
+  EXPECT_NEAR(motor.velocity, 0, 0.01);
+  EXPECT_NEAR(std::abs(motor.position - begin) / 2.5, 0.2 * 2 / 4, 0.02);  // the limit of 4 N·m within 0.2 rad
+}
+
+/// The torque is that of the order at the angle that the motor has in the cycle, also in motion.
+TEST_F(CanDriverOfKeepers, TheirStiffnessDoesNotChangeTheMotion) {
+  SensorFrame frame = cycles(1, {});
+  const double begin = frame.joints[0].position;
+  for (int i = 0; i < 800; ++i) frame = cycles(1, {.mode = JointMode::kImpedance, .damping = 0.5, .effort = 2});
+  EXPECT_NEAR(frame.joints[0].velocity, 2 / 0.5, 0.1);
+  EXPECT_GT(frame.joints[0].position - begin, 2);
+}
 
 TEST_F(CanDriverOfImpedances, TheSumOfImpedanceAndTorqueIsWithinTheLimit) {
   constexpr double kLimit = 4, kStep = 2.5 * 2 * 54 / 4095;  // N·m, of drive_parameters; of the protocol
