@@ -44,7 +44,8 @@ ENCODERS_LOST = mask_of("StopCause", "encoders_lost")
 class Loss:
     """A loss has a fault that is injected, s until it is named, words of the driver, and the cause of its stop.
 
-    After it the robot folds, or stands."""
+    After it the robot folds, or stands.
+    """
 
     component: str
     fault: str

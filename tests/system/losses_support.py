@@ -46,7 +46,7 @@ class Master:
         atexit.register(self.kill)
 
     def start(self) -> None:
-        """Starts it, after `kill` as another master at the same address, which knows no node; waits until it answers."""
+        """Starts it and waits until it answers. After `kill` it is another master, which knows no node."""
         self._process = subprocess.Popen(
             ["rosmaster", "--core", "-p", self.uri.rpartition(":")[2]],
             stdin=subprocess.DEVNULL,
