@@ -65,7 +65,6 @@ CAN = {
     "motor hot": Loss(KNEE, "hot", FAULT, f"{OF_KNEE} is too hot"),
     "battery empty": Loss(EVERY_JOINT, "under_voltage", FAULT, "under-voltage"),
 }
-AK = CAN | {"bus gone": replace(CAN["bus gone"], folds=False)}
 UNITREE = {
     "line gone": Loss("line", "cut", LOSS, "is silent"),
     "robot off": Loss("robot", "off", LOSS, "is silent"),
@@ -87,7 +86,7 @@ BRIDGE = {
 LOSSES = {
     "damiao": CAN,
     "cybergear": CAN,
-    "ak": AK,
+    "ak": {**CAN, "bus gone": replace(CAN["bus gone"], folds=False)},
     "unitree_legged": UNITREE,
     "unitree_go": {**UNITREE, "line gone": Loss("line", "cut", LOSS, "lost its bridge"), **BRIDGE},
 }

@@ -14,11 +14,10 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 import rosgraph
+from system.system_support import wait_for
 
 CLONE_NEWNET = 0x40000000
 """unshare(2)"""
-START_LIMIT = 30.0
-"""s for what takes half a second on an idle machine"""
 FULL_SPEED = 1.0
 """m/s: max_linear_speed."""
 FAST = 0.97 * FULL_SPEED
@@ -53,11 +52,7 @@ class Master:
             stdout=subprocess.DEVNULL,
             stderr=subprocess.DEVNULL,
         )
-        end = time.monotonic() + START_LIMIT
-        while not rosgraph.is_master_online(self.uri):
-            if time.monotonic() > end or self._process.poll() is not None:
-                raise AssertionError(f"no ROS master answers at {self.uri}")
-            time.sleep(0.02)
+        wait_for(f"a ROS master at {self.uri}", lambda: bool(rosgraph.is_master_online(self.uri)))
 
     def kill(self) -> None:
         """Kills with -9 and waits for the end; a second call does nothing."""

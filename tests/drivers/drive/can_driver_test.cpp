@@ -27,7 +27,8 @@ class CanMachine final : public Driver {
       if (write_frame(frame) != sizeof frame) ADD_FAILURE() << "the wire is full";
     });
     rig_.host_lives = false;
-    const std::uint8_t first = dialect == TestedDialect::kOdrive || dialect == TestedDialect::kVesc ? 0 : 1;
+    const std::uint8_t first =
+        dialect == TestedDialect::kOdrive || dialect == TestedDialect::kVesc ? 0 : 1;  // elsewhere 0 is no node
     add(dialect, first);
     add(dialect, first + 1);
     // At the joint 0.0625 kg·m²: d h/J = 0.16.

@@ -558,6 +558,7 @@ std::vector<FaultCase> fault_cases() {
       {"HotCybergear", cybergear, DeviceFault::kHot, "is too hot: temperature, 120 instead of 90"},
       {"UnderVoltageCybergear", cybergear, DeviceFault::kUnderVoltage, "reports an error: under-voltage"},
       {"OffAk", ak, DeviceFault::kOff, "is silent: no position"},
+      {"UnpluggedAk", ak, DeviceFault::kUnplugged, "is silent: no position"},
       {"ResetAk", ak, DeviceFault::kReset, "is silent: no position"},
       {"OtherZeroAk", ak, DeviceFault::kOtherZero, "reports a jump of its position, "},
       {"EncoderAk", ak, DeviceFault::kEncoder, "reports an error: encoder"},
