@@ -36,7 +36,7 @@ class BareFrames {
  public:
   BareFrames() {
     for (std::size_t i = 0; i < kFrames; ++i) {
-      parts_[i] = {.iov_base = &frames_[i], .iov_len = sizeof(can_frame)};
+      parts_[i] = {.iov_base = &frames_[i], .iov_len = kFrameBytes};
       heads_[i].msg_hdr.msg_iov = &parts_[i];
       heads_[i].msg_hdr.msg_iovlen = 1;
     }

@@ -14,10 +14,11 @@ std::optional<DriveFile::Overload> CanDriveFile::overload() {
                             std::to_string(kMaxLinks) + ": correct the key bus of the joints"};
   }
   for (std::size_t i = 0; i < buses.size(); ++i) {
-    if (bus_load(drives().plan(i), rate, bus.bit_rate) > max_load()) leave_out_frames();
+    if (bus_load(drives().plan(i), rate, bus.bit_rate, bus.data_rate) > max_load()) leave_out_frames();
   }
   for (std::size_t i = 0; i < buses.size(); ++i) {
-    const auto problem = bus_load_problem(drives().plan(i), rate, bus.bit_rate, request().min_rate, max_load());
+    const auto problem =
+        bus_load_problem(drives().plan(i), rate, bus.bit_rate, request().min_rate, max_load(), bus.data_rate);
     if (!problem) continue;
     const std::string place = buses.size() > 1 ? buses[i] + ": " : "";
     return Overload{.key = "bit_rate", .value = shortest(bus.bit_rate), .rule = place + *problem};
@@ -28,7 +29,7 @@ std::optional<DriveFile::Overload> CanDriveFile::overload() {
 CanSockets CanDriveFile::open_buses() const {
   CanSockets sockets;
   const std::vector<std::string> buses = drives().buses();
-  for (const std::string& address : buses) sockets.push_back(CanSocket::open(address));
+  for (const std::string& address : buses) sockets.push_back(CanSocket::open(address, {}, bus.data_rate > 0));
   return sockets;
 }
 

@@ -31,6 +31,7 @@ struct CanBusParameters {
   CanDialect dialect{};
   std::string address = "can0";   ///< can_socket.h
   double bit_rate = 1.0e6;        ///< bit/s, as set on the interface
+  double data_rate = 0;           ///< bit/s of the data of CAN FD, likewise; 0: classic CAN
   std::uint64_t host_node = 127;  ///< of this program, for the heartbeat that CANopen drives expect
 };
 

@@ -30,7 +30,7 @@ CanSockets devices_ends(std::optional<LineEnd> line, std::size_t buses, CanSocke
 
 CanFront::Bus::Bus(const CanDriveFile& file, std::string bus_address, CanSocket socket, std::uint64_t seed)
     : address(std::move(bus_address)),
-      can(file.bus.bit_rate, seed),
+      can(file.bus.bit_rate, seed, file.bus.data_rate),
       line(std::move(socket)),
       host(can.join([this](const can_frame& frame, std::int64_t now_ns) { carry(frame, now_ns); })),
       random(seed) {}
@@ -51,9 +51,10 @@ VirtualCan& CanFront::bus(const std::string& address) {
 
 void CanFront::Bus::carry(can_frame frame, std::int64_t now_ns) {
   if (fault == AnswerFault::kLost) return;
-  const auto bit = static_cast<unsigned>(fault == AnswerFault::kDamaged ? random() % 64 : 64);
+  const unsigned bytes = is_fd(frame) ? frame.len : CAN_MAX_DLEN;
+  const auto bit = static_cast<unsigned>(fault == AnswerFault::kDamaged ? random() % (8 * bytes) : 8 * bytes);
   if (bit / 8 < frame.len) frame.data[bit / 8] ^= static_cast<std::uint8_t>(1U << bit % 8);
-  if (fault == AnswerFault::kShifted) std::rotate(frame.data, frame.data + 7, frame.data + 8);
+  if (fault == AnswerFault::kShifted) std::rotate(frame.data, frame.data + bytes - 1, frame.data + bytes);
   answers.push_back({frame, now_ns + (fault == AnswerFault::kLate ? kLateAnswerNs : 0)});
 }
 

@@ -4,7 +4,9 @@
 #include <sys/socket.h>
 
 #include <cerrno>
+#include <cstring>
 #include <ctime>
+#include <optional>
 #include <utility>
 
 namespace robot_control {
@@ -20,8 +22,27 @@ bool queue_is_full(int error) noexcept {
   return error == ENOBUFS || error == EAGAIN;
 }
 
-iovec part_of(const can_frame& first, std::size_t count) noexcept {
-  return {.iov_base = const_cast<can_frame*>(&first), .iov_len = count * sizeof(can_frame)};
+/// Writes the places of the frames' bytes to `parts`, which has room for them.
+template <class Parts>
+msghdr message_of(std::span<const can_frame> frames, Parts& parts) noexcept {
+  for (std::size_t i = 0; i < frames.size(); ++i)
+    parts[i] = {.iov_base = const_cast<can_frame*>(&frames[i]), .iov_len = transfer_size(frames[i])};
+  msghdr message{};
+  message.msg_iov = parts.data();
+  message.msg_iovlen = frames.size();
+  return message;
+}
+
+/// Returns the frame at the beginning of a datagram; nothing if it is not whole. Kernels before Linux 5.14 do not mark
+/// the frames of CAN FD.
+std::optional<can_frame> first_frame(std::span<const std::byte> datagram) noexcept {
+  if (datagram.size() < kFrameBytes) return std::nullopt;
+  can_frame frame{};
+  std::memcpy(&frame, datagram.data(), kFrameBytes);
+  if (datagram.size() == kFdFrameBytes) frame.flags |= CANFD_FDF;
+  if (datagram.size() < transfer_size(frame)) return std::nullopt;
+  if (is_fd(frame)) std::memcpy(frame.data, datagram.data() + offsetof(can_frame, data), CANFD_MAX_DLEN);
+  return frame;
 }
 
 template <class Value>
@@ -61,17 +82,19 @@ CanBus::Sent CanBus::send_part(std::span<const can_frame> frames) noexcept {
 }
 
 CanBus::Sent CanBus::send_together(std::span<const can_frame> frames) noexcept {
-  while (::send(socket_.descriptor(), frames.data(), frames.size_bytes(), MSG_DONTWAIT | MSG_NOSIGNAL) < 0) {
+  Parts parts{};
+  const msghdr message = message_of(frames, parts);
+  while (sendmsg(socket_.descriptor(), &message, MSG_DONTWAIT | MSG_NOSIGNAL) < 0) {
     if (errno != EINTR) return {.frames = 0, .error = errno};
   }
   return {.frames = frames.size(), .error = 0};
 }
 
 CanBus::Sent CanBus::send_singly(std::span<const can_frame> frames) noexcept {
-  std::array<iovec, kMaxFramesPerDatagram> parts{};
+  Parts parts{};
+  message_of(frames, parts);
   std::array<mmsghdr, kMaxFramesPerDatagram> messages{};
   for (std::size_t i = 0; i < frames.size(); ++i) {
-    parts[i] = part_of(frames[i], 1);
     messages[i].msg_hdr.msg_iov = &parts[i];
     messages[i].msg_hdr.msg_iovlen = 1;
   }
@@ -88,19 +111,16 @@ CanBus::Sent CanBus::send_singly(std::span<const can_frame> frames) noexcept {
 }
 
 CanBus::Sent CanBus::send_to_parties(std::span<const can_frame> frames) noexcept {
-  iovec part = part_of(frames.front(), frames.size());
+  Parts parts{};
+  const msghdr message = message_of(frames, parts);
   std::array<mmsghdr, kMaxParties> messages{};
   std::array<unsigned, kMaxParties> receivers{};
   std::size_t count = 0;
   for (unsigned party = 0; party < kMaxParties; ++party) {
     if (party == socket_.own_party() || !present_[party]) continue;
-    messages[count].msg_hdr = {.msg_name = &socket_.parties()[party],
-                               .msg_namelen = sizeof(sockaddr_un),
-                               .msg_iov = &part,
-                               .msg_iovlen = 1,
-                               .msg_control = nullptr,
-                               .msg_controllen = 0,
-                               .msg_flags = 0};
+    messages[count].msg_hdr = message;
+    messages[count].msg_hdr.msg_name = &socket_.parties()[party];
+    messages[count].msg_hdr.msg_namelen = sizeof(sockaddr_un);
     receivers[count++] = party;
   }
   std::size_t next = 0, reached = 0;
@@ -144,20 +164,29 @@ ReceivedFrames CanBus::receive(const CanTime& now) noexcept {
     mmsghdr& message = messages[static_cast<std::size_t>(i)];
     const bool whole = (message.msg_hdr.msg_flags & MSG_TRUNC) == 0;
     count_dropped(message.msg_hdr);
-    accept(datagrams_[static_cast<std::size_t>(i)], whole ? message.msg_len : 0, stamp_of(message.msg_hdr, now));
+    accept(std::span(datagrams_[static_cast<std::size_t>(i)]).first(whole ? message.msg_len : 0),
+           stamp_of(message.msg_hdr, now));
   }
   const bool more = received == static_cast<int>(kMaxDatagrams);
   if (!more) emptied_ns_ = now.time_ns;
   return {.frames = {received_.data(), received_count_}, .more = more};
 }
 
-void CanBus::accept(const Frames& frames, std::size_t bytes, std::int64_t stamp_ns) noexcept {
-  if (bytes == 0 || bytes % sizeof(can_frame) != 0) {
-    ++counts_.malformed;
-    return;
+void CanBus::accept(std::span<const std::byte> datagram, std::int64_t stamp_ns) noexcept {
+  std::array<can_frame, kMaxFramesPerDatagram> frames;
+  std::size_t count = 0;
+  while (!datagram.empty()) {
+    const auto frame = count < frames.size() ? first_frame(datagram) : std::nullopt;
+    if (!frame) {
+      count = 0;
+      break;
+    }
+    frames[count++] = *frame;
+    datagram = datagram.subspan(transfer_size(*frame));
   }
-  for (const can_frame& frame : std::span(frames).first(bytes / sizeof(can_frame))) {
-    if (frame.len > CAN_MAX_DLEN) {
+  if (count == 0) ++counts_.malformed;
+  for (const can_frame& frame : std::span(frames).first(count)) {
+    if (frame.len > max_length(frame)) {
       ++counts_.malformed;
     } else if (is_error(frame)) {
       evaluate_error_frame(frame);

@@ -7,9 +7,11 @@
 /// the state of the controller is read. In a folder (can_socket.h) a party that joins is found within kPartySearchNs.
 
 #include <sys/socket.h>
+#include <sys/uio.h>
 
 #include <array>
 #include <bitset>
+#include <cstddef>
 #include <cstdint>
 #include <span>
 
@@ -46,7 +48,7 @@ struct CanCounts {
   std::uint64_t received = 0;   ///< data frames and remote requests that passed a filter
   std::uint64_t refused = 0;    ///< not sent, most often because the queue to the controller was full (ENOBUFS)
   std::uint64_t lost = 0;       ///< dropped because a queue was full: this receiver's, or that of a party of a folder
-  std::uint64_t malformed = 0;  ///< datagrams that hold no whole frames, and frames longer than 8 bytes
+  std::uint64_t malformed = 0;  ///< datagrams that hold no whole frames, and frames that are too long
   std::uint64_t errors = 0;     ///< system calls that failed for another reason than a full queue
   std::uint64_t error_frames = 0;  ///< reported by the controller
   std::uint64_t bus_off = 0;       ///< changes to CanState::kBusOff
@@ -78,7 +80,9 @@ class CanBus {
   const can_frame& last_error_frame() const noexcept { return last_error_frame_; }
 
  private:
-  using Frames = std::array<can_frame, kMaxFramesPerDatagram>;
+  /// The bytes of a datagram, in which the frames follow each other with their transfer_size.
+  using Frames = std::array<std::byte, kMaxFramesPerDatagram * kFdFrameBytes>;
+  using Parts = std::array<iovec, kMaxFramesPerDatagram>;
 
   struct Sent {
     std::size_t frames = 0;
@@ -89,7 +93,7 @@ class CanBus {
   Sent send_together(std::span<const can_frame> frames) noexcept;
   Sent send_singly(std::span<const can_frame> frames) noexcept;
   Sent send_to_parties(std::span<const can_frame> frames) noexcept;
-  void accept(const Frames& frames, std::size_t bytes, std::int64_t stamp_ns) noexcept;
+  void accept(std::span<const std::byte> datagram, std::int64_t stamp_ns) noexcept;
   void evaluate_error_frame(const can_frame& frame) noexcept;
   std::int64_t stamp_of(msghdr& head, const CanTime& now) noexcept;
   void count_dropped(msghdr& head) noexcept;

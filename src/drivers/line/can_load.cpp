@@ -71,7 +71,10 @@ class BitCounter {
     }
   }
 
-  /// The number of all bits up to the end of the checksum, which is sent, too.
+  /// The number of all bits so far.
+  unsigned count() const noexcept { return count_; }
+
+  /// The number of all bits up to the end of the checksum of a classic frame, which is sent, too.
   unsigned finish() noexcept {
     const std::uint32_t crc = crc_;
     add(crc, 15);
@@ -95,10 +98,11 @@ struct Bits {
   double per_cycle = 0, per_second = 0;
 };
 
-Bits bits_of(std::span<const PlannedFrames> plan) noexcept {
+Bits bits_of(std::span<const PlannedFrames> plan, double bit_rate, double data_rate) noexcept {
   Bits sum;
   for (const PlannedFrames& frames : plan) {
-    const unsigned bits = max_frame_bits(frames.extended, frames.data_bytes);
+    const double bits = frames.fd ? max_fd_bits(frames.extended, frames.data_bytes).weighted(bit_rate, data_rate)
+                                  : max_frame_bits(frames.extended, frames.data_bytes);
     sum.per_cycle += bits * frames.per_cycle;
     sum.per_second += bits * frames.per_second;
   }
@@ -106,6 +110,29 @@ Bits bits_of(std::span<const PlannedFrames> plan) noexcept {
 }
 
 }  // namespace
+
+FrameBits fd_frame_bits(const can_frame& frame) noexcept {
+  BitCounter counter;
+  counter.add(0, 1);  // start of frame
+  if (is_extended(frame)) {
+    counter.add(frame.can_id >> 18U & CAN_SFF_MASK, 11);
+    counter.add(3, 2);  // SRR and IDE, recessive
+    counter.add(frame.can_id & 0x3FFFFU, 18);
+    counter.add(0, 1);  // RRS
+  } else {
+    counter.add(frame.can_id & CAN_SFF_MASK, 11);
+    counter.add(0, 2);  // RRS and IDE
+  }
+  const bool switches = (frame.flags & CANFD_BRS) != 0;
+  counter.add(switches ? 5 : 4, 3);  // FDF, reserved, BRS
+  const unsigned head = counter.count();
+  const unsigned length = std::min<unsigned>(frame.len, CANFD_MAX_DLEN);
+  const unsigned code = length <= 8 ? length : length <= 24 ? 6 + length / 4 : 11 + length / 16;  // of 4 bits
+  counter.add(code, 5);                                                                          // ESI before it
+  for (unsigned i = 0; i < length; ++i) counter.add(frame.data[i], 8);
+  const unsigned data = counter.count() - head + (length > 16 ? 32 : 27);
+  return switches ? FrameBits{.arbitration = head + 13, .data = data} : FrameBits{.arbitration = head + data + 13};
+}
 
 unsigned frame_bits(const can_frame& frame) noexcept {
   const bool remote = is_remote_request(frame);
@@ -128,16 +155,16 @@ unsigned frame_bits(const can_frame& frame) noexcept {
   return counter.finish() + 13;
 }
 
-double bus_load(std::span<const PlannedFrames> plan, double rate, double bit_rate) noexcept {
-  const Bits bits = bits_of(plan);
+double bus_load(std::span<const PlannedFrames> plan, double rate, double bit_rate, double data_rate) noexcept {
+  const Bits bits = bits_of(plan, bit_rate, data_rate);
   return (bits.per_cycle * rate + bits.per_second) / bit_rate;
 }
 
 std::optional<std::string> bus_load_problem(std::span<const PlannedFrames> plan, double rate, double bit_rate,
-                                            double min_rate, double max_load) {
-  const double load = bus_load(plan, rate, bit_rate);
+                                            double min_rate, double max_load, double data_rate) {
+  const double load = bus_load(plan, rate, bit_rate, data_rate);
   if (load <= max_load) return std::nullopt;
-  const Bits bits = bits_of(plan);
+  const Bits bits = bits_of(plan, bit_rate, data_rate);
   const double fits = bits.per_cycle > 0 ? std::floor((max_load * bit_rate - bits.per_second) / bits.per_cycle) : 0;
   const std::string problem = formatted(
       "the planned frames load the bus with %.0f %% of %.0f kbit/s at a robot.rate of %g Hz, more than %.0f %%: ",

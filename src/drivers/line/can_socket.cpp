@@ -73,12 +73,12 @@ bool abandoned(sockaddr_un address) {
 
 }  // namespace
 
-CanSocket CanSocket::open(const std::string& address, std::span<const can_filter> filters) {
+CanSocket CanSocket::open(const std::string& address, std::span<const can_filter> filters, bool fd) {
   CanSocket opened(-1, filters);
   if (address.starts_with(kFolderPrefix)) {
     opened.open_folder(address.substr(sizeof kFolderPrefix - 1));
   } else {
-    opened.open_interface(address);
+    opened.open_interface(address, fd);
   }
   return opened;
 }
@@ -113,7 +113,7 @@ void CanSocket::request_time_stamps() const noexcept {
   setsockopt(descriptor(), SOL_SOCKET, SO_RXQ_OVFL, &on, sizeof on);
 }
 
-void CanSocket::open_interface(const std::string& name) {
+void CanSocket::open_interface(const std::string& name, bool fd) {
   if (name.empty() || name.size() >= IFNAMSIZ) {
     refuse(name, "this is not the name of an interface", "set can0, or unix:FOLDER");
   }
@@ -129,12 +129,16 @@ void CanSocket::open_interface(const std::string& name) {
   if (address.can_ifindex == 0) refuse(name, reason(), "`ip link` lists the interfaces");
   ifreq state{};
   name.copy(state.ifr_name, name.size());
-  if (ioctl(descriptor(), SIOCGIFFLAGS, &state) == 0 && (state.ifr_flags & IFF_UP) == 0) {
-    refuse(name, "the interface is down",
-           "ip link set " + printable(name) + " up type can bitrate BIT_RATE restart-ms 100");
-  }
+  const std::string up = "ip link set " + printable(name) + " up type can bitrate BIT_RATE " +
+                         (fd ? "dbitrate DATA_RATE fd on " : "") + "restart-ms 100";
+  if (ioctl(descriptor(), SIOCGIFFLAGS, &state) == 0 && (state.ifr_flags & IFF_UP) == 0)
+    refuse(name, "the interface is down", up);
+  if (fd && ioctl(descriptor(), SIOCGIFMTU, &state) == 0 && state.ifr_mtu < static_cast<int>(kFdFrameBytes))
+    refuse(name, "the interface does not carry frames of CAN FD", "set it down, then " + up);
   const can_err_mask_t errors = CAN_ERR_MASK;
+  const int fd_frames = fd ? 1 : 0;
   if (setsockopt(descriptor(), SOL_CAN_RAW, CAN_RAW_ERR_FILTER, &errors, sizeof errors) != 0 ||
+      setsockopt(descriptor(), SOL_CAN_RAW, CAN_RAW_FD_FRAMES, &fd_frames, sizeof fd_frames) != 0 ||
       (!filters_.empty() && setsockopt(descriptor(), SOL_CAN_RAW, CAN_RAW_FILTER, filters_.data(),
                                        static_cast<socklen_t>(filters_.size() * sizeof(can_filter))) != 0) ||
       bind(descriptor(), generic(&address), sizeof address) != 0) {

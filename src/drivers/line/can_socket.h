@@ -2,7 +2,8 @@
 /// A CanSocket is the end of a CAN bus in this process. Opening it may block and allocate; it is closed with this
 /// value.
 ///
-///   can0          the interface of this name: SocketCAN, raw frames, with time stamps and error frames
+///   can0          the interface of this name: SocketCAN, raw frames, with time stamps and error frames; frames of CAN
+///                 FD on request
 ///   unix:FOLDER   a broadcast medium for machines without CAN. Each party binds a datagram socket to the first free
 ///                 name of FOLDER/0 … FOLDER/15 and sends to all others. A datagram holds 1 … kMaxFramesPerDatagram
 ///                 frames. The medium has neither a bit rate nor arbitration.
@@ -27,8 +28,8 @@ inline constexpr unsigned kMaxFramesPerDatagram = 16;
 class CanSocket {
  public:
   /// Throws DriverError, which names the address, the reason and the remedy. Frames that pass none of the filters are
-  /// not received; an empty list passes all.
-  static CanSocket open(const std::string& address, std::span<const can_filter> filters = {});
+  /// not received; an empty list passes all. With `fd` the interface must carry frames of CAN FD.
+  static CanSocket open(const std::string& address, std::span<const can_filter> filters = {}, bool fd = false);
 
   /// Takes over a datagram socket each of whose messages is one frame.
   explicit CanSocket(int descriptor, std::span<const can_filter> filters = {});
@@ -56,7 +57,7 @@ class CanSocket {
   bool passes(canid_t id) const noexcept;
 
  private:
-  void open_interface(const std::string& name);
+  void open_interface(const std::string& name, bool fd);
   void open_folder(const std::string& folder);
   void bind_first_free_name();
   void request_time_stamps() const noexcept;

@@ -19,7 +19,8 @@ std::uint64_t arbitration(const can_frame& frame) {
 
 }  // namespace
 
-VirtualCan::VirtualCan(double bit_rate, std::uint64_t seed) : bit_ns_(1.0e9 / bit_rate), generator_(seed) {}
+VirtualCan::VirtualCan(double bit_rate, std::uint64_t seed, double data_rate)
+    : bit_rate_(bit_rate), data_rate_(data_rate), generator_(seed) {}
 
 std::size_t VirtualCan::join(Receiver receiver) {
   parties_.push_back({.receiver = std::move(receiver), .queue = {}});
@@ -68,7 +69,8 @@ void VirtualCan::advance(std::int64_t until_ns) {
     Party* const sender = next_sender(start_ns);
     if (sender == nullptr) break;
     const can_frame frame = sender->queue.front().frame;
-    const std::int64_t end_ns = start_ns + std::llround(bit_ns_ * frame_bits(frame));
+    const double bits = is_fd(frame) ? fd_frame_bits(frame).weighted(bit_rate_, data_rate_) : frame_bits(frame);
+    const std::int64_t end_ns = start_ns + std::llround(1.0e9 / bit_rate_ * bits);
     if (end_ns > until_ns) break;
     sender->queue.erase(sender->queue.begin());
     busy_ns_ += end_ns - start_ns;

@@ -1,5 +1,6 @@
 #pragma once
-/// A CAN bus in virtual time: each frame takes the time of its bits at the bit rate, and the lowest identifier wins.
+/// A CAN bus in virtual time: each frame takes the time of its bits at the bit rate, and the lowest identifier wins. The
+/// data of CAN FD have their own rate.
 ///
 /// Each party sends its frames in their order. The first frames of all parties take part in the arbitration as soon as
 /// the bus is free. A data frame wins over a remote request of the same identifier. All other parties that are
@@ -21,7 +22,8 @@ class VirtualCan {
 
   static constexpr std::size_t kMaxQueue = 128;  ///< frames of one party
 
-  explicit VirtualCan(double bit_rate, std::uint64_t seed = 1);
+  /// A `data_rate` of 0 is the bit rate.
+  explicit VirtualCan(double bit_rate, std::uint64_t seed = 1, double data_rate = 0);
 
   /// Returns the number of the new party.
   std::size_t join(Receiver receiver);
@@ -63,7 +65,8 @@ class VirtualCan {
   Party* next_sender(std::int64_t start_ns);
   void deliver(const Party& sender, const can_frame& frame);
 
-  double bit_ns_;
+  double bit_rate_;
+  double data_rate_;
   std::mt19937_64 generator_;
   double loss_ = 0;
   std::int64_t longest_delay_ns_ = 0;

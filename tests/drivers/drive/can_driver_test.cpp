@@ -24,7 +24,7 @@ class CanMachine final : public Driver {
     if (socketpair(AF_UNIX, SOCK_DGRAM | SOCK_NONBLOCK, 0, ends) != 0) throw DriverError("no socket");
     wire_ = ends[1];
     party_ = rig_.bus().join([this](const can_frame& frame, std::int64_t) {
-      if (write_frame(frame) != sizeof frame) ADD_FAILURE() << "the wire is full";
+      if (write_frame(frame) != kFrameBytes) ADD_FAILURE() << "the wire is full";
     });
     rig_.host_lives = false;
     const std::uint8_t first =
@@ -58,8 +58,8 @@ class CanMachine final : public Driver {
 
   /// Carries the frames of the driver and runs the devices.
   void run_bus(int cycles) {
-    can_frame frame;
-    while (recv(wire_, &frame, sizeof frame, 0) == sizeof frame) rig_.bus().send(party_, frame);
+    can_frame frame{};
+    while (recv(wire_, &frame, kFrameBytes, 0) == kFrameBytes) rig_.bus().send(party_, frame);
     for (int i = 0; i < cycles; ++i) rig_.cycle();
   }
 
@@ -72,7 +72,7 @@ class CanMachine final : public Driver {
     one.emplace_back(descriptor);
     return one;
   }
-  ssize_t write_frame(const can_frame& frame) const { return ::send(wire_, &frame, sizeof frame, 0); }
+  ssize_t write_frame(const can_frame& frame) const { return ::send(wire_, &frame, kFrameBytes, 0); }
   void add(TestedDialect dialect, std::uint8_t node) {
     if (dialect == TestedDialect::kOdrive) robot_control::add(rig_, odrive_pair(node));
     if (dialect == TestedDialect::kCia402) robot_control::add(rig_, cia402_pair(node));

@@ -29,7 +29,7 @@ struct BusWatchTest : ::testing::Test {
   };
 
   void carry(const can_frame& frame) const {
-    ASSERT_EQ(::send(ends_.other, &frame, sizeof frame, 0), static_cast<ssize_t>(sizeof frame));
+    ASSERT_EQ(::send(ends_.other, &frame, kFrameBytes, 0), static_cast<ssize_t>(kFrameBytes));
   }
   void report(canid_t classes, std::uint64_t data) const {
     carry(word_frame(CAN_ERR_FLAG | classes, data, CAN_ERR_DLC));

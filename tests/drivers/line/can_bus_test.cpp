@@ -83,7 +83,7 @@ struct CanBusTest : ::testing::Test {
   void send_from_far(const void* data, std::size_t bytes) {
     ASSERT_EQ(::send(far_, data, bytes, 0), static_cast<ssize_t>(bytes));
   }
-  void send_from_far(const can_frame& frame) { send_from_far(&frame, sizeof frame); }
+  void send_from_far(const can_frame& frame) { send_from_far(&frame, transfer_size(frame)); }
   void report(canid_t error, std::uint8_t controller = 0) {
     can_frame frame = word_frame(CAN_ERR_FLAG | error, 0, CAN_ERR_DLC);
     frame.data[1] = controller;
@@ -94,7 +94,7 @@ struct CanBusTest : ::testing::Test {
   std::vector<unsigned> arrived_at_far() {
     std::vector<unsigned> numbers;
     can_frame frame{};
-    while (::recv(far_, &frame, sizeof frame, 0) == sizeof frame)
+    while (::recv(far_, &frame, kFrameBytes, 0) == kFrameBytes)
       numbers.push_back(static_cast<unsigned>(data_word(frame)));
     return numbers;
   }
@@ -131,13 +131,64 @@ TEST(CanLine, ADatagramHoldsTheFramesOfACycle) {
   CanBus near(CanSocket::line_end(ends[0])), far(CanSocket::line_end(ends[1]));
   const auto frames = numbered_up_to(kMaxFramesPerDatagram + 4);
   EXPECT_EQ(near.send(frames), frames.size());
-  std::array<char, sizeof(can_frame)> start{};
+  std::array<char, kFrameBytes> start{};
   EXPECT_EQ(::recv(ends[1], start.data(), start.size(), MSG_PEEK | MSG_TRUNC),
-            static_cast<ssize_t>(kMaxFramesPerDatagram * sizeof(can_frame)));
+            static_cast<ssize_t>(kMaxFramesPerDatagram * kFrameBytes));
   const ReceivedFrames received = far.receive(at(7));
   ASSERT_EQ(received.frames.size(), frames.size());
   for (unsigned i = 0; i < frames.size(); ++i) EXPECT_EQ(data_word(received.frames[i].frame), i);
   EXPECT_EQ(received.frames[0].stamp_ns, 7);
+}
+
+/// A frame of CAN FD whose last byte is its number.
+can_frame fd_frame(unsigned length, std::uint8_t number) {
+  can_frame frame = word_frame(0x8001 | CAN_EFF_FLAG, 0, 0);
+  frame.flags = CANFD_FDF | CANFD_BRS;
+  frame.len = static_cast<std::uint8_t>(length);
+  frame.data[length - 1] = number;
+  return frame;
+}
+
+TEST(CanLine, FramesOfBothKindsShareADatagramInTheirOrder) {
+  int ends[2];
+  ASSERT_EQ(socketpair(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0, ends), 0);
+  CanBus near(CanSocket::line_end(ends[0])), far(CanSocket::line_end(ends[1]));
+  const can_frame frames[] = {numbered(1), fd_frame(64, 2), fd_frame(12, 3), numbered(4)};
+  EXPECT_EQ(near.send(frames), 4u);
+  std::array<char, 1> start{};
+  EXPECT_EQ(::recv(ends[1], start.data(), start.size(), MSG_PEEK | MSG_TRUNC),
+            static_cast<ssize_t>(2 * kFrameBytes + 2 * kFdFrameBytes));
+  const ReceivedFrames received = far.receive(at(7));
+  ASSERT_EQ(received.frames.size(), 4u);
+  for (std::size_t i = 0; i < 4; ++i) {
+    const can_frame& frame = received.frames[i].frame;
+    EXPECT_EQ(frame.can_id, frames[i].can_id);
+    EXPECT_EQ(frame.len, frames[i].len);
+    EXPECT_EQ(frame.flags, frames[i].flags);
+    EXPECT_TRUE(std::ranges::equal(frame.data, frames[i].data));
+  }
+}
+
+TEST_F(CanBusTest, AFrameOfCanFdIsSentAsALongOneAndReceivedWithoutItsMark) {
+  const can_frame long_frame = fd_frame(48, 9);
+  EXPECT_EQ(bus_->send({&long_frame, 1}), 1u);
+  can_frame frame{};
+  ASSERT_EQ(::recv(far_, &frame, sizeof frame, 0), static_cast<ssize_t>(kFdFrameBytes));
+  frame.flags = CANFD_BRS;  // as of a kernel before Linux 5.14
+  send_from_far(&frame, kFdFrameBytes);
+  const ReceivedFrames received = bus_->receive(at(1));
+  ASSERT_EQ(received.frames.size(), 1u);
+  EXPECT_EQ(received.frames[0].frame.flags, long_frame.flags);
+  EXPECT_EQ(received.frames[0].frame.data[47], 9);
+}
+
+TEST_F(CanBusTest, AFrameOfCanFdThatIsTooLongOrCutIsMalformed) {
+  can_frame frame = fd_frame(64, 1);
+  frame.len = 65;
+  send_from_far(frame);
+  send_from_far(&frame, 2 * kFrameBytes);
+  EXPECT_TRUE(bus_->receive(at(1)).frames.empty());
+  EXPECT_EQ(bus_->counts().malformed, 2u);
 }
 
 TEST(CanLine, WhatAFullLineRefusesIsCounted) {
@@ -240,8 +291,8 @@ TEST_F(CanBusTest, WhatTheKernelDroppedBeforeAFrameIsLost) {
 }
 
 TEST_F(CanBusTest, WhatIsNoWholeFrameIsCountedAndDropped) {
-  const can_frame frames[kMaxFramesPerDatagram + 1] = {};
-  send_from_far(frames, sizeof(can_frame) - 1);
+  const ::can_frame frames[kMaxFramesPerDatagram + 1] = {};
+  send_from_far(frames, kFrameBytes - 1);
   send_from_far(frames, 0);
   send_from_far(frames, sizeof frames);
   can_frame long_frame = numbered(1);
@@ -284,7 +335,7 @@ std::vector<canid_t> passing(const std::vector<can_filter>& filters, const std::
   CanBus bus(CanSocket(ends[0], filters));
   for (const canid_t id : ids) {
     const can_frame frame = word_frame(id, 0, 0);
-    EXPECT_EQ(::send(ends[1], &frame, sizeof frame, 0), static_cast<ssize_t>(sizeof frame));
+    EXPECT_EQ(::send(ends[1], &frame, kFrameBytes, 0), static_cast<ssize_t>(kFrameBytes));
   }
   std::vector<canid_t> passed;
   for (const ReceivedFrame& each : bus.receive(at(1)).frames) passed.push_back(each.frame.can_id);

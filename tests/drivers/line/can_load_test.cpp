@@ -87,6 +87,55 @@ TEST(CanLoad, NoFrameIsLongerThanTheBoundAndSomeComeWithinTwoBits) {
   EXPECT_LE(nearest, 2u);
 }
 
+/// The bits of a frame of CAN FD up to the end of its data (ISO 11898-1:2015, 10.4.2), by hand.
+std::string fd_head(const can_frame& frame) {
+  const std::string id = is_extended(frame) ? binary(frame.can_id >> 18U, 11) + "11" + binary(frame.can_id, 18) + "0"
+                                            : binary(frame.can_id, 11) + "00";
+  return "0" + id + "10" + ((frame.flags & CANFD_BRS) != 0 ? "1" : "0");
+}
+
+std::string fd_data(const can_frame& frame) {
+  const unsigned lengths[] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 12, 16, 20, 24, 32, 48, 64};
+  const auto code = std::ranges::find(lengths, frame.len) - std::begin(lengths);
+  std::string text = "0" + binary(static_cast<std::uint32_t>(code), 4);
+  for (unsigned i = 0; i < frame.len; ++i) text += binary(frame.data[i], 8);
+  return text;
+}
+
+TEST(CanLoad, CountsTheBitsOfAFrameOfCanFdAsAnEncoderByHandDoes) {
+  std::mt19937_64 random(3);
+  unsigned nearest = 999;
+  for (int i = 0; i < 20'000; ++i) {
+    can_frame frame = random_frame(random);
+    frame.can_id &= ~CAN_RTR_FLAG;
+    frame.flags = CANFD_FDF | (random() % 8 == 0 ? 0 : CANFD_BRS);
+    frame.len = static_cast<std::uint8_t>(fd_length(static_cast<unsigned>(random() % 65)));
+    const auto head = static_cast<unsigned>(stuffed(fd_head(frame)).size());
+    const auto all = static_cast<unsigned>(stuffed(fd_head(frame) + fd_data(frame)).size());
+    const unsigned checksum = frame.len > 16 ? 4 + 21 + 7 : 4 + 17 + 6;
+    const FrameBits bits = fd_frame_bits(frame);
+    const FrameBits bound = max_fd_bits(is_extended(frame), frame.len);
+    if ((frame.flags & CANFD_BRS) == 0) {
+      ASSERT_EQ(bits.arbitration, all + checksum + 13) << i;
+      continue;
+    }
+    ASSERT_EQ(bits.arbitration, head + 13) << i;
+    ASSERT_EQ(bits.data, all - head + checksum) << i;
+    ASSERT_LE(bits.arbitration, bound.arbitration) << i;
+    ASSERT_LE(bits.data, bound.data) << i;
+    nearest = std::min(nearest, bound.data - bits.data);
+  }
+  EXPECT_LE(nearest, 3u);
+}
+
+TEST(CanLoad, ThreeOrdersAndAnswersOfCanFdLoadABusWithThreeQuarters) {
+  // An order: 35 + 8 + 13 bits at 1 Mbit/s, 389 + 97 + 32 at 5 Mbit/s. An answer: 17 + 4 + 13, and 197 + 49 + 32.
+  const PlannedFrames plan[] = {{.fd = true, .extended = true, .data_bytes = 48, .per_cycle = 3},
+                                {.fd = true, .data_bytes = 24, .per_cycle = 3}};
+  EXPECT_DOUBLE_EQ(bus_load(plan, 1000, 1e6, 5e6), 3 * (56 + 518.0 / 5 + 34 + 278.0 / 5) * 1e-3);
+  EXPECT_DOUBLE_EQ(bus_load(plan, 1000, 1e6), 3 * (56 + 518 + 34 + 278) * 1e-3);
+}
+
 TEST(CanLoad, TheBoundsAreThoseOfTheStandard) {
   EXPECT_EQ(max_frame_bits(false, 0), 55u);
   EXPECT_EQ(max_frame_bits(false, 4), 95u);

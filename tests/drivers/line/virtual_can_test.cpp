@@ -22,6 +22,19 @@ TEST_F(VirtualCanBus, AFrameTakesTheTimeOfItsBits) {
   EXPECT_EQ(bus_.busy_ns(), received_[0].second);
 }
 
+TEST(VirtualCanFd, TheDataHaveTheirOwnRate) {
+  VirtualCan bus(1.0e6, 1, 5.0e6);
+  std::int64_t end_ns = 0;
+  const std::size_t sender = bus.join([](const can_frame&, std::int64_t) {});
+  bus.join([&end_ns](const can_frame&, std::int64_t now_ns) { end_ns = now_ns; });
+  can_frame frame = word_frame(0x123, 0x5555'5555'5555'5555, 8);
+  frame.flags = CANFD_FDF | CANFD_BRS;
+  bus.send(sender, frame);
+  bus.advance(1'000'000);
+  const FrameBits bits = fd_frame_bits(frame);
+  EXPECT_EQ(end_ns, 1000 * std::int64_t{bits.arbitration} + 200 * std::int64_t{bits.data});
+}
+
 TEST_F(VirtualCanBus, TheLowestIdentifierWinsAndDataWinOverARequest) {
   bus_.send(first_, word_frame(0x300, 0, 8));
   bus_.advance(10'000);  // 0x300 is on the bus already.
