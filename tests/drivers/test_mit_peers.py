@@ -1,8 +1,10 @@
 """The codecs of motors in MIT mode equal those of packages of PyPI to the bit.
 
-Damiao: damiao-motor. CyberGear: python-cybergear. AK: mini-cheetah-motor-driver-socketcan.
+Damiao: damiao-motor. CyberGear: python-cybergear. AK: mini-cheetah-motor-driver-socketcan. moteus: moteus.
 """
 
+import io
+import math
 import random
 import struct
 import subprocess
@@ -31,6 +33,11 @@ def cybergear():
 @pytest.fixture(scope="module")
 def mini_cheetah():
     return imported("motor_driver.canmotorlib", "can", "mini-cheetah-motor-driver-socketcan")
+
+
+@pytest.fixture(scope="module")
+def moteus():
+    return imported("moteus", "can", "moteus")
 
 
 class KeptFrames:
@@ -217,3 +224,131 @@ def test_replies_of_an_ak_are_equal(mini_cheetah):
         read = motor.convert_raw_to_physical_rad(*raw)
         expected.append((data[0], *(direction * value for value in read)))
     assert numbers(lines) == expected
+
+
+class MoteusPeer:
+    """The client of moteus, for controllers of all numbers."""
+
+    def __init__(self, peer):
+        self.peer, self.multiplex, self.made = peer, peer.multiplex, {}
+        self.transport = object.__new__(peer.transport.Transport)
+        self.device = object.__new__(peer.transport_device.TransportDevice)
+        self.formats = peer.PositionResolution()
+        for name in ("position", "velocity", "feedforward_torque", "kp_scale", "kd_scale", "maximum_torque"):
+            setattr(self.formats, name, peer.F32)
+        self.formats.watchdog_timeout = peer.F32
+        self.formats.velocity_limit = self.formats.accel_limit = peer.INT8
+
+    def controller(self, node):
+        if node not in self.made:
+            self.made[node] = self.peer.Controller(id=node, position_resolution=self.formats)
+        return self.made[node]
+
+    def query(self, number):
+        """What Query of moteus_messages.h requests. Its own subframes of the identity have another order there."""
+        asked = self.peer.QueryResolution()
+        if number == 2:
+            asked._extra = dict.fromkeys((0x30, 0x31, 0x32), self.peer.F32)
+        return asked
+
+    def sent(self, command):
+        """Identifier and data, as the client's transport sends them."""
+        frame = self.transport._command_to_frame(command)
+        padding = self.device._round_up_dlc(len(frame.data)) - len(frame.data)
+        return frame.arbitration_id, frame.data + bytes([self.multiplex.NOP]) * padding
+
+
+def test_orders_of_a_moteus_are_equal(moteus):
+    peer, chance = MoteusPeer(moteus), random.Random(7)
+    lines, expected = [], []
+    for _ in range(FRAMES):
+        node, query = chance.randint(1, 126), chance.choice((0, 2))
+        position, velocity, torque = (chance.uniform(-limit, limit) for limit in (100, 300, 60))
+        kp, kd = chance.uniform(1, 1000), chance.uniform(0.1, 20)
+        stiffness, damping = chance.uniform(0, kp), chance.uniform(0, kd)
+        timeout, limit = chance.uniform(0.01, 1), chance.uniform(0, 60)
+        values = (node, query, position, velocity, stiffness, damping, torque, timeout, kp, kd, limit)
+        lines.append("moteus order " + " ".join(map(repr, values)))
+        command = peer.controller(node).make_position(
+            position=position / math.tau,
+            velocity=velocity / math.tau,
+            feedforward_torque=torque,
+            kp_scale=stiffness / kp,
+            kd_scale=damping / kd,
+            maximum_torque=limit,
+            watchdog_timeout=timeout,
+            velocity_limit=-0.1,
+            accel_limit=-0.05,
+            query_override=peer.query(query),
+        )
+        expected.append(peer.sent(command))
+    assert frames(lines) == expected
+
+
+def test_stops_of_a_moteus_are_equal(moteus):
+    peer = MoteusPeer(moteus)
+    lines = [f"moteus stop {node} {query}" for node in range(1, 127) for query in (0, 2)]
+    stops = [peer.controller(node).make_stop(query=True) for node in range(1, 127)]
+    plain = [peer.sent(stop) for stop in stops]
+    assert frames(lines)[::2] == plain
+    identity = frames(["moteus stop 5 1"])[0][1]
+    subframes = [(each.type.name, each.register, each.resolution) for each in peer.multiplex.parse_frame(identity)]
+    asked = [(0x000, 0), *((number, 3) for number in (1, 2, 3)), *((number, 0) for number in (13, 14, 15, 12)), (0x102, 2)]
+    assert subframes == [("WRITE", 0x000, 0), *(("READ", *each) for each in asked)]
+
+
+def moteus_reply(peer, chance):
+    """The data of a random reply with the state, and with other registers and errors between."""
+    mp = peer.multiplex
+
+    def real():
+        return struct.pack("<I", chance.choice((chance.randrange(0x7F800000), 0x80000000 | chance.randrange(0x7F800000))))
+
+    def subframe(kind, first, values):
+        buffer = io.BytesIO()
+        writer = mp.WriteFrame(buffer)
+        writer.write_int8(mp.REPLY_BASE | kind << 2 | (len(values) if len(values) <= 3 else 0))
+        if len(values) > 3:
+            writer.write_varuint(len(values))
+        writer.write_varuint(first)
+        return buffer.getvalue() + b"".join(values)
+
+    state = [
+        subframe(mp.INT8, 0x00, [bytes([chance.choice((0, 1, 2, 3, 4, 10, 11))])]),
+        subframe(mp.F32, 0x01, [real(), real(), real()]),
+        subframe(mp.INT8, 0x0D, [chance.randbytes(1), chance.randbytes(1), bytes([chance.randrange(104)])]),
+    ]
+    more = [
+        subframe(mp.INT8, 0x0C, [bytes([chance.randrange(3)])]),
+        subframe(mp.INT32, 0x102, [struct.pack("<i", chance.randrange(1, 1 << 30))]),
+        subframe(mp.F32, 0x30, [real(), real(), real()]),
+        subframe(mp.INT16, 0x04, [chance.randbytes(2) for _ in range(chance.randint(1, 5))]),
+        bytes([mp.READ_ERROR, 0x2B, 0x01]),
+        bytes([mp.NOP]),
+    ]
+    parts = state + chance.sample(more, chance.randint(0, 2))
+    chance.shuffle(parts)
+    return b"".join(parts)
+
+
+def test_replies_of_a_moteus_are_equal(moteus):
+    peer, chance = MoteusPeer(moteus), random.Random(8)
+    registers = (0x00, 0x01, 0x02, 0x03, 0x0D, 0x0E, 0x0F, 0x0C, 0x102, 0x30, 0x31, 0x32)
+    lines, expected = [], []
+    for _ in range(FRAMES):
+        node, data = chance.randint(1, 126), moteus_reply(peer, chance)
+        lines.append(f"moteus feedback {node} {node << 8} {data.hex()}")
+        read = moteus.parse_registers(data).response
+        expected.append([math.tau * read[each] if each in (1, 2) else read.get(each, 0) for each in registers])
+    read = [[float(number) for number in line.split()] for line in answers(lines)]
+    assert repr(read) == repr([[float(number) for number in numbers] for numbers in expected])
+
+
+def test_a_reply_of_a_moteus_that_is_cut_or_for_another_is_none(moteus):
+    peer, chance = MoteusPeer(moteus), random.Random(9)
+    lines = []
+    for _ in range(1000):
+        data = moteus_reply(peer, chance)
+        lines += [f"moteus feedback 5 {identifier} {data.hex()}" for identifier in (0x501, 0x600, 0x10500, 0x8500)]
+        lines += [f"moteus feedback 5 {0x500} {data[:length].hex()}" for length in (5, 9)]
+    assert set(answers(lines)) == {"-"}

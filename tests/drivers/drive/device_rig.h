@@ -12,6 +12,8 @@
 #include "drivers/damiao/damiao_device.h"
 #include "drivers/damiao/damiao_drive.h"
 #include "drivers/drive/drive_set.h"
+#include "drivers/moteus/moteus_device.h"
+#include "drivers/moteus/moteus_drive.h"
 #include "drivers/odrive/odrive_device.h"
 #include "drivers/odrive/odrive_drive.h"
 #include "drivers/vesc/vesc_device.h"
@@ -25,7 +27,7 @@ class DeviceRig {
   static constexpr std::uint8_t kHostNode = 127;
 
   explicit DeviceRig(double rate = 500, double bit_rate = 1.0e6, std::uint64_t seed = 1)
-      : period_(1 / rate), bus_(bit_rate, seed), host_(bus_.join([this](const can_frame& frame, std::int64_t now_ns) {
+      : period_(1 / rate), bus_(bit_rate, seed, 5 * bit_rate), host_(bus_.join([this](const can_frame& frame, std::int64_t now_ns) {
           if (host_lives && answers) received_.push_back({frame, now_ns});
         })) {}
 
@@ -50,6 +52,7 @@ class DeviceRig {
   void add_drive(const damiao::DamiaoParameters& parameters) { damiaos_.push_back(parameters); }
   void add_drive(const cybergear::CybergearParameters& parameters) { cybergears_.push_back(parameters); }
   void add_drive(const ak::AkParameters& parameters) { aks_.push_back(parameters); }
+  void add_drive(const moteus::MoteusParameters& parameters) { moteuses_.push_back(parameters); }
   /// Returns the drives of the one dialect that was added.
   DriveSet made_drives() const {
     if (!odrives_.empty()) return drives_of<odrive::OdriveDrive>(odrives_, period_);
@@ -57,6 +60,7 @@ class DeviceRig {
     if (!damiaos_.empty()) return drives_of<damiao::DamiaoDrive>(damiaos_, period_);
     if (!cybergears_.empty()) return drives_of<cybergear::CybergearDrive>(cybergears_, period_);
     if (!aks_.empty()) return drives_of<ak::AkDrive>(aks_, period_);
+    if (!moteuses_.empty()) return drives_of<moteus::MoteusDrive>(moteuses_, period_);
     return cia402::cia402_drives(cia402s_, kHostNode, period_);
   }
   /// No drive may be added after the first call.
@@ -139,6 +143,7 @@ class DeviceRig {
   std::vector<damiao::DamiaoParameters> damiaos_;
   std::vector<cybergear::CybergearParameters> cybergears_;
   std::vector<ak::AkParameters> aks_;
+  std::vector<moteus::MoteusParameters> moteuses_;
   std::optional<DriveSet> drives_;
   FrameBatch send_;
 };
@@ -250,6 +255,29 @@ inline AkPair ak_pair(std::uint8_t node) {
 inline AkDevice& add(DeviceRig& rig, const AkPair& pair) {
   rig.add_drive(pair.drive);
   return rig.add_device(std::make_unique<AkDevice>(pair.device, rig.bus(), rig.add_motor()));
+}
+
+struct MoteusPair {
+  moteus::MoteusParameters drive;
+  MoteusDeviceParameters device;
+};
+
+inline MoteusPair moteus_pair(std::uint8_t node) {
+  MoteusPair pair;
+  pair.drive.drive = drive_parameters(node);
+  pair.drive.drive.min_voltage = 0;
+  pair.drive.drive.on_silence = SilenceReaction::kBrakes;
+  pair.drive.motor_gear = 6;
+  pair.drive.kp = 3000;
+  pair.drive.kd = 30;
+  pair.device.node = node;
+  pair.device.gains = pair.drive.ranges_of_orders();
+  return pair;
+}
+
+inline MoteusDevice& add(DeviceRig& rig, const MoteusPair& pair) {
+  rig.add_drive(pair.drive);
+  return rig.add_device(std::make_unique<MoteusDevice>(pair.device, rig.bus(), rig.add_motor()));
 }
 
 struct Cia402Pair {

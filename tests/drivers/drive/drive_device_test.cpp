@@ -199,6 +199,30 @@ Dialect ak_dialect() {
           .keeps = true};
 }
 
+/// Writes of a mode, of another register and to all controllers, and a stream of the maker's tool.
+std::vector<can_frame> foreign_to_moteus() {
+  const auto frame_of = [](canid_t id, std::uint64_t word, std::uint8_t bytes) {
+    can_frame frame = word_frame(id, word, bytes);
+    frame.flags = CANFD_FDF | CANFD_BRS;
+    return frame;
+  };
+  return {moteus::encode_stop(1, moteus::Query::kState), frame_of(0x201, 0x0A0001, 3), frame_of(0x7F, 0x000001, 3),
+          word_frame(1 | CAN_EFF_FLAG, 0x02B00D, 7), frame_of(0x8001 | CAN_EFF_FLAG, 0x706F747320640540, 8)};
+}
+
+Dialect moteus_dialect() {
+  return {.name = "Moteus",
+          .add = [](DeviceRig& rig, std::uint8_t node, double) -> Device& { return add(rig, moteus_pair(node)); },
+          .add_unknown = {},
+          .foreign = foreign_to_moteus(),
+          .clears = [](const can_frame&) { return false; },
+          .torque_step = 1.0e-6,
+          .count = 1.0e-6,
+          .clears_errors = false,
+          .damps = true,
+          .is_absolute = true};
+}
+
 const Dialect kDialects[] = {
     vesc_dialect(),
     odrive_dialect("Odrive05", odrive::Firmware::k05, 0),
@@ -210,6 +234,7 @@ const Dialect kDialects[] = {
     damiao_dialect(),
     cybergear_dialect(),
     ak_dialect(),
+    moteus_dialect(),
 };
 
 void PrintTo(const Dialect& dialect, std::ostream* out) {
@@ -535,6 +560,7 @@ std::vector<FaultCase> fault_cases() {
   const Dialect& damiao = kDialects[7];
   const Dialect& cybergear = kDialects[8];
   const Dialect& ak = kDialects[9];
+  const Dialect& moteus = kDialects[10];
   return {
       {"OffVesc", vesc, DeviceFault::kOff, "is silent: no position"},
       {"ResetVesc", vesc, DeviceFault::kReset, "is silent: no position"},
@@ -564,6 +590,15 @@ std::vector<FaultCase> fault_cases() {
       {"EncoderAk", ak, DeviceFault::kEncoder, "reports an error: encoder"},
       {"HotAk", ak, DeviceFault::kHot, "is too hot: temperature, 120 instead of 90"},
       {"UnderVoltageAk", ak, DeviceFault::kUnderVoltage, "reports an error: under-voltage"},
+      {"OffMoteus", moteus, DeviceFault::kOff, "is silent: no position"},
+      {"UnpluggedMoteus", moteus, DeviceFault::kUnplugged, "is silent: no position"},
+      {"ResetMoteus", moteus, DeviceFault::kReset, "is silent: no position"},
+      {"OtherZeroMoteus", moteus, DeviceFault::kOtherZero, "reports a jump of its position, "},
+      {"EncoderMoteus", moteus, DeviceFault::kEncoder, "reports an error: encoder"},
+      {"ReleasedMoteus", moteus, DeviceFault::kReleased, "released the motor without an error: stopped"},
+      {"HotMoteus", moteus, DeviceFault::kHot, "is too hot: temperature, 120 instead of 90"},
+      {"UnderVoltageMoteus", moteus, DeviceFault::kUnderVoltage, "reports an error: under-voltage"},
+      {"NotFiniteMoteus", moteus, DeviceFault::kNotFinite, "sent NaN or infinity"},
       {"Off05", odrive05, DeviceFault::kOff, "is silent: no position"},
       {"Off06", odrive06, DeviceFault::kOff, "is silent: no position"},
       {"OffCia402", cia402, DeviceFault::kOff, "is silent: no position"},

@@ -7,8 +7,11 @@
 ///   cybergear feedback RANGES ID DATA  → mode, faults, number, position, velocity, torque, temperature
 ///   damiao access NODE OPERATION NUMBER VALUE  → identifier, data
 ///   cybergear access NODE TYPE INDEX VALUE     → identifier, data
+///   moteus order NODE QUERY POSITION VELOCITY STIFFNESS DAMPING TORQUE TIMEOUT KP KD MAX_TORQUE  → identifier, data
+///   moteus stop NODE QUERY    → identifier, data
+///   moteus feedback NODE ID DATA  → the numbers of moteus::Reply, in their order; - if the frame is none
 ///
-/// The orders are for motor 1. RANGES are those of position, velocity and torque. DATA is hexadecimal, all else
+/// The orders without NODE are for motor 1. KP and KD are those of the scale 1, in N·m/rad and N·m·s/rad. RANGES are those of position, velocity and torque. DATA is hexadecimal, all else
 /// decimal.
 
 #include <cstdio>
@@ -19,6 +22,7 @@
 #include "drivers/ak/ak_messages.h"
 #include "drivers/cybergear/cybergear_messages.h"
 #include "drivers/damiao/damiao_messages.h"
+#include "drivers/moteus/moteus_messages.h"
 
 namespace robot_control {
 namespace {
@@ -81,6 +85,37 @@ void print_access(std::istream& line, bool is_cybergear) {
   }
 }
 
+can_frame moteus_order(std::istream& line, bool stops) {
+  std::uint64_t node = 0;
+  unsigned query = 0;
+  MitCommand command;
+  MitRanges ranges;
+  double timeout = 0;
+  line >> node >> query;
+  if (stops) return moteus::encode_stop(node, static_cast<moteus::Query>(query));
+  line >> command.position >> command.velocity >> command.stiffness >> command.damping >> command.torque >> timeout >>
+      ranges.stiffness >> ranges.damping >> ranges.torque;
+  return moteus::encode_order(node, ranges, command, timeout, static_cast<moteus::Query>(query));
+}
+
+void print_moteus_reply(std::istream& line) {
+  std::uint64_t node = 0;
+  can_frame frame{};
+  std::string data;
+  line >> node >> frame.can_id >> data;
+  frame.flags = CANFD_FDF;
+  frame.len = static_cast<std::uint8_t>(data.size() / 2);
+  for (std::size_t i = 0; i < frame.len; ++i)
+    frame.data[i] = static_cast<std::uint8_t>(std::stoul(data.substr(2 * i, 2), nullptr, 16));
+  const auto reply = moteus::decode_reply(frame, node);
+  if (!reply) return static_cast<void>(std::printf("-\n"));
+  for (const double number :
+       {reply->mode, reply->position, reply->velocity, reply->torque, reply->voltage, reply->temperature, reply->fault,
+        reply->home, reply->map_version, reply->proportional, reply->integral, reply->derivative})
+    std::printf("%.17g ", number);
+  std::printf("\n");
+}
+
 }  // namespace
 }  // namespace robot_control
 
@@ -90,7 +125,11 @@ int main() {
     std::istringstream line(text);
     std::string dialect, word;
     line >> dialect >> word;
-    if (word == "order") {
+    if (dialect == "moteus" && word == "feedback") {
+      print_moteus_reply(line);
+    } else if (dialect == "moteus") {
+      print(moteus_order(line, word == "stop"));
+    } else if (word == "order") {
       print_order(line, dialect == "cybergear");
     } else if (word == "feedback") {
       print_feedback(line, dialect);

@@ -3,6 +3,7 @@
 /// the impedance of that order at each step, within the motor's own limit of the torque.
 
 #include <algorithm>
+#include <limits>
 
 #include "drivers/drive/device.h"
 #include "drivers/drive/mit/mit_codec.h"
@@ -27,9 +28,11 @@ class MitDevice : public Device {
     motor_.torque = 0;
   }
   void set_zero() { zero_ = motor_.position; }
-  void close_impedance(bool has_torque) {
+  /// `limit` in N·m is that of the order.
+  void close_impedance(bool has_torque, double limit = std::numeric_limits<double>::infinity()) {
     const double torque = mit_torque(command_, position(), velocity());
-    motor_.torque = has_torque ? std::clamp(torque, -torque_limit_, torque_limit_) : 0;
+    const double maximum = std::min(torque_limit_, limit);
+    motor_.torque = has_torque ? std::clamp(torque, -maximum, maximum) : 0;
   }
 
   double position() const { return motor_.position - zero_; }  ///< rad, from its zero

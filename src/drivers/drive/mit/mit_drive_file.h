@@ -49,7 +49,7 @@ class MitFile : public CanFileOf<Joint> {
       values.refuse("torque_limit", "must be at most torque_range · gear, which the motor can be ordered");
     if (drive.velocity_limit * drive.gear > joint.ranges.velocity)
       values.refuse("velocity_limit", "must be at most velocity_range / gear, which the motor can report");
-    if (drive.min_voltage != 0)
+    if (!requires { Joint::kSendsVoltage; } && drive.min_voltage != 0)
       values.refuse("min_voltage", "must be 0: such a motor does not send its voltage with its answers",
                     "remove it; the motor reports under-voltage by itself");
     if constexpr (requires { joint.timeout; }) {

@@ -19,7 +19,16 @@ struct MitJoint {
   std::optional<double> start_angle = std::nullopt;
 };
 
-/// Returns the keys of a struct with these members.
+/// Returns the keys about the zero of a motor.
+template <class Joint>
+Keys zero_keys(Joint& joint) {
+  return {
+      {"offset", &joint.drive.offset, "rad", -1000, 1000, kOptional},
+      {"start_angle", &joint.start_angle, "rad", -1000, 1000, kOptional},
+  };
+}
+
+/// Returns the keys of a struct with these members, whose ranges scale the numbers on the bus.
 template <class Joint>
 Keys mit_keys(Joint& joint) {
   return joined({keys(joint.drive),
@@ -27,9 +36,8 @@ Keys mit_keys(Joint& joint) {
                      {"position_range", &joint.ranges.position, "rad", 1, 1000},
                      {"velocity_range", &joint.ranges.velocity, "rad/s", 0.1, 1000},
                      {"torque_range", &joint.ranges.torque, "N·m", 0.1, 10000},
-                     {"offset", &joint.drive.offset, "rad", -1000, 1000, kOptional},
-                     {"start_angle", &joint.start_angle, "rad", -1000, 1000, kOptional},
-                 }});
+                 },
+                 zero_keys(joint)});
 }
 
 }  // namespace robot_control
