@@ -87,6 +87,7 @@ LOSSES = {
     "damiao": CAN,
     "cybergear": CAN,
     "ak": {**CAN, "bus gone": replace(CAN["bus gone"], folds=False)},
+    "moteus": CAN,
     "unitree_legged": UNITREE,
     "unitree_go": {**UNITREE, "line gone": Loss("line", "cut", LOSS, "lost its bridge"), **BRIDGE},
 }

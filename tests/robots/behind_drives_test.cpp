@@ -33,7 +33,7 @@ void expect_walking(QuadrupedLoop& robot) {
 }
 
 TEST(BehindDrives, ItStandsUpAndWalksAsAsked) {
-  for (const char* drives : {"damiao", "cybergear", "ak"}) {
+  for (const char* drives : {"damiao", "cybergear", "ak", "moteus"}) {
     SCOPED_TRACE(drives);
     QuadrupedLoop robot = loop_of(behind_drives(drives));
     EXPECT_EQ(robot.loop.row().driver->sensors.link_count, 4u);
@@ -84,7 +84,7 @@ TEST(BehindDrives, ItFoldsUprightWhenADriveOrABusIsLost) {
                                                         {"front_right_thigh_joint", "encoder"},
                                                         {"rear_right_thigh_joint", "hot"},
                                                         {"rear_right_knee_joint", "other_zero"}};
-  for (const std::string drives : {"damiao", "cybergear", "ak"}) {
+  for (const std::string drives : {"damiao", "cybergear", "ak", "moteus"}) {
     for (const auto& [component, kind] : std::span(losses).subspan(drives == "ak" ? 2 : 0)) {
       SCOPED_TRACE(drives + " " + component + " " + kind);
       QuadrupedLoop robot = loop_of(behind_drives(drives));

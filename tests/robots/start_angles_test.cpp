@@ -118,7 +118,7 @@ TEST_P(StartAngles, ExchangedMotorsAreRefusedWhereTheirJointsLieAtOtherAngles) {
   EXPECT_EQ(refused, 4);  // the hips
 }
 
-INSTANTIATE_TEST_SUITE_P(Motors, StartAngles, testing::Values("damiao", "cybergear", "ak"),
+INSTANTIATE_TEST_SUITE_P(Motors, StartAngles, testing::Values("damiao", "cybergear", "ak", "moteus"),
                          [](const auto& each) { return each.param; });
 
 }  // namespace robot_control::tests

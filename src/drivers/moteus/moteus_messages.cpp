@@ -4,6 +4,7 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <utility>
 
 namespace robot_control::moteus {
 namespace {
@@ -70,7 +71,10 @@ std::optional<Subframe> SubframeReader::next() noexcept {
   while (whole_ && !rest_.empty()) {
     const std::uint8_t head = rest_.front();
     rest_ = rest_.subspan(1);
-    if (head == kNothing) continue;
+    if (head == kNothing) {
+      whole_ = std::ranges::all_of(std::exchange(rest_, {}), [](std::uint8_t byte) { return byte == kNothing; });
+      break;
+    }
     if (head == kWriteError || head == kReadError) {
       varuint();
       varuint();

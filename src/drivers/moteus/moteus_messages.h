@@ -6,7 +6,7 @@
 ///   10h | type << 2 | count   reads them
 ///   20h | type << 2 | count   replies; their values follow
 ///   30h, 31h                  could not write or read: number of the register, number of the error
-///   50h                       nothing: padding to a length of CAN FD
+///   50h                       nothing: padding at the end, to a length of CAN FD
 ///
 /// The number of the first register follows the first byte. Before it comes `count`, if the two bits are 0. Both are
 /// varuints: seven bits a byte, the lowest first, and bit 7 of a byte means that another one follows. A Type names the

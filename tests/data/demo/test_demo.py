@@ -115,7 +115,7 @@ def test_drives_that_do_not_fit_the_robot_are_refused(tmp_path, capsys):
     assert parse(["--robot", "quadbot", "--out", str(tmp_path)]).robot == "quadbot"
     with pytest.raises(SystemExit):
         parse(["--robot", "quadbot", "--drives", "odrive", "--out", str(tmp_path)])
-    assert "--drives odrive do not move quadbot: take one of damiao, cybergear, ak" in capsys.readouterr().err
+    assert "--drives odrive do not move quadbot: take one of damiao, cybergear, ak, moteus" in capsys.readouterr().err
     assert parse(["--robot", "quadbot", "--drives", "damiao", "--out", str(tmp_path)]).drive.driver == "can"
     with pytest.raises(SystemExit):
         parse(["--drives", "damiao", "--out", str(tmp_path)])

@@ -12,6 +12,7 @@
 #include "drivers/cybergear/cybergear_messages.h"
 #include "drivers/damiao/damiao_messages.h"
 #include "drivers/odrive/odrive_catalogue.h"
+#include "drivers/moteus/moteus_messages.h"
 #include "drivers/vesc/vesc_messages.h"
 
 namespace robot_control::tests {
@@ -27,13 +28,14 @@ class Frames {
     can_frame frame{};
     if (random_() % 2 == 0) {
       frame.can_id = static_cast<canid_t>(random_() % 8 == 0 ? random_() : random_() & CAN_SFF_MASK);
-      frame.len = static_cast<std::uint8_t>(random_() % 4 == 0 ? random_() : random_() % 9);
+      frame.flags = valid_.front().flags;
+      frame.len = static_cast<std::uint8_t>(random_() % 4 == 0 ? random_() : random_() % (max_length(frame) + 1));
       for (std::uint8_t& byte : frame.data) byte = static_cast<std::uint8_t>(random_());
       return frame;
     }
     frame = valid_[random_() % valid_.size()];
     for (auto changes = random_() % 4; changes > 0; --changes) {
-      frame.data[random_() % 8] ^= static_cast<std::uint8_t>(1U << random_() % 8);
+      frame.data[random_() % (is_fd(frame) ? frame.len : 8)] ^= static_cast<std::uint8_t>(1U << random_() % 8);
     }
     if (random_() % 8 == 0) frame.can_id ^= canid_t{1} << random_() % 32;
     if (random_() % 8 == 0) frame.len = static_cast<std::uint8_t>(random_());
@@ -242,6 +244,40 @@ bool check_ak(const can_frame& frame) {
   return true;
 }
 
+/// Expects that both frames hold the same subframes. A NaN of an integer is written as 0.
+void expect_same_subframes(const can_frame& frame, const can_frame& again) {
+  moteus::SubframeReader first(frame), second(again);
+  while (const auto once = first.next()) {
+    const auto copy = second.next();
+    ASSERT_TRUE(copy.has_value());
+    EXPECT_EQ(copy->access, once->access);
+    EXPECT_EQ(copy->type, once->type);
+    EXPECT_EQ(copy->first, once->first);
+    ASSERT_EQ(copy->count, once->count);
+    for (unsigned i = 0; i < once->count && !once->values.empty(); ++i) {
+      const double value = value_of(*once, i);
+      EXPECT_TRUE(std::isnan(value) || value_of(*copy, i) == value) << value;
+    }
+  }
+  EXPECT_FALSE(second.next().has_value());
+}
+
+bool check_moteus(const can_frame& frame) {
+  using namespace moteus;
+  SubframeReader reader(frame);
+  SubframeWriter writer(kFuzzNode << 8U);
+  while (const auto each = reader.next()) {
+    writer.begin(each->access, each->type, static_cast<Register>(each->first), each->count);
+    for (unsigned i = 0; i < each->count && !each->values.empty(); ++i) writer.value(each->type, value_of(*each, i));
+  }
+  const bool is_reply = decode_reply(frame, kFuzzNode).has_value();
+  EXPECT_FALSE(is_reply && commands(frame, kFuzzNode));
+  EXPECT_FALSE(is_reply && !reader.whole());
+  if (!reader.whole()) return false;
+  expect_same_subframes(frame, writer.frame());
+  return true;
+}
+
 void expect_one_meaning_of(bool (*check)(const can_frame& frame), std::vector<can_frame> valid, int count) {
   Frames frames(std::move(valid));
   int accepted = 0;
@@ -268,6 +304,17 @@ void expect_one_meaning_of_mit(int count) {
   ak::Reply healthy = reply;
   healthy.health = {.temperature = 75, .error = ak::Error::kNone};
   expect_one_meaning_of(check_ak, {ak::encode(kFuzzRanges, reply), ak::encode(kFuzzRanges, healthy)}, count);
+  using moteus::Access, moteus::Register, moteus::Type;
+  moteus::SubframeWriter state(kFuzzNode << 8U);
+  state.begin(Access::kReply, Type::kInt8, Register::kMode, 1).value(Type::kInt8, 10);
+  state.begin(Access::kReply, Type::kFloat, Register::kPosition, 3);
+  for (const double value : {0.5, -1.0, 2.0}) state.value(Type::kFloat, value);
+  state.begin(Access::kReply, Type::kInt8, Register::kVoltage, 3);
+  for (const double value : {80, 30, 0}) state.value(Type::kInt8, value);
+  expect_one_meaning_of(check_moteus,
+                        {state.frame(), moteus::encode_stop(kFuzzNode, moteus::Query::kIdentity),
+                         moteus::encode_order(kFuzzNode, kFuzzRanges, order, 0.03, moteus::Query::kGains)},
+                        count);
 }
 
 TEST(CodecFuzz, ODriveFramesHaveOneMeaningOrNone) {

@@ -50,6 +50,13 @@ left_wheel_joint: {node: 1}
 right_wheel_joint: {node: 2}
 )";
 
+constexpr const char* kMoteus = R"(
+bus: {dialect: moteus}
+every_joint: {kp: 3000, kd: 30, motor_gear: 9, torque_limit: 18, velocity_limit: 30}
+left_wheel_joint: {node: 1}
+right_wheel_joint: {node: 2}
+)";
+
 constexpr const char* kAk = R"(
 bus: {dialect: ak}
 every_joint: {position_range: 12.5, velocity_range: 50, torque_range: 18, motor_gear: 9, torque_limit: 18, velocity_limit: 30, on_silence: keeps}
@@ -251,15 +258,39 @@ TEST_F(DriveFileTest, WhatAnAkCannotDoIsRefused) {
   EXPECT_THAT(refusal(kAk, "velocity_limit: 30", "velocity_limit: 30, timeout: 0.1"), HasSubstr("timeout"));
 }
 
+TEST_F(DriveFileTest, WhatAMoteusCannotDoIsRefused) {
+  for (const char* given : {"126", "1, on_silence: coasts", "1, min_voltage: 20", "1, timeout: 0.02"})
+    EXPECT_EQ(refusal(kMoteus, "node: 1", std::string("node: ") + given), "") << given;
+  for (const char* node : {"0", "127"})
+    EXPECT_THAT(refusal(kMoteus, "node: 1", std::string("node: ") + node), HasSubstr("must be 1 … 126")) << node;
+  for (const char* reaction : {"holds", "keeps", "unknown"})
+    EXPECT_THAT(refusal(kMoteus, "node: 1", std::string("node: 1, on_silence: ") + reaction),
+                HasSubstr("must be brakes or coasts, as servo.timeout_mode of the controller"));
+  EXPECT_THAT(refusal(kMoteus, "node: 1", "node: 1, timeout: 0.019"), HasSubstr("must be at least ten periods"));
+  EXPECT_THAT(refusal(kMoteus, "kp: 3000, ", ""), HasSubstr("left_wheel_joint.kp: missing"));
+  EXPECT_THAT(refusal(kMoteus, "kp: 3000", "kp: 0"), HasSubstr("kp = 0: must be"));
+}
+
+TEST_F(DriveFileTest, ADataRateBelongsToCanFd) {
+  EXPECT_EQ(read<CanDriveFile>(kMoteus).bus.data_rate, 5.0e6);
+  std::string slower = kMoteus;
+  slower.insert(slower.find('}'), ", data_rate: 2000000");
+  EXPECT_EQ(read<CanDriveFile>(slower).bus.data_rate, 2.0e6);
+  EXPECT_EQ(read<CanDriveFile>(kDamiao).bus.data_rate, 0);
+  EXPECT_THAT(refusal(kDamiao, "dialect: damiao", "dialect: damiao, data_rate: 5000000"),
+              HasSubstr("bus.data_rate = 5000000: unknown key"));
+}
+
 TEST_F(DriveFileTest, NoOtherDriveKeepsItsLastOrder) {
   EXPECT_THAT(refusal(kOdrive, "coasts", "keeps"), HasSubstr("must be coasts or unknown"));
   EXPECT_THAT(refusal(kVesc, "coasts", "keeps"), HasSubstr("must be coasts, brakes or unknown"));
   EXPECT_THAT(refusal(kDamiao, "node: 1", "node: 1, on_silence: keeps"), HasSubstr("must be left out"));
 }
 
-/// A command and its answer have at most 135 bits each, and 160 with identifiers of 29 bits.
+/// A command and its answer have at most 135 bits each, and 160 with identifiers of 29 bits. Those of a moteus have 160
+/// and 90 µs.
 TEST_F(DriveFileTest, ABusCarriesThreeMotorsInMitModeAtAKilohertzAndSixAtHalf) {
-  for (const char* dialect : {kDamiao, kCybergear, kAk}) {
+  for (const char* dialect : {kDamiao, kCybergear, kAk, kMoteus}) {
     std::string text = std::string(dialect).substr(0, std::string(dialect).find("left_wheel_joint"));
     joints_.clear();
     for (int node = 1; node <= 7; ++node) {

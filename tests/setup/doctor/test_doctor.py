@@ -253,6 +253,7 @@ def test_a_bus_of_simulated_drives_needs_no_interface(tmp_path):
         ("cia402", Verdict.OK, "no drive file states a reaction"),
         ("damiao", Verdict.OK, "no drive file states a reaction"),
         ("cybergear", Verdict.OK, "no drive file states a reaction"),
+        ("moteus", Verdict.OK, "no drive file states a reaction"),
     ],
 )
 def test_the_reaction_of_every_drive_on_silence_is_that_of_its_file(tmp_path, drive, verdict, words):

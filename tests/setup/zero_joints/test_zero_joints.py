@@ -17,7 +17,7 @@ from robot_control.setup.zero_joints.dialog import NotFoundError, Zeroed, find_z
 from robot_control.setup.zero_joints.drive_file import DriveFileError, read_joints, robot_of, with_values
 from robot_control.setup.zero_joints.main import known_angles, parse_options
 
-GEARS = {"damiao": 9.0, "cybergear": 9.0, "ak": 9.0, "unitree_legged": 6.33}
+GEARS = {"damiao": 9.0, "cybergear": 9.0, "ak": 9.0, "moteus": 9.0, "unitree_legged": 6.33}
 """turns of the rotor per turn of the joint"""
 LEGS = ("front_left", "front_right", "rear_left", "rear_right")
 NAMES = [f"{leg}_{joint}_joint" for leg in LEGS for joint in ("hip", "thigh", "knee")]
@@ -96,7 +96,7 @@ def test_a_zero_that_is_off_by_a_turn_of_the_rotor_is_found(drives, index, capsy
     assert is_refused_at_start(robot, drives) or drives == "unitree_legged"
     found = find_zeros(robot.joints, robot, robot)
     assert found[NAMES[index]]["offset"] == pytest.approx(robot.joints[index].given.offset + turn)
-    assert ("+1 turn(s) of the rotor" in capsys.readouterr().out) == (drives in ("cybergear", "ak"))
+    assert ("+1 turn(s) of the rotor" in capsys.readouterr().out) == (drives in ("cybergear", "ak", "moteus"))
 
 
 @pytest.mark.parametrize("found_by_angle", [True, False], ids=["zero of the motor", "zero in this posture"])

@@ -6,7 +6,7 @@ from robot_control.loop.drives import DRIVES
 from bench.devices.disturbed_walk import DisturbedWalk, run_walk
 from bench.devices.walk_loss import LOSSES, WalkLoss, run_loss
 
-SAME_LAW = ("cybergear", "ak")
+SAME_LAW = ("cybergear", "ak", "moteus")
 """drives in MIT mode beside damiao"""
 KEEPS_ITS_ORDER = {("ak", "bus gone"), ("ak", "cable of a leg")}
 """The motors have no timeout: the robot falls over with the last order of its legs (docs/drivers.md)."""

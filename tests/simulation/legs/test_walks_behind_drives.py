@@ -27,7 +27,7 @@ def walked(drives, bus):
 
 @pytest.mark.parametrize(
     ("drives", "bus"),
-    [(drives, bus) for drives in ("damiao", "cybergear", "ak") for bus in ("ok", "lossy", "disturbed")],
+    [(drives, bus) for drives in ("damiao", "cybergear", "ak", "moteus") for bus in ("ok", "lossy", "disturbed")],
 )
 def test_the_walk_is_tracked(drives, bus):
     summary = summarize(walked(drives, bus), LINEAR, ANGULAR, WALK, legged=True)
