@@ -245,7 +245,7 @@ class MoteusPeer:
         return self.made[node]
 
     def query(self, number):
-        """What Query of moteus_messages.h requests. Its own subframes of the identity have another order there."""
+        """The registers of a Query of moteus_messages.h, but for the identity."""
         asked = self.peer.QueryResolution()
         if number == 2:
             asked._extra = dict.fromkeys((0x30, 0x31, 0x32), self.peer.F32)
@@ -293,7 +293,12 @@ def test_stops_of_a_moteus_are_equal(moteus):
     assert frames(lines)[::2] == plain
     identity = frames(["moteus stop 5 1"])[0][1]
     subframes = [(each.type.name, each.register, each.resolution) for each in peer.multiplex.parse_frame(identity)]
-    asked = [(0x000, 0), *((number, 3) for number in (1, 2, 3)), *((number, 0) for number in (13, 14, 15, 12)), (0x102, 2)]
+    asked = [
+        (0x000, 0),
+        *((number, 3) for number in (1, 2, 3)),
+        *((number, 0) for number in (13, 14, 15, 12)),
+        (0x102, 2),
+    ]
     assert subframes == [("WRITE", 0x000, 0), *(("READ", *each) for each in asked)]
 
 
@@ -302,7 +307,7 @@ def moteus_reply(peer, chance):
     mp = peer.multiplex
 
     def real():
-        return struct.pack("<I", chance.choice((chance.randrange(0x7F800000), 0x80000000 | chance.randrange(0x7F800000))))
+        return struct.pack("<I", chance.randrange(0x7F800000) | chance.choice((0, 1 << 31)))
 
     def subframe(kind, first, values):
         buffer = io.BytesIO()

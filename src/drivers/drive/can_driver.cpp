@@ -47,8 +47,8 @@ CanDriver::CanDriver(CanBusParameters parameters, DriveSet drives, std::span<con
       commands_(drives_.size()),
       send_(sockets.size()) {
   for (CanSocket& socket : sockets) {
-    load_ = std::max(load_,
-                     bus_load(drives_.plan(lines_.size()), 1 / period, parameters_.bit_rate, parameters_.data_rate));
+    load_ =
+        std::max(load_, bus_load(drives_.plan(lines_.size()), 1 / period, parameters_.bit_rate, parameters_.data_rate));
     lines_.emplace_back(std::move(socket));
   }
   for (std::size_t i = 0; i < drives_.size(); ++i) {

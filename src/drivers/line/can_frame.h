@@ -1,6 +1,7 @@
 #pragma once
-/// Frames of classic CAN and of CAN FD, in the layouts of Linux: 32-bit identifier with flags, length, 8 bytes of data
-/// (struct ::can_frame) or 64 (struct ::canfd_frame). Both have the same first members, and the longer one holds either.
+/// Frames of classic CAN and of CAN FD, in the layouts of Linux. A classic frame (struct ::can_frame) has an identifier
+/// with flags, a length and 8 bytes of data. A frame of CAN FD (struct ::canfd_frame) has the same first members and up
+/// to 64 bytes, so it holds either.
 ///
 /// CANFD_FDF marks a frame of CAN FD, which is sent as a ::canfd_frame; any other one is sent as a ::can_frame.
 /// CANFD_BRS marks that its data have the higher bit rate. A frame of CAN FD holds 0 … 8, 12, 16, 20, 24, 32, 48 or 64

@@ -128,7 +128,7 @@ FrameBits fd_frame_bits(const can_frame& frame) noexcept {
   const unsigned head = counter.count();
   const unsigned length = std::min<unsigned>(frame.len, CANFD_MAX_DLEN);
   const unsigned code = length <= 8 ? length : length <= 24 ? 6 + length / 4 : 11 + length / 16;  // of 4 bits
-  counter.add(code, 5);                                                                          // ESI before it
+  counter.add(code, 5);                                                                           // ESI before it
   for (unsigned i = 0; i < length; ++i) counter.add(frame.data[i], 8);
   const unsigned data = counter.count() - head + (length > 16 ? 32 : 27);
   return switches ? FrameBits{.arbitration = head + 13, .data = data} : FrameBits{.arbitration = head + data + 13};

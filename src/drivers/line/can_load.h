@@ -70,7 +70,6 @@ double bus_load(std::span<const PlannedFrames> plan, double rate, double bit_rat
 /// Returns nothing if the load is at most `max_load`. Otherwise returns the message of the refusal, which names the
 /// largest whole robot.rate that fits. If none of at least `min_rate` fits, it names the bit rate that is needed.
 std::optional<std::string> bus_load_problem(std::span<const PlannedFrames> plan, double rate, double bit_rate,
-                                            double min_rate, double max_load = kMaxBusLoad,
-                                            double data_rate = 0);
+                                            double min_rate, double max_load = kMaxBusLoad, double data_rate = 0);
 
 }  // namespace robot_control

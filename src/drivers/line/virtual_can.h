@@ -1,6 +1,6 @@
 #pragma once
-/// A CAN bus in virtual time: each frame takes the time of its bits at the bit rate, and the lowest identifier wins. The
-/// data of CAN FD have their own rate.
+/// A CAN bus in virtual time: each frame takes the time of its bits at the bit rate, and the lowest identifier wins.
+/// The data of CAN FD have their own rate.
 ///
 /// Each party sends its frames in their order. The first frames of all parties take part in the arbitration as soon as
 /// the bus is free. A data frame wins over a remote request of the same identifier. All other parties that are

@@ -14,8 +14,8 @@ using moteus::Register;
 namespace {
 
 constexpr Mode kEnabling{3};
-constexpr double kCoolBoard = 35, kHotBoard = 120;       // °C
-constexpr double kSupply = 40, kLowSupply = 3.5;         // V
+constexpr double kCoolBoard = 35, kHotBoard = 120;  // °C
+constexpr double kSupply = 40, kLowSupply = 3.5;    // V
 constexpr std::uint8_t kEncoderFault = 35, kUnderVoltage = 40;
 
 }  // namespace

@@ -2,9 +2,9 @@
 /// A moteus controller as a device: its modes, the timeout of an order, an error until it is stopped, and the registers
 /// of a reply. Its control closes the impedance at each step, about a target that moves on with the ordered velocity.
 ///
-/// An order brings it into the mode position after kEnableNs. A timeout leaves it with the damping of the last order and
-/// at most kTimeoutTorque, as shipped (servo.timeout_mode 12), or without torque. Only a request to stop ends that. The
-/// reply to a frame tells the state before it.
+/// An order brings it into the mode position after kEnableNs. A timeout leaves it with the damping of the last order
+/// and at most kTimeoutTorque, as shipped (servo.timeout_mode 12), or without torque. Only a request to stop ends that.
+/// The reply to a frame tells the state before it.
 
 #include <cstdint>
 

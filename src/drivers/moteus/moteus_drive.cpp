@@ -7,9 +7,9 @@
 namespace robot_control::moteus {
 namespace {
 
-constexpr double kTrialAngle = 0.05 * kTurn;     // rad, from the position
-constexpr double kTrialVelocity = 0.2 * kTurn;   // rad/s: the target moves on by 0.4 % of the angle in 1 ms
-constexpr double kTrialStiffness = 0.25;         // of kp: less than the part of kd, which must not depend on it
+constexpr double kTrialAngle = 0.05 * kTurn;    // rad, from the position
+constexpr double kTrialVelocity = 0.2 * kTurn;  // rad/s: the target moves on by 0.4 % of the angle in 1 ms
+constexpr double kTrialStiffness = 0.25;        // of kp: less than the part of kd, which must not depend on it
 
 struct CodeWords {
   std::uint64_t code;
@@ -39,9 +39,7 @@ MitJoint with_gains(const MoteusParameters& parameters) {
 }  // namespace
 
 MoteusDrive::MoteusDrive(const MoteusParameters& parameters, double period)
-    : MitDrive(with_gains(parameters), period),
-      motor_gear_(parameters.motor_gear),
-      timeout_(parameters.timeout) {}
+    : MitDrive(with_gains(parameters), period), motor_gear_(parameters.motor_gear), timeout_(parameters.timeout) {}
 
 std::vector<PlannedFrames> MoteusDrive::plan() const {
   return {{.fd = true, .extended = true, .data_bytes = 48, .per_cycle = 1},

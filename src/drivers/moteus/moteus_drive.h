@@ -2,14 +2,14 @@
 /// One moteus controller of mjbots in its mode position, which closes an impedance (drivers/drive/mit/mit_drive.h).
 ///
 /// Each order carries its own timeout. After it the controller enters the mode timeout, and obeys nothing but a request
-/// to stop. What it does there is its setting servo.timeout_mode, which the drive file states.
+/// to stop. The drive file states what the controller does there, which is its setting servo.timeout_mode.
 ///
-/// The set-up reads the version of the registers, and what the position is relative to. A position of the output, which
-/// has no turns of the rotor, is within half a turn of the output of start_angle.
+/// The set-up reads the version of the registers, and what the position is relative to. A position of the output has no
+/// turns of the rotor. Its start_angle may be off by half a turn of the output.
 ///
-/// The gains cannot be read. So it is enabled with orders whose greatest torque is 0, with a target beside its position,
-/// and reports the parts of the torque that it would apply. They show kp, kd, an integral, and a limit of its steps. It
-/// counts as enabled when they agree with the drive file within kTolerance.
+/// The gains cannot be read. So the controller is enabled with orders whose greatest torque is 0, and whose target is
+/// beside its position. It reports the parts of the torque that it would apply. They show kp, kd, an integral, and a
+/// limit of its steps. It counts as enabled when they agree with the drive file within kTolerance.
 
 #include <cstdint>
 

@@ -81,9 +81,8 @@ std::optional<Subframe> SubframeReader::next() noexcept {
       continue;
     }
     whole_ = head < kWriteError;
-    Subframe subframe{.access = static_cast<Access>(head & 0xF0U),
-                      .type = static_cast<Type>(head >> 2U & 3U),
-                      .count = head & 3U};
+    Subframe subframe{
+        .access = static_cast<Access>(head & 0xF0U), .type = static_cast<Type>(head >> 2U & 3U), .count = head & 3U};
     if (subframe.count == 0 && whole_) subframe.count = varuint();
     if (subframe.count == 0 && whole_) continue;
     subframe.first = varuint();
@@ -148,9 +147,8 @@ can_frame encode_order(std::uint64_t node, const MitRanges& ranges, const MitCom
                        Query query) noexcept {
   SubframeWriter writer = begin_order(node, Mode::kPosition);
   writer.begin(Access::kWrite, Type::kFloat, Register::kOrderPosition, 6);
-  for (const double value :
-       {command.position / kTurn, command.velocity / kTurn, command.torque, command.stiffness / ranges.stiffness,
-        command.damping / ranges.damping, ranges.torque})
+  for (const double value : {command.position / kTurn, command.velocity / kTurn, command.torque,
+                             command.stiffness / ranges.stiffness, command.damping / ranges.damping, ranges.torque})
     writer.value(Type::kFloat, value);
   writer.begin(Access::kWrite, Type::kFloat, Register::kTimeout, 1).value(Type::kFloat, timeout);
   writer.begin(Access::kWrite, Type::kInt8, Register::kVelocityLimit, 2);

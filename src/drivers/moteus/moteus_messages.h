@@ -24,8 +24,8 @@
 namespace robot_control::moteus {
 
 inline constexpr double kTurn = 2 * std::numbers::pi;  ///< rad
-inline constexpr std::uint64_t kBroadcast = 127;  ///< every controller takes frames for this number
-inline constexpr canid_t kHost = 0;               ///< number of this program
+inline constexpr std::uint64_t kBroadcast = 127;       ///< every controller takes frames for this number
+inline constexpr canid_t kHost = 0;                    ///< number of this program
 inline constexpr canid_t kRequestsReply = 0x8000;
 inline constexpr unsigned kMaxCount = 64;  ///< of registers in a subframe
 
@@ -86,7 +86,7 @@ class SubframeReader {
   bool whole_ = true;
 };
 
-/// Writes subframes into a frame. What it has no room for is left out.
+/// Writes subframes into a frame. Bytes beyond its room are left out.
 class SubframeWriter {
  public:
   explicit SubframeWriter(canid_t id) noexcept;
@@ -108,11 +108,11 @@ class SubframeWriter {
 /// Returns the value of register `i` of a subframe that has values.
 double value_of(const Subframe& subframe, unsigned i) noexcept;
 
-/// What a controller is requested to reply: its state, and what else.
+/// A controller is requested to reply its state, and one thing more.
 enum class Query : std::uint8_t { kState, kIdentity, kGains };
 
 struct Reply {
-  double mode = 0;  ///< Mode
+  double mode = 0;         ///< Mode
   double position = 0;     ///< rad, of the output
   double velocity = 0;     ///< rad/s
   double torque = 0;       ///< N·m
@@ -141,8 +141,8 @@ const ReplyField* field_of(std::uint32_t number, Type type) noexcept;
 /// Encodes a request to stop, which also clears an error and ends a timeout.
 can_frame encode_stop(std::uint64_t node, Query query) noexcept;
 
-/// Encodes an order. `ranges` hold the stiffness and the damping of the scale 1, and the greatest torque. The order ends
-/// after `timeout` s. No trajectory limits its steps.
+/// Encodes an order. `ranges` hold the stiffness and the damping of the scale 1, and the greatest torque. The order
+/// ends after `timeout` s. No trajectory limits its steps.
 can_frame encode_order(std::uint64_t node, const MitRanges& ranges, const MitCommand& command, double timeout,
                        Query query) noexcept;
 

@@ -34,7 +34,8 @@ struct MoteusParameters : MitJoint {
 };
 
 inline Keys keys(MoteusParameters& p) {
-  return joined({keys(p.drive), zero_keys(p),
+  return joined({keys(p.drive),
+                 zero_keys(p),
                  {
                      {"kp", &p.kp, "N·m per turn of the output", 1, 1.0e6},
                      {"kd", &p.kd, "N·m·s per turn of the output", 0.01, 1.0e5},

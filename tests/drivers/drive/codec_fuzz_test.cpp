@@ -11,8 +11,8 @@
 #include "drivers/cia402/sdo.h"
 #include "drivers/cybergear/cybergear_messages.h"
 #include "drivers/damiao/damiao_messages.h"
-#include "drivers/odrive/odrive_catalogue.h"
 #include "drivers/moteus/moteus_messages.h"
+#include "drivers/odrive/odrive_catalogue.h"
 #include "drivers/vesc/vesc_messages.h"
 
 namespace robot_control::tests {

@@ -27,7 +27,9 @@ class DeviceRig {
   static constexpr std::uint8_t kHostNode = 127;
 
   explicit DeviceRig(double rate = 500, double bit_rate = 1.0e6, std::uint64_t seed = 1)
-      : period_(1 / rate), bus_(bit_rate, seed, 5 * bit_rate), host_(bus_.join([this](const can_frame& frame, std::int64_t now_ns) {
+      : period_(1 / rate),
+        bus_(bit_rate, seed, 5 * bit_rate),
+        host_(bus_.join([this](const can_frame& frame, std::int64_t now_ns) {
           if (host_lives && answers) received_.push_back({frame, now_ns});
         })) {}
 

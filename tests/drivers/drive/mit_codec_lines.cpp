@@ -11,8 +11,8 @@
 ///   moteus stop NODE QUERY    → identifier, data
 ///   moteus feedback NODE ID DATA  → the numbers of moteus::Reply, in their order; - if the frame is none
 ///
-/// The orders without NODE are for motor 1. KP and KD are those of the scale 1, in N·m/rad and N·m·s/rad. RANGES are those of position, velocity and torque. DATA is hexadecimal, all else
-/// decimal.
+/// The orders without NODE are for motor 1. KP and KD are those of the scale 1, in N·m/rad and N·m·s/rad. RANGES are
+/// those of position, velocity and torque. DATA is hexadecimal, all else decimal.
 
 #include <cstdio>
 #include <iostream>

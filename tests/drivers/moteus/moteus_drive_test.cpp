@@ -25,8 +25,9 @@ struct MoteusDriveTest : testing::Test {
 
 TEST_F(MoteusDriveTest, AnotherKpIsFoundBeforeTheMotorHasTorque) {
   pair_.device.gains.stiffness *= 0.5;
-  EXPECT_THAT(refusal(), testing::ContainsRegex("differs from the drive file: kp, or a limit of its position, 1[45][0-9]+(.[0-9]+)? "
-                                       "instead of 3000"));
+  EXPECT_THAT(refusal(), testing::ContainsRegex(
+                             "differs from the drive file: kp, or a limit of its position, 1[45][0-9]+(.[0-9]+)? "
+                             "instead of 3000"));
 }
 
 TEST_F(MoteusDriveTest, AnotherKdIsFoundBeforeTheMotorHasTorque) {

@@ -22,8 +22,7 @@ std::vector<std::uint8_t> bytes_of(const can_frame& frame) {
 }
 
 TEST(Moteus, TheReplyOfTheMakersExampleIsRead) {
-  const can_frame frame =
-      frame_of(0x100, {0x24, 4, 0, 0x0A, 0, 0x50, 0, 0, 1, 0x70, 0xFF, 0x23, 0x0D, 0x18, 0x14, 0});
+  const can_frame frame = frame_of(0x100, {0x24, 4, 0, 0x0A, 0, 0x50, 0, 0, 1, 0x70, 0xFF, 0x23, 0x0D, 0x18, 0x14, 0});
   SubframeReader reader(frame);
   const auto motion = reader.next();
   ASSERT_TRUE(motion);
@@ -57,13 +56,14 @@ TEST(Moteus, AnOrderHoldsSixNumbersATimeoutNoLimitAndTheQuery) {
 TEST(Moteus, AStopAsksForTheStateAndTheIdentity) {
   EXPECT_EQ(bytes_of(encode_stop(3, Query::kState)),
             (std::vector<std::uint8_t>{0x01, 0, 0, 0x11, 0, 0x1F, 1, 0x13, 0x0D, 0x50, 0x50, 0x50}));
-  EXPECT_EQ(bytes_of(encode_stop(3, Query::kIdentity)),
-            (std::vector<std::uint8_t>{0x01, 0, 0, 0x11, 0, 0x1F, 1, 0x13, 0x0D, 0x11, 0x0C, 0x19, 0x82, 0x02, 0x50, 0x50}));
+  EXPECT_EQ(
+      bytes_of(encode_stop(3, Query::kIdentity)),
+      (std::vector<std::uint8_t>{0x01, 0, 0, 0x11, 0, 0x1F, 1, 0x13, 0x0D, 0x11, 0x0C, 0x19, 0x82, 0x02, 0x50, 0x50}));
 }
 
 can_frame good_reply(canid_t id = 0x100) {
-  return frame_of(id, {0x21, 0, 10,   0x2F, 1,    0,    0,  0x80, 0x3E, 0,    0,   0,
-                       0,    0, 0,    0xC0, 0x3F, 0x23, 0x0D, 50, 30,   0, 0x50, 0x50});
+  return frame_of(
+      id, {0x21, 0, 10, 0x2F, 1, 0, 0, 0x80, 0x3E, 0, 0, 0, 0, 0, 0, 0xC0, 0x3F, 0x23, 0x0D, 50, 30, 0, 0x50, 0x50});
 }
 
 TEST(Moteus, AReplyIsReadInSiUnits) {
@@ -118,9 +118,14 @@ TEST(Moteus, AFrameThatReadsAloneCommandsNothing) {
 }
 
 TEST(Moteus, ASubframeThatIsCutEndsTheFrame) {
-  for (const std::initializer_list<std::uint8_t> bytes :
-       {std::initializer_list<std::uint8_t>{0x0D, 0x20, 0, 0, 0}, {0x00}, {0x00, 0x80}, {0x11}, {0x11, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 1},
-        {0x10, 0xFF, 0x7F, 0}, {0x60, 0}, {0x50, 0x21, 0, 10}}) {
+  for (const std::initializer_list<std::uint8_t> bytes : {std::initializer_list<std::uint8_t>{0x0D, 0x20, 0, 0, 0},
+                                                          {0x00},
+                                                          {0x00, 0x80},
+                                                          {0x11},
+                                                          {0x11, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 1},
+                                                          {0x10, 0xFF, 0x7F, 0},
+                                                          {0x60, 0},
+                                                          {0x50, 0x21, 0, 10}}) {
     const can_frame frame = frame_of(0x100, bytes);
     SubframeReader reader(frame);
     EXPECT_FALSE(reader.next());
