@@ -244,13 +244,6 @@ class MoteusPeer:
             self.made[node] = self.peer.Controller(id=node, position_resolution=self.formats)
         return self.made[node]
 
-    def query(self, number):
-        """The registers of a Query of moteus_messages.h, but for the identity."""
-        asked = self.peer.QueryResolution()
-        if number == 2:
-            asked._extra = dict.fromkeys((0x30, 0x31, 0x32), self.peer.F32)
-        return asked
-
     def sent(self, command):
         """Identifier and data, as the client's transport sends them."""
         frame = self.transport._command_to_frame(command)
@@ -262,12 +255,12 @@ def test_orders_of_a_moteus_are_equal(moteus):
     peer, chance = MoteusPeer(moteus), random.Random(7)
     lines, expected = [], []
     for _ in range(FRAMES):
-        node, query = chance.randint(1, 126), chance.choice((0, 2))
+        node = chance.randint(1, 126)
         position, velocity, torque = (chance.uniform(-limit, limit) for limit in (100, 300, 60))
         kp, kd = chance.uniform(1, 1000), chance.uniform(0.1, 20)
         stiffness, damping = chance.uniform(0, kp), chance.uniform(0, kd)
         timeout, limit = chance.uniform(0.01, 1), chance.uniform(0, 60)
-        values = (node, query, position, velocity, stiffness, damping, torque, timeout, kp, kd, limit)
+        values = (node, 0, position, velocity, stiffness, damping, torque, timeout, kp, kd, limit)
         lines.append("moteus order " + " ".join(map(repr, values)))
         command = peer.controller(node).make_position(
             position=position / math.tau,
@@ -279,7 +272,7 @@ def test_orders_of_a_moteus_are_equal(moteus):
             watchdog_timeout=timeout,
             velocity_limit=-0.1,
             accel_limit=-0.05,
-            query_override=peer.query(query),
+            query=True,
         )
         expected.append(peer.sent(command))
     assert frames(lines) == expected
@@ -287,52 +280,45 @@ def test_orders_of_a_moteus_are_equal(moteus):
 
 def test_stops_of_a_moteus_are_equal(moteus):
     peer = MoteusPeer(moteus)
-    lines = [f"moteus stop {node} {query}" for node in range(1, 127) for query in (0, 2)]
     stops = [peer.controller(node).make_stop(query=True) for node in range(1, 127)]
-    plain = [peer.sent(stop) for stop in stops]
-    assert frames(lines)[::2] == plain
-    identity = frames(["moteus stop 5 1"])[0][1]
-    subframes = [(each.type.name, each.register, each.resolution) for each in peer.multiplex.parse_frame(identity)]
+    assert frames(f"moteus stop {node} 0" for node in range(1, 127)) == [peer.sent(stop) for stop in stops]
+
+
+def test_the_details_of_a_moteus_are_requested_as_its_client_reads_them(moteus):
+    peer = MoteusPeer(moteus)
+    data = frames(["moteus stop 5 1"])[0][1]
+    subframes = [(each.type.name, each.register, each.resolution) for each in peer.multiplex.parse_frame(data)]
     asked = [
         (0x000, 0),
         *((number, 3) for number in (1, 2, 3)),
         *((number, 0) for number in (13, 14, 15, 12)),
         (0x102, 2),
+        *((number, 3) for number in (0x30, 0x31, 0x32)),
     ]
     assert subframes == [("WRITE", 0x000, 0), *(("READ", *each) for each in asked)]
 
 
 def moteus_reply(peer, chance):
-    """The data of a random reply with the state, and with other registers and errors between."""
+    """The data of a random reply with or without its details, whose values are any but the lowest mode and fault."""
     mp = peer.multiplex
 
     def real():
         return struct.pack("<I", chance.randrange(0x7F800000) | chance.choice((0, 1 << 31)))
 
-    def subframe(kind, first, values):
+    def subframe(kind, first, *values):
         buffer = io.BytesIO()
         writer = mp.WriteFrame(buffer)
-        writer.write_int8(mp.REPLY_BASE | kind << 2 | (len(values) if len(values) <= 3 else 0))
-        if len(values) > 3:
-            writer.write_varuint(len(values))
+        writer.write_int8(mp.REPLY_BASE | kind << 2 | len(values))
         writer.write_varuint(first)
         return buffer.getvalue() + b"".join(values)
 
-    state = [
-        subframe(mp.INT8, 0x00, [bytes([chance.choice((0, 1, 2, 3, 4, 10, 11))])]),
-        subframe(mp.F32, 0x01, [real(), real(), real()]),
-        subframe(mp.INT8, 0x0D, [chance.randbytes(1), chance.randbytes(1), bytes([chance.randrange(104)])]),
-    ]
-    more = [
-        subframe(mp.INT8, 0x0C, [bytes([chance.randrange(3)])]),
-        subframe(mp.INT32, 0x102, [struct.pack("<i", chance.randrange(1, 1 << 30))]),
-        subframe(mp.F32, 0x30, [real(), real(), real()]),
-        subframe(mp.INT16, 0x04, [chance.randbytes(2) for _ in range(chance.randint(1, 5))]),
-        bytes([mp.READ_ERROR, 0x2B, 0x01]),
-    ]
-    parts = state + chance.sample(more, chance.randint(0, 2))
-    chance.shuffle(parts)
-    return b"".join(parts) + bytes([mp.NOP]) * chance.randrange(4)
+    mode, fault = (struct.pack("<b", chance.randint(-127, 127)) for _ in range(2))
+    state = subframe(mp.INT8, 0x00, mode) + subframe(mp.F32, 0x01, real(), real(), real())
+    state += subframe(mp.INT8, 0x0D, chance.randbytes(1), chance.randbytes(1), fault)
+    details = subframe(mp.INT8, 0x0C, chance.randbytes(1)) + subframe(mp.INT32, 0x102, chance.randbytes(4))
+    details += subframe(mp.F32, 0x30, real(), real(), real())
+    data = state + chance.choice((b"", details))
+    return data + bytes([mp.NOP]) * (peer.device._round_up_dlc(len(data)) - len(data))
 
 
 def test_replies_of_a_moteus_are_equal(moteus):
@@ -343,6 +329,7 @@ def test_replies_of_a_moteus_are_equal(moteus):
         node, data = chance.randint(1, 126), moteus_reply(peer, chance)
         lines.append(f"moteus feedback {node} {node << 8} {data.hex()}")
         read = moteus.parse_registers(data).response
+        read |= {each: math.nan for each in (0x0C, 0x102) if read.get(each) in (-128, -(1 << 31))}
         expected.append([math.tau * read[each] if each in (1, 2) else read.get(each, 0) for each in registers])
     read = [[float(number) for number in line.split()] for line in answers(lines)]
     assert repr(read) == repr([[float(number) for number in numbers] for numbers in expected])

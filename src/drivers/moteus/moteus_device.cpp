@@ -7,9 +7,7 @@
 
 namespace robot_control {
 
-using moteus::Access;
 using moteus::Mode;
-using moteus::Register;
 
 namespace {
 
@@ -26,71 +24,19 @@ void MoteusDevice::boot() {
   fault_code_ = 0;
 }
 
-void MoteusDevice::write(Register number, double value) {
-  switch (number) {
-    case Register::kMode:
-      ordered_ = static_cast<Mode>(std::isnan(value) ? 0 : static_cast<int>(value));
-      command_ = {};
-      timeout_ = kTimeout;
-      return;
-    case Register::kOrderPosition:
-      command_.position = moteus::kTurn * value;
-      return;
-    case Register::kOrderVelocity:
-      command_.velocity = moteus::kTurn * value;
-      return;
-    case Register::kOrderTorque:
-      command_.torque = value;
-      return;
-    case Register::kStiffnessScale:
-      command_.stiffness = value * parameters_.gains.stiffness;
-      return;
-    case Register::kDampingScale:
-      command_.damping = value * parameters_.gains.damping;
-      return;
-    case Register::kMaxTorque:
-      max_torque_ = value;
-      return;
-    case Register::kTimeout:
-      timeout_ = value;
-      return;
-    default:
-      return;
-  }
-}
-
 void MoteusDevice::receive(const can_frame& frame, std::int64_t now_ns) {
-  const canid_t id = frame.can_id & ~CAN_EFF_FLAG;
-  if (id > 0xFFFF || (id & 0x7FU) != parameters_.node) return;
-  const moteus::Reply state = this->state();
-  const canid_t source = id >> 8U & 0x7FU;
-  moteus::SubframeWriter reply(static_cast<canid_t>(parameters_.node) << 8U | source);
-  moteus::SubframeReader reader(frame);
-  bool orders = false;
-  while (const auto subframe = reader.next()) {
-    if (subframe->access == Access::kRead)
-      reply.begin(Access::kReply, subframe->type, static_cast<Register>(subframe->first), subframe->count);
-    for (unsigned i = 0; i < subframe->count; ++i) {
-      const auto number = static_cast<Register>(subframe->first + i);
-      if (subframe->access == Access::kWrite) {
-        orders = orders || number == Register::kMode;
-        write(number, value_of(*subframe, i));
-      } else if (subframe->access == Access::kRead) {
-        const moteus::ReplyField* field = moteus::field_of(subframe->first + i, subframe->type);
-        reply.value(subframe->type, field == nullptr ? 0 : state.*field->member / field->scale);
-      }
-    }
-  }
-  if (orders) begin_order(now_ns);
-  if ((id & moteus::kRequestsReply) != 0) transmit(reply.frame());
-}
-
-void MoteusDevice::begin_order(std::int64_t now_ns) {
+  const auto request = moteus::decode_request(frame, parameters_.node, parameters_.gains);
+  if (!request) return;
+  moteus::Reply reply = state();
+  reply.details = request->details;
+  transmit(moteus::encode(parameters_.node, reply));
+  order_ = *request;
+  command_ = order_.command;
   ordered_ns_ = now_ns;
-  if (ordered_ == Mode::kStopped) {
+  if (order_.mode == Mode::kStopped) {
     mode_ = Mode::kStopped;
     fault_code_ = 0;
-  } else if (ordered_ == Mode::kPosition && mode_ == Mode::kStopped) {
+  } else if (mode_ == Mode::kStopped) {
     mode_ = kEnabling;
     enabled_ns_ = now_ns + kEnableNs;
   }
@@ -119,8 +65,8 @@ void MoteusDevice::run(std::int64_t now_ns, double seconds) {
     fault_code_ = fault() == DeviceFault::kEncoder ? kEncoderFault : kUnderVoltage;
   }
   const double silence = 1.0e-9 * static_cast<double>(now_ns - ordered_ns_);
-  if (mode_ == Mode::kPosition && silence > timeout_) mode_ = Mode::kTimeout;
-  double limit = max_torque_;
+  if (mode_ == Mode::kPosition && silence > order_.timeout) mode_ = Mode::kTimeout;
+  double limit = order_.max_torque;
   if (mode_ == Mode::kPosition) {
     command_.position += command_.velocity * seconds;
   } else if (mode_ == Mode::kTimeout) {

@@ -1,6 +1,6 @@
 #pragma once
-/// A moteus controller as a device: its modes, the timeout of an order, an error until it is stopped, and the registers
-/// of a reply. Its control closes the impedance at each step, about a target that moves on with the ordered velocity.
+/// A moteus controller as a device: its modes, the timeout of an order, and an error until it is stopped. Its control
+/// closes the impedance at each step, about a target that moves on with the ordered velocity.
 ///
 /// An order brings it into the mode position after kEnableNs. A timeout leaves it with the damping of the last order
 /// and at most kTimeoutTorque, as shipped (servo.timeout_mode 12), or without torque. Only a request to stop ends that.
@@ -26,7 +26,6 @@ struct MoteusDeviceParameters {
 class MoteusDevice final : public MitDevice {
  public:
   static constexpr std::int64_t kEnableNs = 10'000'000;
-  static constexpr double kTimeout = 0.1;      ///< s, servo.default_timeout_s as shipped
   static constexpr double kTimeoutTorque = 5;  ///< N·m, servo.timeout_max_torque_Nm as shipped
 
   MoteusDevice(const MoteusDeviceParameters& parameters, VirtualCan& bus, DeviceMotor& motor)
@@ -38,16 +37,12 @@ class MoteusDevice final : public MitDevice {
   void receive(const can_frame& frame, std::int64_t now_ns) override;
   void run(std::int64_t now_ns, double seconds) override;
 
-  void write(moteus::Register number, double value);
-  void begin_order(std::int64_t now_ns);
   moteus::Reply state() const;
 
   MoteusDeviceParameters parameters_;
   moteus::Mode mode_ = moteus::Mode::kStopped;
-  moteus::Mode ordered_ = moteus::Mode::kStopped;
+  moteus::Request order_;  // the last one
   std::uint8_t fault_code_ = 0;
-  double max_torque_ = 0;  // N·m, of the last order
-  double timeout_ = 0;     // s, of the last order
   std::int64_t ordered_ns_ = 0;
   std::int64_t enabled_ns_ = 0;  // in the mode position from then on
 };

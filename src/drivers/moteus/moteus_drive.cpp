@@ -1,6 +1,7 @@
 #include "drivers/moteus/moteus_drive.h"
 
 #include <cmath>
+#include <utility>
 
 #include "signals/formatted_text.h"
 
@@ -11,24 +12,14 @@ constexpr double kTrialAngle = 0.05 * kTurn;    // rad, from the position
 constexpr double kTrialVelocity = 0.2 * kTurn;  // rad/s: the target moves on by 0.4 % of the angle in 1 ms
 constexpr double kTrialStiffness = 0.25;        // of kp: less than the part of kd, which must not depend on it
 
-struct CodeWords {
-  std::uint64_t code;
-  const char* words;
-};
-constexpr CodeWords kFaults[] = {{32, "calibration"},
-                                 {33, "motor driver"},
-                                 {34, "over-voltage"},
-                                 {35, "encoder"},
-                                 {36, "not calibrated"},
-                                 {37, "PWM cycle overrun"},
-                                 {38, "too hot"},
-                                 {39, "outside servopos.position_min and position_max"},
-                                 {40, "under-voltage"},
-                                 {41, "a changed setting"},
-                                 {42, "no commutation encoder"},
-                                 {43, "no output encoder"},
-                                 {44, "gate driver"},
-                                 {47, "servo.bemf_feedforward is not 0"}};
+constexpr std::pair<std::uint64_t, const char*> kFaults[] = {{33, "motor driver"},
+                                                             {34, "over-voltage"},
+                                                             {35, "encoder"},
+                                                             {36, "not calibrated"},
+                                                             {38, "too hot"},
+                                                             {39, "outside servopos.position_min and position_max"},
+                                                             {40, "under-voltage"},
+                                                             {47, "servo.bemf_feedforward is not 0"}};
 
 MitJoint with_gains(const MoteusParameters& parameters) {
   MitJoint joint = parameters;
@@ -60,8 +51,8 @@ void MoteusDrive::receive(const can_frame& frame, std::int64_t now_ns) noexcept 
   if (!reply) return;
   reply_ = *reply;
   if (is_in(Mode::kTimeout) && running()) return fail(DriveCause::kOwnBrake);
-  if (reply->has_identity && setting_up() && !identified_) identify(*reply);
-  if (reply->has_gains && is_in(Mode::kPosition) && !gains_agree_) judge_gains(*reply);
+  if (reply->details && setting_up() && !identified_) identify(*reply);
+  if (reply->details && is_in(Mode::kPosition) && !gains_agree_) judge_gains(*reply);
   accept_position(reply->position, reply->velocity, now_ns);
   accept_motor_torque(reply->torque, now_ns);
   accept_temperature(reply->temperature);
@@ -91,18 +82,19 @@ void MoteusDrive::judge_gains(const Reply& reply) noexcept {
 }
 
 can_frame MoteusDrive::enable() noexcept {
-  MitRanges ranges = this->ranges();
-  ranges.torque = 0;
   if (trial_.damping == 0)
     trial_ = {.position = reply_.position + kTrialAngle,
               .velocity = kTrialVelocity,
-              .stiffness = kTrialStiffness * ranges.stiffness,
-              .damping = ranges.damping};
-  return encode_order(node(), ranges, trial_, timeout_, Query::kGains);
+              .stiffness = kTrialStiffness * ranges().stiffness,
+              .damping = ranges().damping};
+  return encode(node(), ranges(),
+                {.mode = Mode::kPosition, .command = trial_, .timeout = timeout_, .details = true});
 }
 
 can_frame MoteusDrive::order(const MitCommand& command) noexcept {
-  return encode_order(node(), ranges(), command, timeout_, Query::kState);
+  return encode(
+      node(), ranges(),
+      {.mode = Mode::kPosition, .command = command, .max_torque = ranges().torque, .timeout = timeout_});
 }
 
 std::uint64_t MoteusDrive::state_code() const noexcept {
@@ -116,8 +108,8 @@ std::string MoteusDrive::code_words(const DriveStatus& status) const {
   const std::uint64_t mode = status.code & 0xFFU, fault = status.code >> 8U;
   if (status.cause == DriveCause::kReleased) return mode == 0 ? "stopped" : "mode " + std::to_string(mode);
   if (status.cause != DriveCause::kDriveError) return "";
-  for (const CodeWords& each : kFaults) {
-    if (each.code == fault) return each.words;
+  for (const auto& [code, words] : kFaults) {
+    if (code == fault) return words;
   }
   return "number " + std::to_string(fault);
 }

@@ -33,17 +33,18 @@ class MoteusDrive final : public MitDrive {
  private:
   void forget_motor() noexcept override;
   bool is_set_up() const noexcept override { return identified_; }
-  can_frame set_up() noexcept override { return encode_stop(node(), Query::kIdentity); }
+  can_frame set_up() noexcept override { return stop(true); }
   void end_unanswered() noexcept override { fail(DriveCause::kNoAnswer, "the version of its registers"); }
   bool is_on() const noexcept override { return is_in(Mode::kPosition) && gains_agree_; }
   bool in_error() const noexcept override { return is_in(Mode::kFault); }
   std::uint64_t state_code() const noexcept override;
-  can_frame clear() noexcept override { return encode_stop(node(), Query::kState); }
+  can_frame clear() noexcept override { return stop(false); }
   can_frame enable() noexcept override;
-  can_frame release() noexcept override { return encode_stop(node(), Query::kState); }
+  can_frame release() noexcept override { return stop(false); }
   can_frame order(const MitCommand& command) noexcept override;
   std::string code_words(const DriveStatus& status) const override;
 
+  can_frame stop(bool details) const noexcept { return encode(node(), ranges(), {.details = details}); }
   bool is_in(Mode mode) const noexcept { return reply_.mode == static_cast<double>(mode); }
   void identify(const Reply& reply) noexcept;
   void judge_gains(const Reply& reply) noexcept;

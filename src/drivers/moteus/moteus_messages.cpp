@@ -1,191 +1,165 @@
 #include "drivers/moteus/moteus_messages.h"
 
 #include <algorithm>
-#include <array>
 #include <bit>
 #include <cmath>
-#include <utility>
+#include <initializer_list>
+#include <span>
 
 namespace robot_control::moteus {
 namespace {
 
-constexpr std::uint8_t kWriteError = 0x30, kReadError = 0x31, kNothing = 0x50;
-constexpr double kNoLimit = -1;
+constexpr canid_t kHost = 0;  // number of this program
+constexpr canid_t kRequestsReply = 0x8000;
+constexpr std::uint8_t kNothing = 0x50;
 
-constexpr ReplyField kFields[] = {
-    {Register::kMode, Type::kInt8, &Reply::mode, 1},
-    {Register::kPosition, Type::kFloat, &Reply::position, kTurn},
-    {Register::kVelocity, Type::kFloat, &Reply::velocity, kTurn},
-    {Register::kTorque, Type::kFloat, &Reply::torque, 1},
-    {Register::kVoltage, Type::kInt8, &Reply::voltage, 0.5},
-    {Register::kTemperature, Type::kInt8, &Reply::temperature, 1},
-    {Register::kFault, Type::kInt8, &Reply::fault, 1},
-    {Register::kHome, Type::kInt8, &Reply::home, 1},
-    {Register::kMapVersion, Type::kInt32, &Reply::map_version, 1},
-    {Register::kProportional, Type::kFloat, &Reply::proportional, 1},
-    {Register::kIntegral, Type::kFloat, &Reply::integral, 1},
-    {Register::kDerivative, Type::kFloat, &Reply::derivative, 1},
-};
-constexpr unsigned kState = 0x7F, kIdentity = 0x180, kGains = 0xE00;  // bits of fields, in their order
+using Bytes = std::initializer_list<std::uint8_t>;
 
-constexpr unsigned bytes_of(Type type) noexcept {
-  return type == Type::kFloat ? 4 : 1U << static_cast<unsigned>(type);
-}
-
-SubframeWriter begin_order(std::uint64_t node, Mode mode) noexcept {
-  SubframeWriter writer(kRequestsReply | kHost << 8U | static_cast<canid_t>(node));
-  writer.begin(Access::kWrite, Type::kInt8, Register::kMode, 1).value(Type::kInt8, static_cast<double>(mode));
-  return writer;
-}
-
-can_frame with_query(SubframeWriter writer, Query query) noexcept {
-  writer.begin(Access::kRead, Type::kInt8, Register::kMode, 1);
-  writer.begin(Access::kRead, Type::kFloat, Register::kPosition, 3);
-  writer.begin(Access::kRead, Type::kInt8, Register::kVoltage, 3);
-  if (query == Query::kIdentity) {
-    writer.begin(Access::kRead, Type::kInt8, Register::kHome, 1);
-    writer.begin(Access::kRead, Type::kInt32, Register::kMapVersion, 1);
+/// A Writer and a Reader follow the same layout of a frame.
+class Writer {
+ public:
+  explicit Writer(canid_t id) noexcept {
+    frame_.can_id = id > CAN_SFF_MASK ? id | CAN_EFF_FLAG : id;
+    frame_.flags = CANFD_FDF | CANFD_BRS;
   }
-  if (query == Query::kGains) writer.begin(Access::kRead, Type::kFloat, Register::kProportional, 3);
-  return writer.frame();
+  void bytes(Bytes bytes) noexcept {
+    for (const std::uint8_t byte : bytes) frame_.data[frame_.len++] = byte;
+  }
+  bool branch(bool taken, Bytes first) noexcept {
+    if (taken) bytes(first);
+    return taken;
+  }
+  void integer(unsigned bits, double& value, double scale = 1) noexcept {
+    raw(bits, static_cast<std::uint32_t>(saturated(value / scale, bits)));
+  }
+  void real(double& value, double scale = 1) noexcept { raw(32, float_bits(value / scale)); }
+  can_frame padded() noexcept {
+    for (const unsigned length = fd_length(frame_.len); frame_.len < length;) bytes({kNothing});
+    return frame_;
+  }
+
+ private:
+  void raw(unsigned bits, std::uint32_t value) noexcept {
+    for (unsigned bit = 0; bit < bits; bit += 8) bytes({static_cast<std::uint8_t>(value >> bit)});
+  }
+
+  can_frame frame_{};
+};
+
+class Reader {
+ public:
+  explicit Reader(const can_frame& frame) noexcept
+      : rest_(frame.data, std::min<std::size_t>(frame.len, max_length(frame))) {}
+  void bytes(Bytes bytes) noexcept { good_ = branch(true, bytes) && good_; }
+  bool branch(bool /*taken*/, Bytes first) noexcept {
+    if (rest_.size() < first.size() || !std::ranges::equal(rest_.first(first.size()), first)) return false;
+    rest_ = rest_.subspan(first.size());
+    return true;
+  }
+  void integer(unsigned bits, double& value, double scale = 1) noexcept {
+    const std::int64_t number = sign_extended(raw(bits), bits);
+    value = number == sign_extended(1ULL << (bits - 1), bits) ? std::nan("") : scale * static_cast<double>(number);
+  }
+  void real(double& value, double scale = 1) noexcept { value = scale * double{std::bit_cast<float>(raw(32))}; }
+  /// Returns whether the frame has the layout that was read.
+  bool ends() const noexcept {
+    return good_ && std::ranges::all_of(rest_, [](std::uint8_t byte) { return byte == kNothing; });
+  }
+
+ private:
+  std::uint32_t raw(unsigned bits) noexcept {
+    std::uint32_t value = 0;
+    good_ = good_ && rest_.size() >= bits / 8;
+    for (unsigned i = 0; good_ && i < bits / 8; ++i) value |= std::uint32_t{rest_[i]} << 8U * i;
+    if (good_) rest_ = rest_.subspan(bits / 8);
+    return value;
+  }
+
+  std::span<const std::uint8_t> rest_;
+  bool good_ = true;
+};
+
+template <class Coder>
+void follow(Coder& coder, const MitRanges& gains, Request& request) noexcept {
+  if (coder.branch(request.mode == Mode::kPosition, {0x01, 0x00, static_cast<std::uint8_t>(Mode::kPosition)})) {
+    request.mode = Mode::kPosition;
+    coder.bytes({0x0C, 6, 0x20});
+    coder.real(request.command.position, kTurn);
+    coder.real(request.command.velocity, kTurn);
+    coder.real(request.command.torque);
+    coder.real(request.command.stiffness, gains.stiffness);
+    coder.real(request.command.damping, gains.damping);
+    coder.real(request.max_torque);
+    coder.bytes({0x0D, 0x27});
+    coder.real(request.timeout);
+    coder.bytes({0x02, 0x28, 0xFF, 0xFF});  // limits of velocity and acceleration below 0: none
+  } else {
+    coder.bytes({0x01, 0x00, static_cast<std::uint8_t>(Mode::kStopped)});
+  }
+  coder.bytes({0x11, 0x00, 0x1F, 0x01, 0x13, 0x0D});
+  request.details = coder.branch(request.details, {0x11, 0x0C, 0x19, 0x82, 0x02, 0x1F, 0x30});
+}
+
+template <class Coder>
+void follow(Coder& coder, Reply& reply) noexcept {
+  coder.bytes({0x21, 0x00});
+  coder.integer(8, reply.mode);
+  coder.bytes({0x2F, 0x01});
+  coder.real(reply.position, kTurn);
+  coder.real(reply.velocity, kTurn);
+  coder.real(reply.torque);
+  coder.bytes({0x23, 0x0D});
+  coder.integer(8, reply.voltage, 0.5);
+  coder.integer(8, reply.temperature);
+  coder.integer(8, reply.fault);
+  reply.details = coder.branch(reply.details, {0x21, 0x0C});
+  if (!reply.details) return;
+  coder.integer(8, reply.home);
+  coder.bytes({0x29, 0x82, 0x02});
+  coder.integer(32, reply.map_version);
+  coder.bytes({0x2F, 0x30});
+  coder.real(reply.proportional);
+  coder.real(reply.integral);
+  coder.real(reply.derivative);
+}
+
+bool has_id(const can_frame& frame, std::uint64_t id) noexcept {
+  return (frame.can_id & ~CAN_EFF_FLAG) == id && is_fd(frame);
 }
 
 }  // namespace
 
-SubframeReader::SubframeReader(const can_frame& frame) noexcept
-    : rest_(frame.data, std::min<std::size_t>(frame.len, max_length(frame))) {}
-
-std::uint32_t SubframeReader::varuint() noexcept {
-  std::uint64_t value = 0;
-  for (unsigned shift = 0; shift < 35 && !rest_.empty(); shift += 7) {
-    const std::uint8_t byte = rest_.front();
-    rest_ = rest_.subspan(1);
-    value |= std::uint64_t{byte & 0x7FU} << shift;
-    if (byte < 0x80) return static_cast<std::uint32_t>(value);
-  }
-  whole_ = false;
-  return 0;
+can_frame encode(std::uint64_t node, const MitRanges& gains, Request request) noexcept {
+  Writer writer(kRequestsReply | kHost << 8U | static_cast<canid_t>(node));
+  follow(writer, gains, request);
+  return writer.padded();
 }
 
-std::optional<Subframe> SubframeReader::next() noexcept {
-  while (whole_ && !rest_.empty()) {
-    const std::uint8_t head = rest_.front();
-    rest_ = rest_.subspan(1);
-    if (head == kNothing) {
-      whole_ = std::ranges::all_of(std::exchange(rest_, {}), [](std::uint8_t byte) { return byte == kNothing; });
-      break;
-    }
-    if (head == kWriteError || head == kReadError) {
-      varuint();
-      varuint();
-      continue;
-    }
-    whole_ = head < kWriteError;
-    Subframe subframe{
-        .access = static_cast<Access>(head & 0xF0U), .type = static_cast<Type>(head >> 2U & 3U), .count = head & 3U};
-    if (subframe.count == 0 && whole_) subframe.count = varuint();
-    if (subframe.count == 0 && whole_) continue;
-    subframe.first = varuint();
-    const std::size_t bytes = subframe.access == Access::kRead ? 0 : subframe.count * bytes_of(subframe.type);
-    whole_ = whole_ && subframe.count <= kMaxCount && bytes <= rest_.size();
-    if (!whole_) break;
-    subframe.values = rest_.first(bytes);
-    rest_ = rest_.subspan(bytes);
-    return subframe;
-  }
-  return std::nullopt;
+can_frame encode(std::uint64_t node, Reply reply) noexcept {
+  Writer writer(static_cast<canid_t>(node) << 8U | kHost);
+  follow(writer, reply);
+  return writer.padded();
 }
 
-SubframeWriter::SubframeWriter(canid_t id) noexcept {
-  frame_.can_id = id > CAN_SFF_MASK ? id | CAN_EFF_FLAG : id;
-  frame_.flags = CANFD_FDF | CANFD_BRS;
-}
-
-SubframeWriter& SubframeWriter::begin(Access access, Type type, Register first, unsigned count) noexcept {
-  const unsigned head = static_cast<unsigned>(access) | static_cast<unsigned>(type) << 2U;
-  add(count <= 3 ? head | count : head);
-  if (count > 3) add(count);
-  auto number = static_cast<std::uint32_t>(first);
-  for (; number >= 0x80; number >>= 7U) add(0x80 | (number & 0x7FU));
-  add(number);
-  return *this;
-}
-
-SubframeWriter& SubframeWriter::value(Type type, double value) noexcept {
-  const unsigned bytes = bytes_of(type);
-  const std::uint64_t raw =
-      type == Type::kFloat ? float_bits(value) : static_cast<std::uint64_t>(saturated(value, 8 * bytes));
-  for (unsigned i = 0; i < bytes; ++i) add(raw >> 8U * i & 0xFFU);
-  return *this;
-}
-
-can_frame SubframeWriter::frame() const noexcept {
-  SubframeWriter padded = *this;
-  while (padded.frame_.len < fd_length(frame_.len)) padded.add(kNothing);
-  return padded.frame_;
-}
-
-double value_of(const Subframe& subframe, unsigned i) noexcept {
-  const unsigned bytes = bytes_of(subframe.type);
-  std::uint32_t raw = 0;
-  for (unsigned byte = bytes; byte-- > 0;) raw = raw << 8U | subframe.values[i * bytes + byte];
-  if (subframe.type == Type::kFloat) return double{std::bit_cast<float>(raw)};
-  const std::int64_t value = sign_extended(raw, 8 * bytes);
-  return raw == 1U << (8 * bytes - 1) ? std::nan("") : static_cast<double>(value);
-}
-
-const ReplyField* field_of(std::uint32_t number, Type type) noexcept {
-  const ReplyField* field = std::ranges::find(kFields, static_cast<Register>(number), &ReplyField::number);
-  return field != std::end(kFields) && field->type == type ? field : nullptr;
-}
-
-can_frame encode_stop(std::uint64_t node, Query query) noexcept {
-  return with_query(begin_order(node, Mode::kStopped), query);
-}
-
-can_frame encode_order(std::uint64_t node, const MitRanges& ranges, const MitCommand& command, double timeout,
-                       Query query) noexcept {
-  SubframeWriter writer = begin_order(node, Mode::kPosition);
-  writer.begin(Access::kWrite, Type::kFloat, Register::kOrderPosition, 6);
-  for (const double value : {command.position / kTurn, command.velocity / kTurn, command.torque,
-                             command.stiffness / ranges.stiffness, command.damping / ranges.damping, ranges.torque})
-    writer.value(Type::kFloat, value);
-  writer.begin(Access::kWrite, Type::kFloat, Register::kTimeout, 1).value(Type::kFloat, timeout);
-  writer.begin(Access::kWrite, Type::kInt8, Register::kVelocityLimit, 2);
-  writer.value(Type::kInt8, kNoLimit).value(Type::kInt8, kNoLimit);
-  return with_query(writer, query);
+std::optional<Request> decode_request(const can_frame& frame, std::uint64_t node, const MitRanges& gains) noexcept {
+  Request request;
+  Reader reader(frame);
+  follow(reader, gains, request);
+  return has_id(frame, kRequestsReply | kHost << 8U | node) && reader.ends() ? std::optional(request) : std::nullopt;
 }
 
 std::optional<Reply> decode_reply(const can_frame& frame, std::uint64_t node) noexcept {
-  if ((frame.can_id & ~CAN_EFF_FLAG) != (node << 8U | kHost) || !is_fd(frame)) return std::nullopt;
   Reply reply;
-  unsigned found = 0;
-  SubframeReader reader(frame);
-  while (const auto subframe = reader.next()) {
-    if (subframe->access != Access::kReply) return std::nullopt;
-    for (unsigned i = 0; i < subframe->count; ++i) {
-      const ReplyField* field = field_of(subframe->first + i, subframe->type);
-      if (field == nullptr) continue;
-      reply.*field->member = field->scale * value_of(*subframe, i);
-      found |= 1U << (field - kFields);
-    }
-  }
-  if (!reader.whole() || (found & kState) != kState || std::isnan(reply.mode) || std::isnan(reply.fault))
-    return std::nullopt;
-  reply.has_identity = (found & kIdentity) == kIdentity;
-  reply.has_gains = (found & kGains) == kGains;
-  return reply;
+  Reader reader(frame);
+  follow(reader, reply);
+  const bool known = !std::isnan(reply.mode) && !std::isnan(reply.fault);
+  return has_id(frame, node << 8U | kHost) && reader.ends() && known ? std::optional(reply) : std::nullopt;
 }
 
 bool commands(const can_frame& frame, std::uint64_t node) noexcept {
   const canid_t id = frame.can_id & ~CAN_EFF_FLAG;
   const canid_t target = id & 0x7FU;
-  if (id > 0xFFFF || (target != node && target != kBroadcast)) return false;
-  SubframeReader reader(frame);
-  while (const auto subframe = reader.next()) {
-    if (subframe->access == Access::kWrite) return true;
-  }
-  return !reader.whole();
+  return id <= 0xFFFF && (target == node || target == kBroadcast) && frame.len > 0 && frame.data[0] >> 4U != 1;
 }
 
 }  // namespace robot_control::moteus

@@ -206,7 +206,7 @@ std::vector<can_frame> foreign_to_moteus() {
     frame.flags = CANFD_FDF | CANFD_BRS;
     return frame;
   };
-  return {moteus::encode_stop(1, moteus::Query::kState), frame_of(0x201, 0x0A0001, 3), frame_of(0x7F, 0x000001, 3),
+  return {moteus::encode(1, {}, moteus::Request{}), frame_of(0x201, 0x0A0001, 3), frame_of(0x7F, 0x000001, 3),
           word_frame(1 | CAN_EFF_FLAG, 0x02B00D, 7), frame_of(0x8001 | CAN_EFF_FLAG, 0x706F747320640540, 8)};
 }
 

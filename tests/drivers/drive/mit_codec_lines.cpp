@@ -7,8 +7,8 @@
 ///   cybergear feedback RANGES ID DATA  → mode, faults, number, position, velocity, torque, temperature
 ///   damiao access NODE OPERATION NUMBER VALUE  → identifier, data
 ///   cybergear access NODE TYPE INDEX VALUE     → identifier, data
-///   moteus order NODE QUERY POSITION VELOCITY STIFFNESS DAMPING TORQUE TIMEOUT KP KD MAX_TORQUE  → identifier, data
-///   moteus stop NODE QUERY    → identifier, data
+///   moteus order NODE DETAILS POSITION VELOCITY STIFFNESS DAMPING TORQUE TIMEOUT KP KD MAX_TORQUE  → identifier, data
+///   moteus stop NODE DETAILS  → identifier, data
 ///   moteus feedback NODE ID DATA  → the numbers of moteus::Reply, in their order; - if the frame is none
 ///
 /// The orders without NODE are for motor 1. KP and KD are those of the scale 1, in N·m/rad and N·m·s/rad. RANGES are
@@ -85,17 +85,17 @@ void print_access(std::istream& line, bool is_cybergear) {
   }
 }
 
-can_frame moteus_order(std::istream& line, bool stops) {
+can_frame moteus_request(std::istream& line, bool stops) {
   std::uint64_t node = 0;
-  unsigned query = 0;
-  MitCommand command;
-  MitRanges ranges;
-  double timeout = 0;
-  line >> node >> query;
-  if (stops) return moteus::encode_stop(node, static_cast<moteus::Query>(query));
-  line >> command.position >> command.velocity >> command.stiffness >> command.damping >> command.torque >> timeout >>
-      ranges.stiffness >> ranges.damping >> ranges.torque;
-  return moteus::encode_order(node, ranges, command, timeout, static_cast<moteus::Query>(query));
+  moteus::Request request;
+  MitRanges gains;
+  MitCommand& command = request.command;
+  line >> node >> request.details;
+  if (stops) return moteus::encode(node, gains, request);
+  request.mode = moteus::Mode::kPosition;
+  line >> command.position >> command.velocity >> command.stiffness >> command.damping >> command.torque;
+  line >> request.timeout >> gains.stiffness >> gains.damping >> request.max_torque;
+  return moteus::encode(node, gains, request);
 }
 
 void print_moteus_reply(std::istream& line) {
@@ -128,7 +128,7 @@ int main() {
     if (dialect == "moteus" && word == "feedback") {
       print_moteus_reply(line);
     } else if (dialect == "moteus") {
-      print(moteus_order(line, word == "stop"));
+      print(moteus_request(line, word == "stop"));
     } else if (word == "order") {
       print_order(line, dialect == "cybergear");
     } else if (word == "feedback") {

@@ -21,29 +21,11 @@ std::vector<std::uint8_t> bytes_of(const can_frame& frame) {
   return {frame.data, frame.data + frame.len};
 }
 
-TEST(Moteus, TheReplyOfTheMakersExampleIsRead) {
-  const can_frame frame = frame_of(0x100, {0x24, 4, 0, 0x0A, 0, 0x50, 0, 0, 1, 0x70, 0xFF, 0x23, 0x0D, 0x18, 0x14, 0});
-  SubframeReader reader(frame);
-  const auto motion = reader.next();
-  ASSERT_TRUE(motion);
-  EXPECT_EQ(motion->type, Type::kInt16);
-  EXPECT_EQ(motion->first, 0u);
-  ASSERT_EQ(motion->count, 4u);
-  const double numbers[] = {10, 80, 256, -144};
-  for (unsigned i = 0; i < 4; ++i) EXPECT_EQ(value_of(*motion, i), numbers[i]);
-  const auto health = reader.next();
-  ASSERT_TRUE(health);
-  EXPECT_EQ(health->first, 0x0Du);
-  EXPECT_EQ(value_of(*health, 1), 20);
-  EXPECT_FALSE(reader.next());
-  EXPECT_TRUE(reader.whole());
-  EXPECT_FALSE(decode_reply(frame, 1)) << "in other formats than they were requested";
-}
-
 TEST(Moteus, AnOrderHoldsSixNumbersATimeoutNoLimitAndTheQuery) {
-  const MitRanges ranges{.torque = 2, .stiffness = 100, .damping = 10};
+  const MitRanges gains{.stiffness = 100, .damping = 10};
   const MitCommand command{.position = kTurn, .velocity = 2 * kTurn, .stiffness = 50, .damping = 10, .torque = -1};
-  const can_frame frame = encode_order(1, ranges, command, 0.5, Query::kState);
+  const can_frame frame =
+      encode(1, gains, {.mode = Mode::kPosition, .command = command, .max_torque = 2, .timeout = 0.5});
   EXPECT_EQ(frame.can_id, CAN_EFF_FLAG | 0x8001);
   EXPECT_EQ(frame.flags, CANFD_FDF | CANFD_BRS);
   EXPECT_EQ(bytes_of(frame),
@@ -54,11 +36,11 @@ TEST(Moteus, AnOrderHoldsSixNumbersATimeoutNoLimitAndTheQuery) {
 }
 
 TEST(Moteus, AStopAsksForTheStateAndTheIdentity) {
-  EXPECT_EQ(bytes_of(encode_stop(3, Query::kState)),
+  EXPECT_EQ(bytes_of(encode(3, {}, Request{})),
             (std::vector<std::uint8_t>{0x01, 0, 0, 0x11, 0, 0x1F, 1, 0x13, 0x0D, 0x50, 0x50, 0x50}));
   EXPECT_EQ(
-      bytes_of(encode_stop(3, Query::kIdentity)),
-      (std::vector<std::uint8_t>{0x01, 0, 0, 0x11, 0, 0x1F, 1, 0x13, 0x0D, 0x11, 0x0C, 0x19, 0x82, 0x02, 0x50, 0x50}));
+      bytes_of(encode(3, {}, Request{.details = true})),
+      (std::vector<std::uint8_t>{0x01, 0, 0, 0x11, 0, 0x1F, 1, 0x13, 0x0D, 0x11, 0x0C, 0x19, 0x82, 0x02, 0x1F, 0x30}));
 }
 
 can_frame good_reply(canid_t id = 0x100) {
@@ -75,8 +57,7 @@ TEST(Moteus, AReplyIsReadInSiUnits) {
   EXPECT_EQ(reply->torque, 1.5);
   EXPECT_EQ(reply->voltage, 25);
   EXPECT_EQ(reply->temperature, 30);
-  EXPECT_FALSE(reply->has_identity);
-  EXPECT_FALSE(reply->has_gains);
+  EXPECT_FALSE(reply->details);
 }
 
 TEST(Moteus, ANumberThatIsNotFiniteStaysSo) {
@@ -112,25 +93,28 @@ TEST(Moteus, AnotherIdentifierLengthOrKindIsNoReply) {
 TEST(Moteus, AFrameThatReadsAloneCommandsNothing) {
   EXPECT_FALSE(commands(frame_of(0x8101, {0x11, 0, 0x1F, 1}), 1));
   EXPECT_FALSE(commands(good_reply(), 1));
-  EXPECT_FALSE(commands(encode_stop(2, Query::kState), 1));
-  EXPECT_TRUE(commands(encode_stop(2, Query::kState), 2));
+  EXPECT_FALSE(commands(encode(2, {}, Request{}), 1));
+  EXPECT_TRUE(commands(encode(2, {}, Request{}), 2));
   EXPECT_TRUE(commands(frame_of(0x017F, {0x01, 0, 0}), 2)) << "to all";
 }
 
-TEST(Moteus, ASubframeThatIsCutEndsTheFrame) {
-  for (const std::initializer_list<std::uint8_t> bytes : {std::initializer_list<std::uint8_t>{0x0D, 0x20, 0, 0, 0},
-                                                          {0x00},
-                                                          {0x00, 0x80},
-                                                          {0x11},
-                                                          {0x11, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 1},
-                                                          {0x10, 0xFF, 0x7F, 0},
-                                                          {0x60, 0},
-                                                          {0x50, 0x21, 0, 10}}) {
-    const can_frame frame = frame_of(0x100, bytes);
-    SubframeReader reader(frame);
-    EXPECT_FALSE(reader.next());
-    EXPECT_FALSE(reader.whole());
+TEST(Moteus, ARequestComesBackAsItWasMade) {
+  const MitRanges gains{.stiffness = 100, .damping = 10};
+  const MitCommand command{.position = kTurn, .velocity = 2 * kTurn, .stiffness = 50, .damping = 10, .torque = -1};
+  for (const bool details : {false, true}) {
+    const can_frame frame =
+        encode(1, gains, {.mode = Mode::kPosition, .command = command, .max_torque = 2, .timeout = 0.5, .details = details});
+    const auto request = decode_request(frame, 1, gains);
+    ASSERT_TRUE(request);
+    EXPECT_EQ(request->mode, Mode::kPosition);
+    EXPECT_EQ(request->command.stiffness, 50);
+    EXPECT_EQ(request->command.torque, -1);
+    EXPECT_EQ(request->max_torque, 2);
+    EXPECT_EQ(request->details, details);
+    EXPECT_FALSE(decode_request(frame, 2, gains));
+    EXPECT_EQ(frame.len, details ? 64 : 48);
   }
+  EXPECT_EQ(decode_request(encode(1, gains, Request{}), 1, gains)->mode, Mode::kStopped);
 }
 
 }  // namespace robot_control::moteus::tests
