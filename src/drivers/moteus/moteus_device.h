@@ -4,7 +4,7 @@
 ///
 /// An order brings it into the mode position after kEnableNs. A timeout leaves it with the damping of the last order
 /// and at most kTimeoutTorque, as shipped (servo.timeout_mode 12), or without torque. Only a request to stop ends that.
-/// The reply to a frame tells the state before it.
+/// The reply to a frame holds the state before it.
 
 #include <cstdint>
 
