@@ -12,14 +12,11 @@ constexpr double kTrialAngle = 0.05 * kTurn;    // rad, from the position
 constexpr double kTrialVelocity = 0.2 * kTurn;  // rad/s: the target moves on by 0.4 % of the angle in 1 ms
 constexpr double kTrialStiffness = 0.25;        // of kp: less than the part of kd, which must not depend on it
 
-constexpr std::pair<std::uint64_t, const char*> kFaults[] = {{33, "motor driver"},
-                                                             {34, "over-voltage"},
-                                                             {35, "encoder"},
-                                                             {36, "not calibrated"},
-                                                             {38, "too hot"},
-                                                             {39, "outside servopos.position_min and position_max"},
-                                                             {40, "under-voltage"},
-                                                             {47, "servo.bemf_feedforward is not 0"}};
+constexpr std::pair<std::uint64_t, const char*> kFaults[] = {
+    {33, "motor driver"},  {34, "over-voltage"},
+    {35, "encoder"},       {36, "not calibrated"},
+    {38, "too hot"},       {39, "outside servopos.position_min and position_max"},
+    {40, "under-voltage"}, {47, "servo.bemf_feedforward is not 0"}};
 
 MitJoint with_gains(const MoteusParameters& parameters) {
   MitJoint joint = parameters;
@@ -87,14 +84,12 @@ can_frame MoteusDrive::enable() noexcept {
               .velocity = kTrialVelocity,
               .stiffness = kTrialStiffness * ranges().stiffness,
               .damping = ranges().damping};
-  return encode(node(), ranges(),
-                {.mode = Mode::kPosition, .command = trial_, .timeout = timeout_, .details = true});
+  return encode(node(), ranges(), {.mode = Mode::kPosition, .command = trial_, .timeout = timeout_, .details = true});
 }
 
 can_frame MoteusDrive::order(const MitCommand& command) noexcept {
-  return encode(
-      node(), ranges(),
-      {.mode = Mode::kPosition, .command = command, .max_torque = ranges().torque, .timeout = timeout_});
+  return encode(node(), ranges(),
+                {.mode = Mode::kPosition, .command = command, .max_torque = ranges().torque, .timeout = timeout_});
 }
 
 std::uint64_t MoteusDrive::state_code() const noexcept {

@@ -259,7 +259,8 @@ bool check_moteus(const can_frame& frame) {
                                              reply->temperature + reply->home + reply->map_version +
                                              reply->proportional + reply->integral + reply->derivative);
   EXPECT_TRUE(!finite || same_data(frame, encode(kFuzzNode, *reply)));
-  const auto again = request ? decode_request(encode(kFuzzNode, kFuzzRanges, *request), kFuzzNode, kFuzzRanges) : request;
+  const auto again =
+      request ? decode_request(encode(kFuzzNode, kFuzzRanges, *request), kFuzzNode, kFuzzRanges) : request;
   EXPECT_EQ(again.has_value(), request.has_value());
   EXPECT_TRUE(!again || (again->mode == request->mode && again->details == request->details));
   return reply || request;
@@ -297,13 +298,11 @@ void expect_one_meaning_of_mit(int count) {
   moteus::Reply details = state;
   details.details = true;
   const moteus::Request stop{.details = true};
-  const moteus::Request request{
-      .mode = moteus::Mode::kPosition, .command = order, .max_torque = 20, .timeout = 0.03};
-  expect_one_meaning_of(
-      check_moteus,
-      {moteus::encode(kFuzzNode, state), moteus::encode(kFuzzNode, details),
-       moteus::encode(kFuzzNode, kFuzzRanges, stop), moteus::encode(kFuzzNode, kFuzzRanges, request)},
-      count, 10);
+  const moteus::Request request{.mode = moteus::Mode::kPosition, .command = order, .max_torque = 20, .timeout = 0.03};
+  expect_one_meaning_of(check_moteus,
+                        {moteus::encode(kFuzzNode, state), moteus::encode(kFuzzNode, details),
+                         moteus::encode(kFuzzNode, kFuzzRanges, stop), moteus::encode(kFuzzNode, kFuzzRanges, request)},
+                        count, 10);
 }
 
 TEST(CodecFuzz, ODriveFramesHaveOneMeaningOrNone) {

@@ -102,8 +102,8 @@ TEST(Moteus, ARequestComesBackAsItWasMade) {
   const MitRanges gains{.stiffness = 100, .damping = 10};
   const MitCommand command{.position = kTurn, .velocity = 2 * kTurn, .stiffness = 50, .damping = 10, .torque = -1};
   for (const bool details : {false, true}) {
-    const can_frame frame =
-        encode(1, gains, {.mode = Mode::kPosition, .command = command, .max_torque = 2, .timeout = 0.5, .details = details});
+    const can_frame frame = encode(
+        1, gains, {.mode = Mode::kPosition, .command = command, .max_torque = 2, .timeout = 0.5, .details = details});
     const auto request = decode_request(frame, 1, gains);
     ASSERT_TRUE(request);
     EXPECT_EQ(request->mode, Mode::kPosition);
