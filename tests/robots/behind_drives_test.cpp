@@ -105,11 +105,10 @@ TEST(BehindDrives, ItFoldsUprightWhenADriveOrABusIsLost) {
   }
 }
 
-/// The driver and the simulated robot of another program meet on four buses without CAN.
-TEST(BehindDrives, AnotherProgramFindsThemOnEachBus) {
+void expect_found_by_another_program(const std::string& drives) {
   const std::string folder = testing::TempDir() + "leg_bus_";
   const std::string path = testing::TempDir() + "leg_drives.yaml";
-  Parameters parameters = behind_drives();
+  Parameters parameters = behind_drives(drives);
   std::ifstream example(parameters.drives);
   std::string text{std::istreambuf_iterator<char>(example), {}};
   for (const std::string bus : {"can0", "can1", "can2", "can3"}) {
@@ -140,6 +139,15 @@ TEST(BehindDrives, AnotherProgramFindsThemOnEachBus) {
   }
   std::filesystem::remove(path);
   for (const char bus : {'0', '1', '2', '3'}) std::filesystem::remove_all(folder + bus);
+}
+
+/// The driver and the simulated robot of another program meet on four buses without CAN, with classic frames and with
+/// frames of CAN FD.
+TEST(BehindDrives, AnotherProgramFindsThemOnEachBus) {
+  for (const char* drives : {"damiao", "moteus"}) {
+    SCOPED_TRACE(drives);
+    expect_found_by_another_program(drives);
+  }
 }
 
 }  // namespace robot_control::tests
