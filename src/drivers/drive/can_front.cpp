@@ -51,7 +51,7 @@ VirtualCan& CanFront::bus(const std::string& address) {
 
 void CanFront::Bus::carry(can_frame frame, std::int64_t now_ns) {
   if (fault == AnswerFault::kLost) return;
-  const unsigned bytes = is_fd(frame) ? frame.len : CAN_MAX_DLEN;
+  const unsigned bytes = std::max<unsigned>(frame.len, CAN_MAX_DLEN);
   const auto bit = static_cast<unsigned>(fault == AnswerFault::kDamaged ? random() % (8 * bytes) : 8 * bytes);
   if (bit / 8 < frame.len) frame.data[bit / 8] ^= static_cast<std::uint8_t>(1U << bit % 8);
   if (fault == AnswerFault::kShifted) std::rotate(frame.data, frame.data + bytes - 1, frame.data + bytes);

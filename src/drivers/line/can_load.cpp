@@ -94,6 +94,19 @@ class BitCounter {
   Run run_;
 };
 
+/// Adds the bits from the start of frame to the one that marks a remote request.
+void add_identifier(BitCounter& counter, const can_frame& frame, bool remote) noexcept {
+  counter.add(0, 1);  // start of frame
+  if (is_extended(frame)) {
+    counter.add(frame.can_id >> 18U & CAN_SFF_MASK, 11);
+    counter.add(3, 2);  // SRR and IDE, recessive
+    counter.add(frame.can_id & 0x3FFFFU, 18);
+  } else {
+    counter.add(frame.can_id & CAN_SFF_MASK, 11);
+  }
+  counter.add(remote ? 1 : 0, 1);
+}
+
 struct Bits {
   double per_cycle = 0, per_second = 0;
 };
@@ -111,18 +124,21 @@ Bits bits_of(std::span<const PlannedFrames> plan, double bit_rate, double data_r
 
 }  // namespace
 
+unsigned frame_bits(const can_frame& frame) noexcept {
+  const bool remote = is_remote_request(frame);
+  BitCounter counter;
+  add_identifier(counter, frame, remote);
+  counter.add(0, 2);  // reserved; of 11 bits IDE and a reserved one
+  const std::uint8_t length = std::min<std::uint8_t>(frame.len, CAN_MAX_DLEN);
+  counter.add(length, 4);
+  for (std::uint8_t i = 0; i < length && !remote; ++i) counter.add(frame.data[i], 8);
+  return counter.finish() + 13;
+}
+
 FrameBits fd_frame_bits(const can_frame& frame) noexcept {
   BitCounter counter;
-  counter.add(0, 1);  // start of frame
-  if (is_extended(frame)) {
-    counter.add(frame.can_id >> 18U & CAN_SFF_MASK, 11);
-    counter.add(3, 2);  // SRR and IDE, recessive
-    counter.add(frame.can_id & 0x3FFFFU, 18);
-    counter.add(0, 1);  // RRS
-  } else {
-    counter.add(frame.can_id & CAN_SFF_MASK, 11);
-    counter.add(0, 2);  // RRS and IDE
-  }
+  add_identifier(counter, frame, false);
+  if (!is_extended(frame)) counter.add(0, 1);  // IDE
   const bool switches = (frame.flags & CANFD_BRS) != 0;
   counter.add(switches ? 5 : 4, 3);  // FDF, reserved, BRS
   const unsigned head = counter.count();
@@ -132,27 +148,6 @@ FrameBits fd_frame_bits(const can_frame& frame) noexcept {
   for (unsigned i = 0; i < length; ++i) counter.add(frame.data[i], 8);
   const unsigned data = counter.count() - head + (length > 16 ? 32 : 27);
   return switches ? FrameBits{.arbitration = head + 13, .data = data} : FrameBits{.arbitration = head + data + 13};
-}
-
-unsigned frame_bits(const can_frame& frame) noexcept {
-  const bool remote = is_remote_request(frame);
-  BitCounter counter;
-  counter.add(0, 1);  // start of frame
-  if (is_extended(frame)) {
-    counter.add(frame.can_id >> 18U & CAN_SFF_MASK, 11);
-    counter.add(3, 2);  // SRR and IDE, recessive
-    counter.add(frame.can_id & 0x3FFFFU, 18);
-    counter.add(remote ? 1 : 0, 1);
-    counter.add(0, 2);  // reserved
-  } else {
-    counter.add(frame.can_id & CAN_SFF_MASK, 11);
-    counter.add(remote ? 1 : 0, 1);
-    counter.add(0, 2);  // IDE and the reserved bit
-  }
-  const std::uint8_t length = std::min<std::uint8_t>(frame.len, CAN_MAX_DLEN);
-  counter.add(length, 4);
-  for (std::uint8_t i = 0; i < length && !remote; ++i) counter.add(frame.data[i], 8);
-  return counter.finish() + 13;
 }
 
 double bus_load(std::span<const PlannedFrames> plan, double rate, double bit_rate, double data_rate) noexcept {

@@ -136,9 +136,9 @@ void CanSocket::open_interface(const std::string& name, bool fd) {
   if (fd && ioctl(descriptor(), SIOCGIFMTU, &state) == 0 && state.ifr_mtu < static_cast<int>(kFdFrameBytes))
     refuse(name, "the interface does not carry frames of CAN FD", "set it down, then " + up);
   const can_err_mask_t errors = CAN_ERR_MASK;
-  const int fd_frames = fd ? 1 : 0;
+  const int on = 1;
   if (setsockopt(descriptor(), SOL_CAN_RAW, CAN_RAW_ERR_FILTER, &errors, sizeof errors) != 0 ||
-      setsockopt(descriptor(), SOL_CAN_RAW, CAN_RAW_FD_FRAMES, &fd_frames, sizeof fd_frames) != 0 ||
+      (fd && setsockopt(descriptor(), SOL_CAN_RAW, CAN_RAW_FD_FRAMES, &on, sizeof on) != 0) ||
       (!filters_.empty() && setsockopt(descriptor(), SOL_CAN_RAW, CAN_RAW_FILTER, filters_.data(),
                                        static_cast<socklen_t>(filters_.size() * sizeof(can_filter))) != 0) ||
       bind(descriptor(), generic(&address), sizeof address) != 0) {

@@ -10,6 +10,8 @@
 /// The gains cannot be read. So the controller is enabled with orders whose greatest torque is 0, and whose target is
 /// beside its position. It reports the parts of the torque that it would apply. They show kp, kd, an integral, and a
 /// limit of its steps. It counts as enabled when they agree with the drive file within kTolerance.
+///
+/// Each order requests the mode position. So the damping that follows a fault also enables a controller that restarted.
 
 #include <cstdint>
 
