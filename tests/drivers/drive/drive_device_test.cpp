@@ -510,7 +510,7 @@ void receive_random_frames(DeviceRig& rig, int count, double zero_torque) {
   for (int i = 0; i < count; ++i) {
     can_frame frame = seen[random() % seen.size()];
     if (random() % 2 == 0) {
-      frame.data[random() % 8] ^= static_cast<std::uint8_t>(1U << random() % 8);
+      frame.data[random() % std::max<unsigned>(frame.len, 8)] ^= static_cast<std::uint8_t>(1U << random() % 8);
     } else {
       const std::uint64_t data = random();
       std::memcpy(frame.data, &data, sizeof data);
