@@ -182,9 +182,10 @@ def test_no_damaged_message_ends_or_surprises_it(
     step = program()
     step()
     longest[0] = 0.0
+    count = COUNT // 4 if program is console else COUNT  # its step makes a whole page
     for topic, kind in sorted(topics.types.items()):
         draw = random.Random(topic)
-        for number, mutant in enumerate(mutants(wire(sample(kind, draw)), COUNT, seed=len(topic))):
+        for number, mutant in enumerate(mutants(wire(sample(kind, draw)), count, seed=len(topic))):
             timed(lambda message: (topics.send_bytes(topic, message), step()), mutant)  # noqa: B023 (called at once)
             assert not surprises, (topic, number, mutant, surprises)
-    print(f"{COUNT} mutants of each of {len(topics.types)} topics: the slowest took {1000 * longest[0]:.1f} ms")
+    print(f"{count} mutants of each of {len(topics.types)} topics: the slowest took {1000 * longest[0]:.1f} ms")
